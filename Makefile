@@ -1,0 +1,61 @@
+# One command a task; `make help` lists them. Everything runs in .venv, which `make setup` builds.
+
+PYTHON ?= python3
+BIN := .venv/bin
+STAMP := .venv/.petalfoil-installed
+JOBS ?= 2
+
+# Two BLAS threads make the small blocks of this package many times slower; parallel work is over cases.
+export OPENBLAS_NUM_THREADS := 1
+export OMP_NUM_THREADS := 1
+export MKL_NUM_THREADS := 1
+
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test test-all check lint types layers format bench constraints clean
+
+help: ## List the targets
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+setup: $(STAMP) ## Build .venv and install petalfoil with its tools
+
+$(STAMP): pyproject.toml constraints.txt
+	$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "petalfoil needs Python 3.11 or newer")'
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	@touch $@
+
+demo: setup ## Load characteristic of the paper's packages: figures and data in demo/
+	$(BIN)/python examples/demo.py demo
+
+test: setup ## Fast tests
+	$(BIN)/python -m pytest -n $(JOBS) -m "not slow" tests
+
+test-all: setup ## All tests
+	$(BIN)/python -m pytest -n $(JOBS) tests
+
+check: lint types layers ## Everything that reads the code without running it
+
+lint: setup ## Style and mistakes (ruff)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: setup ## Types (mypy --strict)
+	$(BIN)/mypy
+
+layers: setup ## Who may import whom (import-linter)
+	$(BIN)/lint-imports
+
+format: setup ## Bring the code into shape
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+bench: setup ## Times of fixed cases
+	$(BIN)/python benchmarks/run.py
+
+constraints: ## Renew constraints.txt (needs uv)
+	uv pip compile --quiet --universal --no-header --no-annotate --no-emit-index-url --all-extras pyproject.toml \
+	  -o constraints.txt
+
+clean: ## Remove what was built, .venv included
+	rm -rf .venv build dist demo .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

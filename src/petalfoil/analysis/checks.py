@@ -1,0 +1,52 @@
+"""Balances of an answer, computed from the state alone."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.equilibria.answer import Answer
+
+Array = NDArray[np.float64]
+
+
+def mass_balance(answer: Answer) -> float:
+    """Largest defect of a strip's mass over the flow that passes through it [1].
+
+    Inflow over the leading edge, outflow over the trailing edge and leakage at the sides are the balances of the
+    cells at the strip's border; they must add up to nothing.
+    """
+    problem = answer.problem
+    balance = problem.layout.balance
+    fluxes = problem.linearize(answer.x).fluxes
+    gained = balance.outflow(fluxes)
+    inside = balance.mesh.unknown >= 0
+    inside[:, [0, -1]] = False  # a shared edge belongs to two strips
+    stored = np.where(inside, gained, 0.0).sum(axis=(1, 2))
+    passing = np.abs(fluxes[0].size[:, [0, -1]]).sum(axis=(1, 2)) + np.abs(fluxes[1].size[..., :1]).sum(axis=(1, 2))
+    return float(np.max(np.abs(stored) / passing))
+
+
+def reaction_balance(answer: Answer) -> float:
+    """Largest defect of a petal's loads against its support, in motions that bend nothing, over the loads [1]."""
+    layout = answer.problem.layout
+    w, P = answer.x[: layout.n_wall], answer.x[layout.n_wall :]
+    if not layout.n_wall:
+        return 0.0
+    wall, unit = layout.wall, layout.scales.length / layout.scales.force
+    loads = layout.push @ (P - 1.0) + wall.contacts.G.T @ answer.lam
+    parts = layout.push @ np.abs(P - 1.0) + abs(wall.contacts.G.T) @ answer.lam
+    defect = wall.free_motions.T @ loads + unit * (wall.support @ w)
+    scale = abs(wall.free_motions.T) @ parts
+    return float(np.max(np.abs(defect) / np.maximum(scale, np.finfo(float).tiny)))
+
+
+def side_leakage(answer: Answer) -> float:
+    """Flow of gas out of both ends, in the film's own unit: over `p_a^2 h_ref^3 / (12 mu)` times the density ratio [1]."""
+    balance = answer.problem.layout.balance
+    axial = balance.mesh.axial
+    if axial.flat:
+        return 0.0
+    gained = balance.outflow(answer.problem.linearize(answer.x).fluxes)
+    ends = [0] if axial.half else [0, -1]
+    return float(-gained[:, 1:-1, ends].sum())

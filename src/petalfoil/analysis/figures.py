@@ -1,0 +1,134 @@
+"""Figures of an answer: forces, film, friction, leakage, how far it can be trusted."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.analysis.checks import mass_balance, reaction_balance, side_leakage
+from petalfoil.analysis.fields import all_fields, coordinates
+from petalfoil.case import Case
+from petalfoil.equilibria.answer import Answer
+from petalfoil.equilibria.work import Work
+from petalfoil.physics.forces import attitude_angle, contact_force, film_force, node_area, viscous_torque
+from petalfoil.results.record import Record
+
+Array = NDArray[np.float64]
+Named = dict[str, float | int | bool | str]
+
+
+def record_of(analysis: str, case: Case, answer: Answer, extra: Named, work: Work) -> Record:
+    """The record of an answer: figures, fields, coordinates, history."""
+    fields = all_fields(case, answer)
+    scalars = {**given(case), **forces(case, answer), **film_figures(case, answer, fields), **trust(answer), **extra}
+    if "bending_stress" in fields:
+        scalars["max_stress"] = float(np.max(np.abs(fields["bending_stress"])))
+    else:
+        scalars["max_stress"] = 0.0
+    return Record(
+        analysis=analysis,
+        scalars=scalars,
+        fields=dict(fields),
+        coords=coordinates(case, answer),
+        case_toml=case.to_toml(),
+        title=case.title,
+        history=list(work.history),
+    )
+
+
+def failed_record(analysis: str, case: Case, status: str, work: Work) -> Record:
+    """The record of a point without an answer."""
+    scalars = {**given(case), **effort(work), "converged": False, "status": status, "residual": float("nan")}
+    return Record(
+        analysis=analysis, scalars=scalars, case_toml=case.to_toml(), title=case.title, history=list(work.history)
+    )
+
+
+def given(case: Case) -> Named:
+    """What was asked, and the geometry that views need."""
+    bearing, (e_x, e_y) = case.bearing, case.operation.eccentricity
+    return {
+        "speed": case.operation.speed,
+        "eccentricity_x": e_x,
+        "eccentricity_y": e_y,
+        "journal_radius": bearing.journal_radius,
+        "bushing_radius": bearing.bushing_radius,
+        "length": bearing.length,
+        "petal_thickness": 0.0 if case.petals is None else case.petals.total_thickness,
+        "ambient_pressure": case.gas.ambient_pressure,
+        "film_floor": case.surface.film_floor,
+    }
+
+
+def forces(case: Case, answer: Answer) -> Named:
+    """Forces on the journal (62)-(64) and the share that contact carries."""
+    film, scales = answer.problem.layout.wall.film, answer.problem.layout.scales
+    Q = (answer.problem.pressure(answer.x) - 1.0) * scales.pressure
+    by_film = film_force(film, case.bearing.journal_radius, Q)
+    reaction = answer.lam[answer.problem.layout.wall.contacts.journal] * scales.force
+    touching = reaction.reshape(*film.theta.shape, -1).sum(axis=2) if len(reaction) else np.zeros(film.theta.shape)
+    by_contact, total = contact_force(film.theta, touching), float(touching.sum())
+    lift = float(np.sum(Q * node_area(film, case.bearing.journal_radius)))
+    force = by_film + by_contact
+    return {
+        "force_x": float(force[0]),
+        "force_y": float(force[1]),
+        "load_capacity": float(np.hypot(*force)),
+        "attitude_angle": attitude_angle(force, np.array(case.operation.eccentricity)),
+        "film_force_x": float(by_film[0]),
+        "film_force_y": float(by_film[1]),
+        "contact_force_x": float(by_contact[0]),
+        "contact_force_y": float(by_contact[1]),
+        "contact_total": total,
+        "contact_share": total / (total + lift) if total > 0.0 else 0.0,
+    }
+
+
+def film_figures(case: Case, answer: Answer, fields: dict[str, Array]) -> Named:
+    """Film, pressure, friction and leakage."""
+    p, h = fields["pressure"], fields["film_thickness"]
+    film, R_j = answer.problem.layout.wall.film, case.bearing.journal_radius
+    z, omega, mu = film.axial.whole_z, case.operation.speed, case.gas.viscosity
+    thin, high = np.unravel_index(h.argmin(), h.shape), np.unravel_index(p.argmax(), p.shape)
+    gridded = tuple(part[..., : len(film.axial.z)] for part in (p, h))
+    torque = viscous_torque(film, R_j, (gridded[0], gridded[1]), (mu, omega * R_j))
+    reactions = answer.lam[answer.problem.layout.wall.contacts.journal].sum() * answer.problem.layout.scales.force
+    torque += case.surface.friction_coefficient * R_j * float(reactions)
+    return {
+        "min_film": float(h[thin]),
+        "min_film_angle": float(np.mod(film.theta[thin[0], thin[1]], 2.0 * np.pi)),
+        "min_film_z": float(z[thin[2]]),
+        "max_pressure": float(p[high]),
+        "max_pressure_angle": float(np.mod(film.theta[high[0], high[1]], 2.0 * np.pi)),
+        "friction_torque": torque,
+        "power_loss": torque * omega,
+        "side_leakage": leakage(case, answer),
+    }
+
+
+def leakage(case: Case, answer: Answer) -> float:
+    """Mass flow out of both ends [kg/s]."""
+    scales, gas = answer.problem.layout.scales, case.gas
+    unit = scales.pressure**2 * scales.length**3 / (12.0 * gas.viscosity)  # of `p` times volume flow
+    return side_leakage(answer) * unit * gas.ambient_density / gas.ambient_pressure
+
+
+def trust(answer: Answer) -> Named:
+    """Residual and balances."""
+    return {
+        "residual": answer.residual,
+        "mass_balance": mass_balance(answer),
+        "reaction_balance": reaction_balance(answer),
+        "converged": True,
+        "status": "converged",
+    }
+
+
+def effort(work: Work) -> Named:
+    """What it cost."""
+    return {
+        "iterations": sum("residual" in row or row["phase"] == "contacts" for row in work.history),
+        "factorizations": work.film.factorizations,
+        "package_iterations": work.package.factorizations,
+        "probe_factorizations": work.probes.factorizations,
+    }

@@ -1,0 +1,51 @@
+"""What every run needs around it: one BLAS thread, a clock, someone to tell."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+from threadpoolctl import threadpool_limits
+
+from petalfoil.equilibria.work import Work
+
+Progress = Callable[[float, str], None]
+
+TYPICAL_STEPS = 30.0
+"""Steps of a typical cold start: what the progress of a single solve is measured by."""
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """One BLAS thread: two make small blocks many times slower, and runs go parallel over cases."""
+    with threadpool_limits(limits=1, user_api="blas"):
+        yield
+
+
+@dataclass
+class Clock:
+    """Wall time since it was made."""
+
+    start: float = field(default_factory=time.perf_counter)
+
+    @property
+    def seconds(self) -> float:
+        """Time passed [s]."""
+        return time.perf_counter() - self.start
+
+
+def telling_work(progress: Progress | None, text: str) -> Work:
+    """Work that tells `progress` of its steps; the share approaches 1 as steps go on."""
+    work = Work()
+    if progress is None:
+        return work
+
+    def tell(phase: str) -> None:
+        share = 1.0 - math.exp(-len(work.history) / TYPICAL_STEPS)
+        progress(share, f"{text}: {phase}")
+
+    work.tell = tell
+    return work

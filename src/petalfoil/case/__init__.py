@@ -1,0 +1,39 @@
+"""WHAT is asked: frozen, validated definitions; TOML in and out. Nothing is solved here.
+
+In the order data flows:
+
+- `fields`: kinds of numbers (quantity, count) and their checks.
+- `problems`: all problems of a definition → one `DefinitionError`.
+- `definition`: the base of all definitions.
+- `sections`, `petals`: the tables of a case.
+- `free_shape`: radius of a free petal.
+- `package`: geometry that follows, and whether the package can be assembled.
+- `toml`: files and texts.
+- `definitions`: `Case`, which puts all of it together.
+
+All numbers are floats in SI units; texts such as ``"25 um"`` are read when a definition is made.
+"""
+
+from petalfoil.case.definitions import Case
+from petalfoil.case.free_shape import arc_radius, chordal_tilt
+from petalfoil.case.package import Package, package_of
+from petalfoil.case.petals import Mount, Petals
+from petalfoil.case.sections import Bearing, Edges, Gas, Kind, Method, Model, Operation, Surface
+
+__all__ = [
+    "Bearing",
+    "Case",
+    "Edges",
+    "Gas",
+    "Kind",
+    "Method",
+    "Model",
+    "Mount",
+    "Operation",
+    "Package",
+    "Petals",
+    "Surface",
+    "arc_radius",
+    "chordal_tilt",
+    "package_of",
+]

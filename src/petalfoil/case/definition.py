@@ -1,0 +1,29 @@
+"""What every definition is: frozen, keyword-only, closed to unknown keys, and refused with our own errors."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from petalfoil.case.problems import definition_error
+
+
+class Definition(BaseModel):
+    """Base of `Case` and of its sections."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+
+    section: ClassVar[str] = ""
+    """Name of its table in a case; empty for the case itself."""
+
+    def __init__(self, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise definition_error(error, type(self), self.section) from None
+
+    # Pydantic otherwise validates nested definitions through their own `__init__`, and the first bad section would
+    # hide the problems of all others. This mark, which pydantic puts on its own `__init__`, says that ours adds no
+    # validation.
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]

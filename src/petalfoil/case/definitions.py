@@ -1,0 +1,147 @@
+"""A case: everything that is asked of petalfoil, frozen and validated."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterator, Mapping
+from typing import Any, Self
+
+from pydantic import Field, model_validator
+
+from petalfoil.case import toml
+from petalfoil.case.definition import Definition
+from petalfoil.case.package import Package, bearing_problems, package_of, package_problems
+from petalfoil.case.petals import Petals
+from petalfoil.case.problems import Problem, joined
+from petalfoil.case.sections import Bearing, Gas, Kind, Model, Operation, Surface
+from petalfoil.errors import DefinitionError, PackageError
+
+# Grids whose error in the load stays under 1 %.
+DEFAULT_CELLS = {Kind.FLAT: 32, Kind.SPATIAL: 32}  # along the pitch of a package
+DEFAULT_PLAIN_CELLS = 128  # a plain bearing's pitch is the whole circle
+DEFAULT_AXIAL_CELLS = 16
+
+
+class Case(Definition):
+    """One bearing, its gas, what its journal does, and how it is modelled.
+
+    All numbers are floats in SI units; a quantity may be given as a text with a unit, such as ``"25 um"``. Without
+    `petals` the case is a plain rigid journal bearing.
+
+    Raises
+    ------
+    DefinitionError
+        Unknown or missing keys, wrong types or units, values outside their range: all problems in one message.
+    PackageError
+        The petals do not overlap, do not fit, or have no free shape.
+    """
+
+    title: str = Field(default="", max_length=500)
+    bearing: Bearing
+    petals: Petals | None = None
+    gas: Gas
+    surface: Surface = Field(default_factory=Surface)
+    operation: Operation
+    model: Model
+
+    # ------------------------------------------------------------------------------------------ in and out
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Read a case from a TOML file."""
+        try:
+            return cls.from_toml(toml.read_file(path))
+        except DefinitionError as error:
+            message = f"{os.fspath(path)}: {error}"
+            raise type(error)(message, key=error.key, given=error.given, allowed=error.allowed) from None
+
+    @classmethod
+    def from_toml(cls, text: str) -> Self:
+        """Read a case from a TOML text."""
+        return cls(**toml.parse(text))
+
+    def to_toml(self) -> str:
+        """Write the case as a TOML text in SI units, from which `from_toml` makes an equal case."""
+        return toml.write(self.model_dump(mode="json", exclude_none=True))
+
+    def replace(self, **changes: object) -> Self:
+        """Return a validated variant.
+
+        Parameters
+        ----------
+        **changes
+            New values by dotted path, as in ``case.replace(**{"operation.speed": "60000 rpm", "petals.count": 10})``;
+            a name without a dot replaces a whole section.
+        """
+        data: dict[str, Any] = {name: getattr(self, name) for name in type(self).model_fields}
+        for path, value in changes.items():
+            section, dot, field = path.partition(".")
+            data[section] = {**_entries(data.get(section)), field: value} if dot else value
+        return type(self)(**data)
+
+    # ------------------------------------------------------------------------------------------ derived
+
+    @property
+    def package(self) -> Package | None:
+        """Geometry of the assembled petals; None for a plain bearing."""
+        return None if self.petals is None else package_of(self.bearing, self.petals)
+
+    @property
+    def room(self) -> float:
+        """Gap between journal and bushing where it is narrowest, ``R_B − R_j − |e|`` [m]."""
+        return self.bearing.clearance - math.hypot(*self.operation.eccentricity)
+
+    @property
+    def room_left(self) -> float:
+        """Room that the package and the film floor leave, never negative [m]."""
+        package = self.package
+        layers = 0.0 if package is None else package.layers * package.thickness
+        return self.room - layers - self.surface.film_floor
+
+    @property
+    def cells_per_pitch(self) -> int:
+        """Cells along a pitch (of a plain bearing: round the whole circle), the default filled in."""
+        if self.model.cells_per_pitch is not None:
+            return self.model.cells_per_pitch
+        return DEFAULT_PLAIN_CELLS if self.petals is None else DEFAULT_CELLS[self.model.kind]
+
+    @property
+    def axial_cells(self) -> int:
+        """Cells over the whole length, the default filled in; without meaning in a flat model."""
+        return DEFAULT_AXIAL_CELLS if self.model.axial_cells is None else self.model.axial_cells
+
+    # ------------------------------------------------------------------------------------------ validation
+
+    @model_validator(mode="after")
+    def _can_be_solved(self) -> Self:
+        """Refuse what no single field shows: geometry that cannot be assembled, a grid that cannot be halved."""
+        problems = list(self._geometry_problems())
+        kind: type[DefinitionError] = PackageError
+        if not problems:
+            problems, kind = list(self._grid_problems()), DefinitionError
+        if problems:
+            first = problems[0]
+            raise kind(joined(problems), key=first.key, given=first.given, allowed=first.allowed)
+        return self
+
+    def _geometry_problems(self) -> Iterator[Problem]:
+        found = list(bearing_problems(self.bearing, self.surface, self.operation))
+        yield from found
+        if not found and self.petals is not None:
+            yield from package_problems(self.bearing, self.petals, self.surface, self.operation)
+
+    def _grid_problems(self) -> Iterator[Problem]:
+        cells = self.axial_cells
+        if self.model.kind is Kind.SPATIAL and self.model.symmetry and cells % 2:
+            text = (
+                f"{cells} cells cannot be halved at the plane of symmetry; allowed: an even number, or symmetry = false"
+            )
+            yield Problem("model.axial_cells", text, cells, "an even number")
+
+
+def _entries(section: object) -> dict[str, object]:
+    """Entries of a section by name; none where there is no section yet."""
+    if isinstance(section, Definition):
+        return {name: getattr(section, name) for name in type(section).model_fields}
+    return dict(section) if isinstance(section, Mapping) else {}

@@ -1,0 +1,177 @@
+"""Kinds of fields: what a definition declares about each of its numbers, and the check that follows from it.
+
+A field carries its declaration as an annotation, so meaning, unit, symbol and range stand in one place::
+
+    length: Annotated[float, Quantity("m", "bearing length", symbol="L", above=0.0, at_most=10.0)]
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from numbers import Integral
+from typing import Any
+
+from pydantic import GetCoreSchemaHandler
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+
+from petalfoil.errors import UnitError
+from petalfoil.units import parse_quantity
+from petalfoil.units.reading import shown
+
+UNIT_PROBLEM = "unit_problem"  # pydantic error types of ours; `problems.py` tells them apart
+VALUE_PROBLEM = "value_problem"
+
+
+def refuse(kind: str, text: str, allowed: str) -> PydanticCustomError:
+    """Return the error of a value: `text` says what is wrong, `allowed` what would be right."""
+    return PydanticCustomError(kind, "{text}", {"text": text, "allowed": allowed})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Range:
+    """Bounds of a number; None where there is none."""
+
+    above: float | None = None
+    at_least: float | None = None
+    below: float | None = None
+    at_most: float | None = None
+
+    def holds(self, value: float) -> bool:
+        """Whether `value` lies inside."""
+        return not (
+            (self.above is not None and value <= self.above)
+            or (self.at_least is not None and value < self.at_least)
+            or (self.below is not None and value >= self.below)
+            or (self.at_most is not None and value > self.at_most)
+        )
+
+    def bounds(self, unit: str) -> str:
+        """Words for the range, such as ``"greater than 0 m and at most 10 m"``."""
+        named = (
+            ("greater than", self.above),
+            ("at least", self.at_least),
+            ("less than", self.below),
+            ("at most", self.at_most),
+        )
+        suffix = "" if unit == "1" else f" {unit}"
+        return " and ".join(f"{word} {bound:g}{suffix}" for word, bound in named if bound is not None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Quantity(Range):
+    """A physical quantity: a float in SI units, given as a number or as a text with a unit.
+
+    Parameters
+    ----------
+    unit : str
+        SI unit.
+    meaning : str
+        What it is, in words.
+    symbol : str
+        Letter of the equations.
+    """
+
+    unit: str
+    meaning: str
+    symbol: str = ""
+
+    @property
+    def allowed(self) -> str:
+        """Words for what a user may write."""
+        bounds = self.bounds(self.unit)
+        return f"{self.meaning} [{self.unit}]" + (f", {bounds}" if bounds else "")
+
+    def parse(self, value: object) -> float:
+        """Read, convert and check one value."""
+        try:
+            number = parse_quantity(value, self.unit)
+        except UnitError as error:
+            raise refuse(UNIT_PROBLEM, str(error), error.allowed) from None
+        if not self.holds(number):
+            text = f"{shown(value)} is outside its range; allowed: {self.bounds(self.unit)}"
+            raise refuse(VALUE_PROBLEM, text, self.bounds(self.unit))
+        return number
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_before_validator_function(self.parse, core_schema.float_schema())
+
+
+@dataclass(frozen=True, kw_only=True)
+class QuantityOrWord(Quantity):
+    """A quantity, or one word that asks for a rule, such as ``"chordal"``."""
+
+    word: str
+
+    @property
+    def allowed(self) -> str:
+        """Words for what a user may write."""
+        return f"{self.word!r} or {super().allowed}"
+
+    def parse_either(self, value: object) -> float | str:
+        """Let the word through, and read anything else as a quantity."""
+        if value == self.word:
+            return self.word
+        if isinstance(value, str) and value.strip()[:1].isalpha():
+            raise refuse(VALUE_PROBLEM, f"{shown(value)} is neither {self.word!r} nor an angle", self.allowed)
+        return self.parse(value)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.parse_either)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Count(Range):
+    """A whole number; fractions, texts and booleans are refused rather than rounded.
+
+    Parameters
+    ----------
+    meaning : str
+        What is counted.
+    symbol : str
+        Letter of the equations.
+    """
+
+    meaning: str
+    symbol: str = ""
+
+    @property
+    def allowed(self) -> str:
+        """Words for what a user may write."""
+        return f"a whole number, {self.bounds('1')}"
+
+    def parse(self, value: object) -> int:
+        """Check one value."""
+        if isinstance(value, bool) or not isinstance(value, Integral):
+            raise refuse(VALUE_PROBLEM, f"{shown(value)} is not a whole number; allowed: {self.allowed}", self.allowed)
+        if not self.holds(int(value)):
+            text = f"{shown(value)} is outside its range; allowed: {self.allowed}"
+            raise refuse(VALUE_PROBLEM, text, self.allowed)
+        return int(value)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_before_validator_function(self.parse, core_schema.int_schema())
+
+
+def as_pair(value: object) -> object:
+    """Let only sequences of two entries through: the components along x and y."""
+    allowed = "two quantities, [x, y]"
+    entries = _as_sequence(value)
+    if entries is None or len(entries) != 2:
+        raise refuse(VALUE_PROBLEM, f"{shown(value)} is not {allowed}", allowed)
+    return tuple(entries)
+
+
+def as_table(value: object) -> object:
+    """Let only sequences of pairs through: rows of a table with two columns."""
+    allowed = "a list of rows, each [angle, radius]"
+    rows = _as_sequence(value)
+    pairs = None if rows is None else [_as_sequence(row) for row in rows]
+    if pairs is None or any(pair is None or len(pair) != 2 for pair in pairs):
+        raise refuse(VALUE_PROBLEM, f"{shown(value)} is not {allowed}", allowed)
+    return tuple(tuple(pair) for pair in pairs if pair is not None)
+
+
+def _as_sequence(value: object) -> Sequence[object] | None:
+    listed = value.tolist() if hasattr(value, "tolist") else value  # NumPy arrays
+    return listed if isinstance(listed, list | tuple) else None

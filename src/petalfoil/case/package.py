@@ -1,0 +1,245 @@
+"""Geometry of the assembled package that follows from a bearing and its petals, and whether it can be built.
+
+::
+
+    r_m = R_B − δ/2        metric radius
+    φ0  = 2π/n             pitch
+    φ1  = l_p / r_m        angle of a petal;  φ1/φ0 = k + f,  0 ≤ f < 1
+    φ3  = φ1 − φ0          angle covered by the neighbour; φ3 ≤ φ ≤ φ1 is exposed to the film
+    layers = k + 1         number of petals where the package is thickest
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from petalfoil.case.free_shape import arc_radius, arc_reach, chordal_tilt, table_radius
+from petalfoil.case.petals import Petals
+from petalfoil.case.problems import Problem
+from petalfoil.case.sections import Bearing, Operation, Surface
+from petalfoil.units import format_quantity
+
+MAX_ARC_ANGLE = 2.4  # rad; beyond it an arc is no longer a shallow shell (model of the free shape)
+ROOT_TOLERANCE = 1e-9  # m; a measured root may lie outside the bore by rounding only
+FLUSH = 1e-9  # pitches; an overlap this close below a whole number is that number, rounded
+
+
+@dataclass(frozen=True, kw_only=True)
+class Package:
+    """Derived geometry of `count` overlapping petals; see the module's docstring."""
+
+    count: int
+    thickness: float
+    """With coating, `δ` [m]."""
+    metric_radius: float
+    """`r_m` [m]."""
+    petal_angle: float
+    """`φ1` [rad]."""
+    bend_radius: float
+    """`R_p` [m]."""
+    root_tilt: float
+    """`ψ` [rad]; nan where a measured table gives the free shape."""
+    table: tuple[tuple[float, float], ...] | None = None
+
+    @property
+    def pitch(self) -> float:
+        """`φ0` [rad]."""
+        return 2.0 * math.pi / self.count
+
+    @property
+    def overlap(self) -> float:
+        """Petal angle over pitch, `φ1/φ0` [1]."""
+        return self.petal_angle / self.pitch
+
+    @property
+    def layers(self) -> int:
+        """Number of petals on top of each other where the package is thickest."""
+        return math.floor(self.overlap + FLUSH) + 1
+
+    @property
+    def covered_angle(self) -> float:
+        """Angle from the root that the neighbour covers, `φ3` [rad]."""
+        return self.petal_angle - self.pitch
+
+    def free_radius(self, phi: ArrayLike) -> NDArray[np.float64]:
+        """Return the radius of the free mid-surface, `r0` [m], at angles `phi` from the root [rad]."""
+        if self.table is not None:
+            return table_radius(phi, self.table)
+        return arc_radius(phi, metric_radius=self.metric_radius, bend_radius=self.bend_radius, tilt=self.root_tilt)
+
+
+def package_of(bearing: Bearing, petals: Petals) -> Package:
+    """Derive the package of `petals` in `bearing`.
+
+    A chordal tilt that does not exist comes out as nan; `package_problems` says why.
+    """
+    metric_radius = bearing.bushing_radius - petals.total_thickness / 2.0
+    petal_angle = petals.arc_length / metric_radius
+    return Package(
+        count=petals.count,
+        thickness=petals.total_thickness,
+        metric_radius=metric_radius,
+        petal_angle=petal_angle,
+        bend_radius=petals.bend_radius,
+        root_tilt=_tilt(petals, metric_radius, petal_angle),
+        table=petals.free_shape,
+    )
+
+
+def _tilt(petals: Petals, metric_radius: float, petal_angle: float) -> float:
+    if petals.free_shape is not None:
+        return math.nan
+    if petals.root_tilt != "chordal":
+        return petals.root_tilt
+    if petals.bend_radius < metric_radius or petal_angle > MAX_ARC_ANGLE:
+        return math.nan
+    return chordal_tilt(metric_radius, petals.bend_radius, petal_angle)
+
+
+def bearing_problems(bearing: Bearing, surface: Surface, operation: Operation) -> Iterator[Problem]:
+    """Yield what keeps a journal from fitting into a plain bushing where it is asked to sit."""
+    if bearing.clearance <= 0.0:
+        yield Problem(
+            "bearing.journal_radius",
+            f"{_m(bearing.journal_radius)} does not fit into the bushing; allowed: less than bearing.bushing_radius, "
+            f"{_m(bearing.bushing_radius)}",
+            bearing.journal_radius,
+            f"less than {bearing.bushing_radius:g} m",
+        )
+        return
+    eccentricity = math.hypot(*operation.eccentricity)
+    room = bearing.clearance - surface.film_floor
+    if eccentricity >= room:
+        yield Problem(
+            "operation.eccentricity",
+            f"the journal displaced by {_m(eccentricity)} touches the bushing by {_m(eccentricity - room)}; allowed: "
+            f"less than clearance less film floor, {_m(room)}",
+            operation.eccentricity,
+            f"less than {room:g} m",
+        )
+
+
+def package_problems(bearing: Bearing, petals: Petals, surface: Surface, operation: Operation) -> Iterator[Problem]:
+    """Yield what keeps a package from being assembled: no overlap, no room, no free shape."""
+    if bearing.bushing_radius <= petals.total_thickness:
+        yield Problem(
+            "petals.thickness",
+            f"a petal of {_m(petals.total_thickness)} is thicker than the bushing's radius, "
+            f"{_m(bearing.bushing_radius)}",
+            petals.thickness,
+            f"less than {bearing.bushing_radius:g} m",
+        )
+        return
+    package = package_of(bearing, petals)
+    if package.petal_angle >= 2.0 * math.pi:
+        longest = package.metric_radius * 2.0 * math.pi
+        yield Problem(
+            "petals.arc_length",
+            f"petals of {_m(petals.arc_length)} reach round the whole bore; allowed: less than {_m(longest)}",
+            petals.arc_length,
+            f"less than {longest:g} m",
+        )
+        return
+    yield from _overlap_problems(package, petals)
+    yield from _room_problems(package, bearing, surface, operation)
+    yield from _shape_problems(package, bearing, petals)
+
+
+def _overlap_problems(package: Package, petals: Petals) -> Iterator[Problem]:
+    if package.overlap > 1.0 + FLUSH:
+        return
+    shortest = package.metric_radius * package.pitch
+    yield Problem(
+        "petals.arc_length",
+        f"petals of {_m(petals.arc_length)} do not overlap: {_m(shortest - petals.arc_length)} short of the distance "
+        f"between the roots of {package.count}; allowed: more than {_m(shortest)}",
+        petals.arc_length,
+        f"more than {shortest:g} m",
+    )
+
+
+def _room_problems(package: Package, bearing: Bearing, surface: Surface, operation: Operation) -> Iterator[Problem]:
+    eccentricity = math.hypot(*operation.eccentricity)
+    room = bearing.clearance - eccentricity
+    need = package.layers * package.thickness + surface.film_floor
+    if package.overlap <= 1.0 + FLUSH or need <= room:
+        return
+    displaced = need <= bearing.clearance
+    where = f", the clearance {_m(bearing.clearance)} less the eccentricity {_m(eccentricity)}," if eccentricity else ""
+    yield Problem(
+        "operation.eccentricity" if displaced else "petals",
+        f"the package does not fit: {package.layers} layers of {_m(package.thickness)} and the film floor "
+        f"{_m(surface.film_floor)} need {_m(need)}, the room between journal and bushing{where} is {_m(room)}: "
+        f"{_m(need - room)} too much",
+        operation.eccentricity if displaced else package.thickness,
+        f"an eccentricity up to {bearing.clearance - need:g} m" if displaced else f"at most {room:g} m in all",
+    )
+
+
+def _shape_problems(package: Package, bearing: Bearing, petals: Petals) -> Iterator[Problem]:
+    if petals.free_shape is not None:
+        yield from _table_problems(package, bearing, petals.free_shape)
+    elif package.petal_angle > MAX_ARC_ANGLE:
+        longest = MAX_ARC_ANGLE * package.metric_radius
+        yield Problem(
+            "petals.arc_length",
+            f"an arc of {_m(petals.arc_length)} spans {package.petal_angle:.4g} rad, too far for a circular free "
+            f"shape; allowed: up to {MAX_ARC_ANGLE} rad, {_m(longest)}",
+            petals.arc_length,
+            f"up to {longest:g} m",
+        )
+    else:
+        yield from _arc_problems(package, petals)
+
+
+def _arc_problems(package: Package, petals: Petals) -> Iterator[Problem]:
+    if math.isnan(package.root_tilt):
+        yield Problem(
+            "petals.bend_radius",
+            f"a chordal petal bent to {_m(petals.bend_radius)} would lie outside the bore; allowed: at least the "
+            f"metric radius, {_m(package.metric_radius)} ({_m(package.metric_radius - petals.bend_radius)} more), "
+            "or another petals.root_tilt",
+            petals.bend_radius,
+            f"at least {package.metric_radius:g} m",
+        )
+        return
+    reach = arc_reach(metric_radius=package.metric_radius, bend_radius=package.bend_radius, tilt=package.root_tilt)
+    if reach <= package.petal_angle:
+        yield Problem(
+            "petals.root_tilt",
+            f"an arc bent to {_m(petals.bend_radius)} with a root tilt of {package.root_tilt:.4g} rad turns back at "
+            f"{reach:.4g} rad and does not reach the free edge at {package.petal_angle:.4g} rad "
+            f"({package.petal_angle - reach:.4g} rad short)",
+            petals.root_tilt,
+            "a tilt and a bend radius whose arc reaches the free edge",
+        )
+
+
+def _table_problems(package: Package, bearing: Bearing, table: tuple[tuple[float, float], ...]) -> Iterator[Problem]:
+    last, root = table[-1][0], table[0][1]
+    if last < package.petal_angle:
+        yield Problem(
+            "petals.free_shape",
+            f"the table ends at {last:.6g} rad, {package.petal_angle - last:.4g} rad short of the free edge at "
+            f"{package.petal_angle:.6g} rad",
+            last,
+            f"a last angle of at least {package.petal_angle:.6g} rad",
+        )
+    lowest = bearing.journal_radius + package.thickness / 2.0
+    if not lowest <= root <= package.metric_radius + ROOT_TOLERANCE:
+        yield Problem(
+            "petals.free_shape",
+            f"the root, which cannot move, is at the radius {_m(root)}; allowed: from {_m(lowest)} (journal) to "
+            f"{_m(package.metric_radius)} (bore)",
+            root,
+            f"a first radius from {lowest:g} m to {package.metric_radius:g} m",
+        )
+
+
+def _m(length: float) -> str:
+    return format_quantity(length, "m", digits=6)

@@ -1,0 +1,91 @@
+"""The petals of a package: number, size, material, mount, free shape."""
+
+from __future__ import annotations
+
+import math
+from enum import StrEnum
+from itertools import pairwise
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import BeforeValidator, field_validator
+
+from petalfoil.case.definition import Definition
+from petalfoil.case.fields import VALUE_PROBLEM, Count, Quantity, QuantityOrWord, as_table, refuse
+
+MIN_ROWS = 3  # of a measured free shape: fewer say nothing of a curvature
+
+
+class Mount(StrEnum):
+    """How a root is held: free to turn (`HINGED`), or clamped (`RIGID`)."""
+
+    HINGED = "hinged"
+    RIGID = "rigid"
+
+
+_Angle = Annotated[float, Quantity(unit="rad", meaning="angle from the root", symbol="phi", at_least=0.0, below=6.3)]
+_Radius = Annotated[
+    float, Quantity(unit="m", meaning="radius of the free mid-surface", symbol="r_0", above=0.0, at_most=10.0)
+]
+
+
+class Petals(Definition):
+    """A package of equal petals (leaves); absent in a plain bearing."""
+
+    section: ClassVar[str] = "petals"
+
+    count: Annotated[int, Count(meaning="number of petals", symbol="n", at_least=2, at_most=64)]
+    arc_length: Annotated[
+        float, Quantity(unit="m", meaning="arc length from root to free edge", symbol="l_p", above=0.0, at_most=100.0)
+    ]
+    thickness: Annotated[float, Quantity(unit="m", meaning="metal thickness", symbol="delta_0", above=0.0, at_most=0.1)]
+    coating: Annotated[
+        float, Quantity(unit="m", meaning="coating thickness", symbol="delta_c", at_least=0.0, at_most=0.1)
+    ] = 0.0
+    bend_radius: Annotated[
+        float, Quantity(unit="m", meaning="bend radius of the free petal", symbol="R_p", above=0.0, at_most=1e4)
+    ]
+    root_tilt: Annotated[
+        float | Literal["chordal"],
+        QuantityOrWord(
+            unit="rad", meaning="root tilt from the bore's tangent", symbol="psi", above=-1.5, below=1.5, word="chordal"
+        ),
+    ] = "chordal"
+    mount: Mount
+    youngs_modulus: Annotated[
+        float, Quantity(unit="Pa", meaning="Young's modulus", symbol="E_y", above=0.0, at_most=1e13)
+    ]
+    poisson_ratio: Annotated[float, Quantity(unit="1", meaning="Poisson's ratio", symbol="nu", above=-1.0, below=0.5)]
+    first_root: Annotated[
+        float,
+        Quantity(unit="rad", meaning="angle of the first root", symbol="theta_ref", at_least=-6.3, at_most=6.3),
+    ] = 0.0
+    free_shape: Annotated[tuple[tuple[_Angle, _Radius], ...], BeforeValidator(as_table)] | None = None
+
+    @property
+    def total_thickness(self) -> float:
+        """Metal and coating, ``δ = δ0 + δ_c`` [m]."""
+        return self.thickness + self.coating
+
+    @property
+    def pitch(self) -> float:
+        """Angle between neighbouring roots, ``φ0 = 2π/n`` [rad]."""
+        return 2.0 * math.pi / self.count
+
+    @property
+    def bending_stiffness(self) -> float:
+        """Flexural rigidity of the metal, ``D = E_y δ0³ / (12 (1 − ν²))`` [N m]."""
+        return self.youngs_modulus * self.thickness**3 / (12.0 * (1.0 - self.poisson_ratio**2))
+
+    @field_validator("free_shape")
+    @classmethod
+    def _is_a_curve(cls, rows: tuple[tuple[float, float], ...] | None) -> tuple[tuple[float, float], ...] | None:
+        if rows is None:
+            return rows
+        allowed = f"at least {MIN_ROWS} rows [angle, radius], the first at angle 0, the angles growing"
+        if len(rows) < MIN_ROWS:
+            raise refuse(VALUE_PROBLEM, f"has {len(rows)} rows; allowed: {allowed}", allowed)
+        if rows[0][0] != 0.0:
+            raise refuse(VALUE_PROBLEM, f"begins at {rows[0][0]:g} rad; allowed: {allowed}", allowed)
+        if any(after <= before for (before, _), (after, _) in pairwise(rows)):
+            raise refuse(VALUE_PROBLEM, f"its angles do not grow from row to row; allowed: {allowed}", allowed)
+        return rows

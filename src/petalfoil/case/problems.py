@@ -1,0 +1,142 @@
+"""All problems of a definition → one error a user can act on.
+
+Every problem is told with the key's dotted path, what was given, what is allowed, and the nearest known name.
+"""
+
+from __future__ import annotations
+
+import difflib
+import typing
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from petalfoil.case.fields import UNIT_PROBLEM, VALUE_PROBLEM
+from petalfoil.errors import DefinitionError, UnitError
+from petalfoil.units.reading import shown
+
+Location = tuple[int | str, ...]
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing wrong with a definition."""
+
+    key: str
+    text: str  # completes "<key>: …"
+    given: object = None
+    allowed: str = ""
+
+
+def joined(problems: Sequence[Problem]) -> str:
+    """Write one problem as a line, several as a list."""
+    lines = [f"{problem.key}: {problem.text}" if problem.key else problem.text for problem in problems]
+    return lines[0] if len(lines) == 1 else "\n".join([f"{len(lines)} problems", *(f"  - {line}" for line in lines)])
+
+
+def definition_error(error: ValidationError, root: type[BaseModel], section: str = "") -> DefinitionError:
+    """Translate pydantic's report on `root`, whose own dotted path is `section`."""
+    details = error.errors(include_url=False)
+    problems = [_problem(detail, root, section) for detail in details]
+    kind = UnitError if all(detail["type"] == UNIT_PROBLEM for detail in details) else DefinitionError
+    first = problems[0]
+    return kind(joined(problems), key=first.key, given=first.given, allowed=first.allowed)
+
+
+def nearest(name: object, known: Sequence[str]) -> str:
+    """Return " Did you mean '…'?" for the known name closest to `name`, or nothing."""
+    matches = difflib.get_close_matches(str(name).lower(), known, n=1)
+    return f" Did you mean {matches[0]!r}?" if matches else ""
+
+
+def _problem(detail: ErrorDetails, root: type[BaseModel], section: str) -> Problem:
+    location = detail["loc"]
+    key = dotted(location, section)
+    match detail["type"]:
+        case "missing":
+            allowed = _allowed(root, location)
+            return Problem(key, f"is missing; expected {allowed}", None, allowed)
+        case "extra_forbidden":
+            return _unknown_key(key, location, root, detail["input"])
+        case "enum":
+            return _unknown_word(key, detail)
+        case kind if kind in (UNIT_PROBLEM, VALUE_PROBLEM):
+            return Problem(key, detail["msg"], detail["input"], str(detail.get("ctx", {}).get("allowed", "")))
+        case "model_type" | "model_attributes_type" | "dict_type":
+            allowed = f"a table [{key}]"
+        case "string_type":
+            allowed = "a text"
+        case "bool_type":
+            allowed = "true or false"
+        case _:
+            allowed = detail["msg"]
+    return Problem(key, f"{shown(detail['input'])} is not allowed; expected {allowed}", detail["input"], allowed)
+
+
+def dotted(location: Location, section: str = "") -> str:
+    """Write a location as a path: ``("operation", "load", 1)`` becomes ``"operation.load[1]"``."""
+    path = section
+    for part in location:
+        if isinstance(part, int):
+            path += f"[{part}]"
+        else:
+            path += f".{part}" if path else part
+    return path
+
+
+def _unknown_key(key: str, location: Location, root: type[BaseModel], given: object) -> Problem:
+    owner = _model_at(root, location[:-1])
+    known = [] if owner is None else list(owner.model_fields)
+    name = location[-1]
+    hint = nearest(name, known)
+    if not hint:
+        homes = [path for path in _paths(root) if path.rpartition(".")[2] == name]
+        hint = f" Did you mean {homes[0]!r}?" if homes else ""
+    return Problem(key, f"is not a known key; known here: {', '.join(known)}.{hint}", given, ", ".join(known))
+
+
+def _unknown_word(key: str, detail: ErrorDetails) -> Problem:
+    allowed = str(detail.get("ctx", {}).get("expected", ""))
+    known = [word for word in allowed.split("'") if word.isalpha() and word != "or"]
+    text = f"{shown(detail['input'])} is not a known choice; allowed: {allowed}.{nearest(detail['input'], known)}"
+    return Problem(key, text, detail["input"], allowed)
+
+
+def _allowed(root: type[BaseModel], location: Location) -> str:
+    owner = _model_at(root, location[:-1])
+    field = None if owner is None else owner.model_fields.get(str(location[-1]))
+    if field is None:
+        return "a value"
+    for declared in field.metadata:
+        if hasattr(declared, "allowed"):
+            return str(declared.allowed)
+    kind = field.annotation
+    if isinstance(kind, type) and issubclass(kind, BaseModel):
+        return f"a table [{location[-1]}]"
+    if isinstance(kind, type) and issubclass(kind, StrEnum):
+        return " or ".join(repr(choice.value) for choice in kind)
+    return "a value"
+
+
+def _model_at(root: type[BaseModel], location: Location) -> type[BaseModel] | None:
+    model: type[BaseModel] | None = root
+    for part in location:
+        model = None if model is None else _nested(model.model_fields).get(str(part))
+    return model
+
+
+def _nested(fields: Mapping[str, Any]) -> dict[str, type[BaseModel]]:
+    found = {}
+    for name, field in fields.items():
+        for candidate in (field.annotation, *typing.get_args(field.annotation)):
+            if isinstance(candidate, type) and issubclass(candidate, BaseModel):
+                found[name] = candidate
+    return found
+
+
+def _paths(root: type[BaseModel]) -> list[str]:
+    return [f"{section}.{name}" for section, model in _nested(root.model_fields).items() for name in model.model_fields]

@@ -1,0 +1,131 @@
+"""The sections of a case but the petals: bearing, gas, surface, operation, model."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Annotated, ClassVar
+
+from pydantic import BeforeValidator, StrictBool, field_validator
+
+from petalfoil.case.definition import Definition
+from petalfoil.case.fields import VALUE_PROBLEM, Count, Quantity, as_pair, refuse
+
+MAX_SPEED = 1e6  # rad/s, nearly ten million turns a minute: beyond any shaft
+
+
+class Bearing(Definition):
+    """Journal and bushing."""
+
+    section: ClassVar[str] = "bearing"
+
+    journal_radius: Annotated[
+        float, Quantity(unit="m", meaning="journal radius", symbol="R_j", above=0.0, at_most=10.0)
+    ]
+    bushing_radius: Annotated[
+        float, Quantity(unit="m", meaning="bushing radius", symbol="R_B", above=0.0, at_most=10.0)
+    ]
+    length: Annotated[float, Quantity(unit="m", meaning="bearing length", symbol="L", above=0.0, at_most=20.0)]
+
+    @property
+    def clearance(self) -> float:
+        """Room between bushing and a centred journal, ``R_B − R_j`` [m]."""
+        return self.bushing_radius - self.journal_radius
+
+
+class Gas(Definition):
+    """Isothermal ideal gas. Temperature and gas constant only give side leakage its mass units."""
+
+    section: ClassVar[str] = "gas"
+
+    viscosity: Annotated[
+        float, Quantity(unit="Pa*s", meaning="dynamic viscosity", symbol="mu", above=0.0, at_most=10.0)
+    ]
+    ambient_pressure: Annotated[
+        float, Quantity(unit="Pa", meaning="absolute ambient pressure", symbol="p_a", above=0.0, at_most=1e9)
+    ]
+    temperature: Annotated[
+        float, Quantity(unit="K", meaning="gas temperature", symbol="T", above=0.0, at_most=5000.0)
+    ] = 293.15
+    gas_constant: Annotated[
+        float, Quantity(unit="J/(kg*K)", meaning="specific gas constant", symbol="R_g", above=0.0, at_most=1e5)
+    ] = 287.05
+
+    @property
+    def ambient_density(self) -> float:
+        """Density at ambient pressure, ``p_a / (R_g T)`` [kg/m³]."""
+        return self.ambient_pressure / (self.gas_constant * self.temperature)
+
+
+class Surface(Definition):
+    """Roughness and dry friction of journal and petals."""
+
+    section: ClassVar[str] = "surface"
+
+    film_floor: Annotated[
+        float,
+        Quantity(
+            unit="m", meaning="film thickness below which surfaces touch", symbol="h_min", above=0.0, at_most=1e-2
+        ),
+    ] = 1e-6
+    friction_coefficient: Annotated[
+        float, Quantity(unit="1", meaning="dry friction coefficient", symbol="mu_f", at_least=0.0, at_most=5.0)
+    ] = 0.3
+
+
+_Displacement = Annotated[
+    float, Quantity(unit="m", meaning="journal displacement", symbol="e", at_least=-10.0, at_most=10.0)
+]
+_Force = Annotated[float, Quantity(unit="N", meaning="load on the journal", symbol="load", at_least=-1e9, at_most=1e9)]
+
+
+class Operation(Definition):
+    """What the journal does: its speed and where it sits, or the load it bears (`x`, `y` in the bushing frame)."""
+
+    section: ClassVar[str] = "operation"
+
+    speed: Annotated[
+        float, Quantity(unit="rad/s", meaning="angular speed", symbol="omega", at_least=0.0, at_most=MAX_SPEED)
+    ]
+    eccentricity: Annotated[tuple[_Displacement, _Displacement], BeforeValidator(as_pair)] = (0.0, 0.0)
+    load: Annotated[tuple[_Force, _Force], BeforeValidator(as_pair)] | None = None
+
+
+class Kind(StrEnum):
+    """Dimensions of the model: without (`FLAT`) or with (`SPATIAL`) the axial coordinate."""
+
+    FLAT = "flat"
+    SPATIAL = "spatial"
+
+
+class Edges(StrEnum):
+    """Pressure at the edges of a petal's film: ambient, or continuous across the step."""
+
+    AMBIENT = "ambient"
+    CONTINUOUS = "continuous"
+
+
+class Method(StrEnum):
+    """How the equations are solved: coupled Newton, or the paper's relaxation."""
+
+    NEWTON = "newton"
+    CLASSIC = "classic"
+
+
+class Model(Definition):
+    """What is solved, on which grid; None lets `Case` choose the grid."""
+
+    section: ClassVar[str] = "model"
+
+    kind: Kind
+    edges: Edges = Edges.AMBIENT
+    cells_per_pitch: Annotated[int, Count(meaning="cells along a pitch", at_least=4, at_most=4096)] | None = None
+    axial_cells: Annotated[int, Count(meaning="cells over the whole length", at_least=2, at_most=512)] | None = None
+    symmetry: StrictBool = True
+    method: Method = Method.NEWTON
+
+    @field_validator("method")
+    @classmethod
+    def _only_newton(cls, method: Method) -> Method:
+        if method is Method.CLASSIC:
+            raise refuse(VALUE_PROBLEM, "'classic' is not available yet; use 'newton'", "'newton'")
+        return method

@@ -1,0 +1,50 @@
+"""The options all verbs share, declared once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, TypeAlias
+
+import typer
+
+CaseFile: TypeAlias = Annotated[Path, typer.Argument(metavar="CASE", help="Case to run, a TOML file.")]
+ResultFile: TypeAlias = Annotated[Path, typer.Argument(metavar="RESULT", help="Result to show, written by --out.")]
+
+Speed: TypeAlias = Annotated[
+    str | None,
+    typer.Option(metavar="QUANTITY", help='Speed instead of the case\'s: "8000 rad/s", "60000 rpm".'),
+]
+Position: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        "--eccentricity",
+        metavar="X,Y",
+        help='Displacement of the journal instead of the case\'s: "0 um, -100 um".',
+    ),
+]
+Displacements: TypeAlias = Annotated[
+    str,
+    typer.Option(
+        "--eccentricity",
+        metavar="START:STOP:COUNT",
+        help='Displacements along the direction: "0 um : 280 um : 15"; or a list or single one: "100 um".',
+    ),
+]
+Direction: TypeAlias = Annotated[
+    str,
+    typer.Option(metavar="ANGLE", help="Direction of the displacements, from x toward y."),
+]
+Json: TypeAlias = Annotated[
+    bool,
+    typer.Option("--json", help="Print one JSON object in SI units instead of the table."),
+]
+Out: TypeAlias = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE.nc", help="Write the whole result to a NetCDF file."),
+]
+Plot: TypeAlias = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE.png", help="Draw a figure: .png, .svg or .pdf."),
+]
+
+DOWNWARD = "-90 deg"

@@ -1,0 +1,53 @@
+"""The two doors to the outside: the answer to standard output, everything else to standard error."""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import suppress
+from io import TextIOWrapper, UnsupportedOperation
+from typing import TextIO
+
+from petalfoil.errors import StoreError
+
+
+def emit(text: str) -> None:
+    """Write a piece of the answer, and at once: a reader that went away is noticed here, not when Python ends.
+
+    Raises
+    ------
+    BrokenPipeError
+        The reader went away.
+    StoreError
+        Standard output takes nothing, for want of space, say.
+    """
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        silence(sys.stdout)
+        raise StoreError(f"cannot write to standard output: {error.strerror}") from error
+
+
+def say(text: str) -> None:
+    """Write one line about the run to standard error."""
+    sys.stderr.write(text + "\n")
+    sys.stderr.flush()
+
+
+def accept_any_text() -> None:
+    """Let a terminal that knows no Greek show a question mark instead of failing."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")
+
+
+def silence(*streams: TextIO) -> None:
+    """Send what streams still hold nowhere, so that Python's last flush does not fail and complain."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in streams:
+        with suppress(UnsupportedOperation):  # streams of a test have no number
+            os.dup2(nowhere, stream.fileno())
+    os.close(nowhere)

@@ -1,0 +1,80 @@
+"""Film and package from nothing: the assembled package, then both through the interior point."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from petalfoil.equilibria.answer import Answer, from_closed, from_point
+from petalfoil.equilibria.package import assembled
+from petalfoil.equilibria.work import Work
+from petalfoil.errors import ConvergenceError
+from petalfoil.problem.coupled import RESIDUAL_TOLERANCE, CoupledProblem
+from petalfoil.solvers.active_set import ActiveOptions, active_set
+from petalfoil.solvers.cone import ConePoint
+from petalfoil.solvers.interior_point import InteriorOptions, Step, interior_point
+from petalfoil.solvers.linear import SingularMatrixError
+
+BARRIERS = (3.0, 30.0, 0.3, 300.0)
+"""Barriers at which the film joins, in ambient pressure times 10 um; the first serves 97 % of random packages."""
+
+GOALS = (1e-5, 1e-8, 1e-12)
+"""Barriers at which the contact set is read and tried: the set is usually right at the first."""
+
+
+def solve_cold(problem: CoupledProblem, work: Work, barriers: tuple[float, ...] = BARRIERS) -> Answer:
+    """Solve from nothing; each barrier in turn until one leads to an answer.
+
+    Raises
+    ------
+    ConvergenceError
+        None did.
+    """
+    for barrier in barriers:
+        answer = attempt(problem, barrier, work)
+        if answer is not None:
+            return answer
+    raise ConvergenceError(
+        "no equilibrium found: film, petals and contacts did not settle from any start",
+        history=work.history,
+        advice="refine the grid, lower the eccentricity or approach it along a curve; extreme preload (thick or short "
+        "petals, a rigid mount with a steep root) makes equilibria that switch from node to node",
+    )
+
+
+def attempt(problem: CoupledProblem, barrier: float, work: Work) -> Answer | None:
+    """Solve from the assembled package at one barrier; None if that leads nowhere."""
+    way = f"interior point from the assembled package, barrier {barrier:g}"
+    if not len(problem.weight):
+        ambient = np.ones(problem.layout.n)
+        return finish(problem, ConePoint(ambient, np.zeros(0), np.zeros(0)), "Newton from ambient pressure", work)
+    try:
+        return finish(problem, assembled(problem, barrier, work), way, work)
+    except SingularMatrixError as failure:
+        work.note("film", outcome=str(failure))
+        return None
+
+
+def finish(problem: CoupledProblem, start: ConePoint, way: str, work: Work) -> Answer | None:
+    """Drive the barrier down from `start`; read the contact set as soon as it shows, and solve on it exactly."""
+    point = start
+    for goal in GOALS:
+        point, found = interior_point(problem, point, work.film_solver, InteriorOptions(), work.watch("film", content(goal)))
+        if not found:
+            return None
+        touching = point.lam / problem.weight > point.s
+        closed, outcome = active_set(problem, point.x, touching, work.film_solver, ActiveOptions())
+        work.note("contacts", outcome=outcome.value, touching=int(touching.sum()))
+        if closed is not None:
+            return from_closed(problem, closed, way)
+    answer = from_point(problem, point, way)
+    return answer if answer.residual <= RESIDUAL_TOLERANCE else None
+
+
+def content(goal: float):  # type: ignore[no-untyped-def]
+    """Stop at the barrier `goal`, with residuals to match."""
+
+    def look(step: Step) -> bool:
+        residual = max(1e2 * goal, 0.5 * RESIDUAL_TOLERANCE)
+        return step.barrier < goal and step.residual < residual and step.infeasibility < residual
+
+    return look

@@ -1,0 +1,67 @@
+"""The package alone, from nothing: a convex programme with one answer, whatever the start."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.equilibria.work import Work
+from petalfoil.problem.coupled import CoupledProblem
+from petalfoil.problem.package import PackageProblem
+from petalfoil.solvers.active_set import ActiveOptions, active_set
+from petalfoil.solvers.cone import ConePoint
+from petalfoil.solvers.interior_point import InteriorOptions, Step, interior_point
+
+Array = NDArray[np.float64]
+
+FIRST_PRODUCT = 300.0
+"""First reactions times slacks over the deepest penetration of the free shape. 100 to 1000 serve alike (11 to 20
+steps over 60 random packages); 10 and less stay short of the boundary for long (up to 58)."""
+
+
+def unloaded(problem: CoupledProblem) -> PackageProblem:
+    """The package without film pressure."""
+    return PackageProblem(problem, np.zeros(problem.layout.n_wall))
+
+
+def free_start(package: PackageProblem) -> ConePoint:
+    """A start from the free shape: slacks as wide as it penetrates, reactions to match."""
+    x = np.zeros(package.layout.n_wall)
+    gaps = package.gaps(x)
+    depth = max(1.0, -float(np.min(gaps, initial=0.0)))
+    s = np.maximum(gaps, depth)
+    return ConePoint(x, s, FIRST_PRODUCT * depth * package.weight / s)
+
+
+def assembled(problem: CoupledProblem, barrier: float, work: Work) -> ConePoint:
+    """The assembled package on its central path at `barrier`, extended by ambient pressures: a start for the film."""
+    package = unloaded(problem)
+    options = InteriorOptions(least_barrier=barrier)
+
+    def content(step: Step) -> bool:
+        return step.barrier < 2.0 * barrier and step.infeasibility < 1e-3 and step.residual < 1e-2
+
+    watch = work.watch("package", content)
+    point, _ = interior_point(package, free_start(package), work.package_solver, options, watch)
+    ambient = np.ones(problem.layout.n - problem.layout.n_wall)
+    return ConePoint(np.concatenate([point.x, ambient]), point.s, point.lam)
+
+
+def at_rest(problem: CoupledProblem, work: Work) -> tuple[Array, NDArray[np.bool_]] | None:
+    """Deflections of the assembled package (n_wall,) and its closed gaps (m,); None if not found."""
+    package = unloaded(problem)
+    if not len(package.weight):
+        return np.zeros(0), np.zeros(0, dtype=bool)
+    start, goal = free_start(package), 1e-5
+    for _ in range(3):
+        watch = work.watch("package", lambda step: step.barrier < goal and max(step.residual, step.infeasibility) < 1e-4)  # noqa: B023
+        start, found = interior_point(package, start, work.package_solver, InteriorOptions(), watch)
+        if not found:
+            return None
+        touching = start.lam / package.weight > start.s
+        closed, outcome = active_set(package, start.x, touching, work.package_solver, ActiveOptions())
+        work.note("package contacts", outcome=outcome.value)
+        if closed is not None:
+            return closed.x, closed.closed
+        goal *= 1e-3
+    return None

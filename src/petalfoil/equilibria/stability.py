@@ -1,0 +1,31 @@
+"""Is an equilibrium stable at a fixed journal position?
+
+The wall has no mass; the film has. With the contacts that carry load kept closed, small disturbances obey
+`J u + s M u = 0` in `exp(s tau)`, `tau = omega t`: stable if every `s` has a negative real part.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from petalfoil.equilibria.answer import Answer
+from petalfoil.equilibria.work import Work
+from petalfoil.solvers.eigen import Pencil, rightmost
+from petalfoil.solvers.ties import tie
+
+TIME_STEP = 0.1
+"""Radians of rotation a step of the eigenvalue's time map: resolves disturbances up to a few times the speed."""
+
+
+def leading_eigenvalue(answer: Answer, work: Work) -> complex:
+    """Leading eigenvalue in radians of rotation; nan for a shaft at rest, whose film does not move."""
+    problem = answer.problem
+    if problem.bearing_number == 0.0:
+        return complex(np.nan, np.nan)
+    line, none = problem.linearize(answer.x), np.zeros(len(problem.weight))
+    steady = line.matrix(none)
+    stored = line.matrix(none, 1.0) - steady
+    ties = tie(problem.G, answer.in_contact)
+    first = int(ties.group[: problem.layout.n_wall].max(initial=-1)) + 1
+    pencil = Pencil(ties.reduce(steady), ties.reduce(stored.tocsc()), first)
+    return rightmost(pencil, TIME_STEP, work.probe_solver)

@@ -1,0 +1,98 @@
+"""The package of petals on its grid: nodes, exposed strips, neighbours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.mesh.axial import AxialGrid
+from petalfoil.mesh.pitch import petal_angles
+
+
+@dataclass(frozen=True, slots=True)
+class PackageMesh:
+    """Nodes of `n` equal petals; local angle from the root to the free edge, axial stations.
+
+    Attributes
+    ----------
+    count : int
+        Petals, `n`.
+    cells : int
+        Cells a pitch, `N`: node `i` of petal `l` lies over node `i - N` of petal `l + 1`.
+    phi : (n_node,) array
+        Local angles of the nodes [rad].
+    roots : (count,) array
+        Angles of the roots in the bushing frame [rad].
+    axial : AxialGrid
+        Stations along the shaft.
+    """
+
+    count: int
+    cells: int
+    phi: NDArray[np.float64]
+    roots: NDArray[np.float64]
+    axial: AxialGrid
+
+    @property
+    def n_node(self) -> int:
+        """Nodes along a petal, root and free edge included."""
+        return len(self.phi)
+
+    @property
+    def n_z(self) -> int:
+        """Stations along the shaft."""
+        return len(self.axial.z)
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """(petal, node, axial)."""
+        return self.count, self.n_node, self.n_z
+
+    @property
+    def exposed(self) -> slice:
+        """Nodes of a petal that face the film, `phi3 <= phi <= phi1`."""
+        return slice(self.n_node - self.cells - 1, self.n_node)
+
+    @property
+    def on_bushing(self) -> slice:
+        """Free nodes that face the bushing, `0 < phi < phi0`."""
+        return slice(1, self.cells)
+
+    @property
+    def on_neighbour(self) -> slice:
+        """Nodes of petal `l` that lie over petal `l + 1`, `phi0 <= phi <= phi1`."""
+        return slice(self.cells, self.n_node)
+
+    @property
+    def theta(self) -> NDArray[np.float64]:
+        """Angles of all nodes in the bushing frame, shape (count, n_node) [rad]."""
+        return self.roots[:, None] + self.phi[None, :]
+
+    @property
+    def arc_weight(self) -> NDArray[np.float64]:
+        """Angle that each node of a petal stands for (trapezoidal rule), shape (n_node,) [rad]."""
+        return trapezoid(self.phi)
+
+    def free_numbers(self) -> NDArray[np.intp]:
+        """Number of each node's deflection among the unknowns, -1 at the roots, shape (petal, node, axial)."""
+        numbers = np.arange(self.count * (self.n_node - 1) * self.n_z).reshape(self.count, -1, self.n_z)
+        roots = np.full((self.count, 1, self.n_z), -1)
+        return np.concatenate([roots, numbers], axis=1)
+
+
+def trapezoid(nodes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Weights of the trapezoidal rule on `nodes`, shape (n,)."""
+    weight = np.zeros(len(nodes))
+    cell = np.diff(nodes)
+    weight[:-1] += 0.5 * cell
+    weight[1:] += 0.5 * cell
+    return weight
+
+
+def package_mesh(count: int, overlap: float, first_root: float, cells: int, axial: AxialGrid) -> PackageMesh:
+    """Grid of a package: `cells` a pitch, petals `overlap` pitches long [1], first root at `first_root` [rad]."""
+    pitch = 2.0 * np.pi / count
+    roots = first_root + pitch * np.arange(count)
+    return PackageMesh(count, cells, petal_angles(pitch, overlap, cells), roots, axial)

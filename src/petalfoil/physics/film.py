@@ -1,0 +1,104 @@
+"""Reynolds' equation of the gas film: fluxes through the faces of control volumes.
+
+Dimensionless, with `Lam = 6 mu omega R_j^2 / (p_a h_ref^2)` (`docs/theory.md`, F1):
+
+    d_phi( Lam P H - H^3 P P_phi ) - d_Z( H^3 P P_Z ) + 2 Lam d_tau(P H) = 0
+
+Faces carry the paper's means (56), (57): of `H^3`, of `P`, of `P H`. The advected mass is fitted
+exponentially (Scharfetter and Gummel 1969, doi:10.1109/T-ED.1969.16566): central where the film is
+resolved, upwind where `Lam H dphi / (H^3 P)` is large, monotone in between.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Flux(NamedTuple):
+    """Flux through faces, positive toward the node `1`, and its derivatives by the two nodes of a face."""
+
+    value: Array
+    by_P0: Array
+    by_P1: Array
+    by_H0: Array
+    by_H1: Array
+    size: Array
+    """Sum of the magnitudes of the flux's terms, rounding included: what a residual is small against."""
+
+
+ROUNDING = 4.0 * float(np.finfo(float).eps) / 1e-8
+"""Pressures carry rounding: differences of neighbours below this share of the pressure, over the residual's
+tolerance of 1e-8, say nothing. It matters where the film hardly flows (a shaft at rest)."""
+
+
+def langevin(x: Array) -> tuple[Array, Array]:
+    """`L(x) = coth x - 1/x` for `x >= 0` and its derivative, without cancellation near zero."""
+    small = x < 0.03
+    y = np.where(small, 1.0, x)
+    square = np.minimum(x, 1.0) ** 2  # the series serve x < 0.03 only: keep them finite elsewhere
+    decay = np.exp(-2.0 * y)
+    value = (1.0 + decay) / (1.0 - decay) - 1.0 / y
+    slope = 1.0 / y**2 - 4.0 * decay / (1.0 - decay) ** 2
+    series = x * (1.0 / 3.0 - square * (1.0 / 45.0 - square * (2.0 / 945.0)))
+    series_slope = 1.0 / 3.0 - square * (1.0 / 15.0 - square * (2.0 / 189.0))
+    return np.where(small, series, value), np.where(small, series_slope, slope)
+
+
+def circumferential_flux(P: Array, H: Array, Lam: float, dphi: Array) -> Flux:
+    """Mass flux along the rotation through the faces between neighbours on axis 1 (F2).
+
+    Parameters
+    ----------
+    P, H : (strip, node, axial) arrays
+        Pressure and film thickness [1].
+    Lam : float
+        Bearing number on the reference film [1].
+    dphi : (node - 1, 1) array
+        Angles between nodes [rad].
+    """
+    P0, P1, H0, H1 = P[:, :-1], P[:, 1:], H[:, :-1], H[:, 1:]
+    cube, mean_P, mean_H = 0.5 * (H0**3 + H1**3), 0.5 * (P0 + P1), 0.5 * (H0 + H1)
+    conductance = cube * mean_P
+    x = 0.5 * Lam * mean_H * dphi / conductance  # half the cell's Peclet number
+    fit, slope = langevin(x)
+    jump = P1 * H1 - P0 * H0
+
+    poiseuille = -conductance * (P1 - P0) / dphi
+    couette = 0.5 * Lam * (P0 * H0 + P1 * H1)
+    upwinding = -0.5 * Lam * fit * jump
+
+    half, wind = 0.5 * Lam, 0.5 * Lam * slope * jump
+    x_P = -0.5 * x / mean_P  # by either pressure
+    by_P0 = (conductance - 0.5 * cube * (P1 - P0)) / dphi + half * H0 * (1.0 + fit) - wind * x_P
+    by_P1 = (-conductance - 0.5 * cube * (P1 - P0)) / dphi + half * H1 * (1.0 - fit) - wind * x_P
+    x_H0 = x * (0.5 / mean_H - 1.5 * H0**2 / cube)
+    x_H1 = x * (0.5 / mean_H - 1.5 * H1**2 / cube)
+    drop = mean_P * (P1 - P0) / dphi
+    by_H0 = -1.5 * H0**2 * drop + half * P0 * (1.0 + fit) - wind * x_H0
+    by_H1 = -1.5 * H1**2 * drop + half * P1 * (1.0 - fit) - wind * x_H1
+    value = poiseuille + couette + upwinding
+    size = np.abs(poiseuille) + couette + np.abs(upwinding) + ROUNDING * conductance * mean_P / dphi
+    return Flux(value, by_P0, by_P1, by_H0, by_H1, size)
+
+
+def axial_flux(P: Array, H: Array, dZ: Array) -> Flux:
+    """Mass flux along the shaft through the faces between neighbours on axis 2 (F3).
+
+    `mean(P) dP = d(P^2 / 2)` holds exactly on a face, so that `sum H^3 P^2` over a closed circle is the same at
+    every station, as the integral is in the continuum.
+    """
+    P0, P1, H0, H1 = P[..., :-1], P[..., 1:], H[..., :-1], H[..., 1:]
+    cube, mean_P = 0.5 * (H0**3 + H1**3), 0.5 * (P0 + P1)
+
+    poiseuille = -cube * mean_P * (P1 - P0) / dZ
+
+    by_P0 = cube * P0 / dZ
+    by_P1 = -cube * P1 / dZ
+    drop = mean_P * (P1 - P0) / dZ
+    size = np.abs(poiseuille) + ROUNDING * cube * mean_P**2 / dZ
+    return Flux(poiseuille, by_P0, by_P1, -1.5 * H0**2 * drop, -1.5 * H1**2 * drop, size)

@@ -1,0 +1,53 @@
+"""What the film and the contacts do to the journal (62)-(64), and what the film costs."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.mesh.strips import FilmMesh
+
+Array = NDArray[np.float64]
+
+
+def node_area(mesh: FilmMesh, radius: float) -> Array:
+    """Area of each film node's cell on a cylinder of `radius`, shape (node, axial) [m^2]."""
+    return radius * mesh.arc_weight[:, None] * mesh.axial.weight[None, :]
+
+
+def film_force(mesh: FilmMesh, radius: float, Q: Array) -> Array:
+    """Force of the film on the journal, `-sum Q n R_j dphi dz` (62), from the excess pressure [Pa]; (2,) [N]."""
+    push = np.sum(Q * node_area(mesh, radius), axis=2)
+    return -np.array([np.sum(push * np.cos(mesh.theta)), np.sum(push * np.sin(mesh.theta))])
+
+
+def contact_force(theta: Array, reaction: Array) -> Array:
+    """Force of the petals that touch it on the journal, `-sum lam_J n`; (2,) [N]."""
+    return -np.array([np.sum(reaction * np.cos(theta)), np.sum(reaction * np.sin(theta))])
+
+
+def viscous_torque(mesh: FilmMesh, radius: float, state: tuple[Array, Array], shear: tuple[float, float]) -> float:
+    """Torque of the film's shear on the journal [N m].
+
+    `R_j sum (mu U / h + (h/2) dp/dx) dA`: the first at nodes, the second on faces.
+
+    Parameters
+    ----------
+    state : pair of (strip, node, axial) arrays
+        Pressure [Pa] and film thickness [m].
+    shear : (mu, U)
+        Viscosity [Pa s] and surface speed [m/s].
+    """
+    (p, h), (mu, U) = state, shear
+    couette = np.sum(mu * U / h * node_area(mesh, radius))
+    mean_h = 0.5 * (h[:, :-1] + h[:, 1:])
+    poiseuille = np.sum(0.5 * mean_h * np.diff(p, axis=1) * mesh.axial.weight)
+    return float(radius * (couette + poiseuille))
+
+
+def attitude_angle(force: Array, displacement: Array) -> float:
+    """Angle from `-F` to the displacement `e`, positive in the sense of rotation [rad]; nan without either."""
+    if not np.any(force) or not np.any(displacement):
+        return float("nan")
+    difference = np.arctan2(displacement[1], displacement[0]) - np.arctan2(-force[1], -force[0])
+    return float(np.arctan2(np.sin(difference), np.cos(difference)))

@@ -1,0 +1,60 @@
+"""The figure that suits a result: what ``--plot`` writes."""
+
+from __future__ import annotations
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from petalfoil.errors import UsageError
+from petalfoil.plot import style
+from petalfoil.plot.around import draw_film, draw_pressure, plane_fact
+from petalfoil.plot.assembly import package
+from petalfoil.plot.curves import load_characteristic, static
+from petalfoil.plot.reading import is_spatial, one_point
+from petalfoil.plot.section import cross_section, draw_section
+from petalfoil.plot.unrolled import draw_film_map, draw_pressure_map
+
+
+def summary(ds: xr.Dataset) -> Figure:
+    """Draw the figure that suits the analysis a dataset comes from.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of any verb.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A point: section, pressure and film. A curve: its characteristic. A check: the package.
+
+    Raises
+    ------
+    ConvergenceError
+        There is no converged state to draw.
+    UsageError
+        No figure suits the analysis.
+    """
+    analysis = ds.attrs.get("analysis")
+    single = ds.sizes.get("point", 1) == 1
+    if analysis == "check":
+        return package(ds)
+    if analysis == "static":
+        return cross_section(ds) if single else static(ds)
+    if analysis in ("solve", "curve"):
+        return _state(ds) if single else load_characteristic([("", ds)])
+    raise UsageError(f"no figure suits a result of {analysis!r}; known: check, curve, solve, static")
+
+
+def _state(ds: xr.Dataset) -> Figure:
+    """Section on the left; pressure and film on the right, as lines (flat) or as maps (spatial)."""
+    ds = one_point(ds)
+    fig = style.figure(13.0, 6.4)
+    axes = fig.subplot_mosaic([["section", "pressure"], ["section", "film"]], width_ratios=[1.0, 1.1])
+    draw_section(axes["section"], ds)
+    draw_p, draw_h = (draw_pressure_map, draw_film_map) if is_spatial(ds) else (draw_pressure, draw_film)
+    draw_p(axes["pressure"], ds)
+    draw_h(axes["film"], ds)
+    axes["pressure"].set_xlabel("")
+    style.set_title(fig, ds, *style.state_facts(ds), plane_fact(ds))
+    return fig

@@ -1,0 +1,268 @@
+"""The bearing cut across: petals, journal, bushing, film and pressure, the radial room stretched to be seen.
+
+A film is under a thousandth of the radius, so a true section shows nothing. Every radius `r` about the bushing's axis
+is drawn at `R_B − s (R_B − r)`: the bore keeps its size, and everything between it and the journal, petals, film and
+displacement alike, is `s` times too large.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.patches import FancyArrowPatch, Wedge
+
+from petalfoil.errors import UsageError
+from petalfoil.plot import style
+from petalfoil.plot.around import plane_fact
+from petalfoil.plot.reading import (
+    Floats,
+    array,
+    displacement,
+    journal_surface,
+    mid_plane,
+    number,
+    one_point,
+    touching,
+)
+
+_ROOM_SHARE = 0.5
+"""Largest share of the bore's radius that the default scale gives to the room between journal and bushing."""
+_LEAST_JOURNAL = 0.1
+"""Least share of the bore's radius that is left to the journal at any scale."""
+_RING = 0.06
+"""Thickness of the bushing's ring over its radius."""
+_BAND = 0.34
+"""Height of the largest excess pressure over the drawn radius of the journal."""
+_LEGEND = 0.32
+"""Room below the section for its legend, over the bushing's radius."""
+_CIRCLE = np.linspace(0.0, 2.0 * np.pi, 361)
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """The radial map of the drawing.
+
+    Parameters
+    ----------
+    bore : float
+        Radius of the bushing [m].
+    scale : float
+        How many times too large the radial room is drawn.
+    """
+
+    bore: float
+    scale: float
+
+    def radius(self, r: Floats) -> Floats:
+        """Drawn radius of a radius about the bushing's axis [m]."""
+        return self.bore - self.scale * (self.bore - r)
+
+    def points(self, r: Floats, theta: Floats) -> Floats:
+        """Drawn places, one a row, of radii and bushing angles [m]."""
+        drawn = self.radius(r)
+        return np.stack([drawn * np.cos(theta), drawn * np.sin(theta)], axis=-1)
+
+
+def cross_section(ds: xr.Dataset, *, scale: float | None = None) -> Figure:
+    """Draw the loaded bearing cut across at its mid-plane, the radial room `scale` times too large.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        One converged state, turning or at rest.
+    scale : float, optional
+        How many times too large the radial room is drawn; by default it takes up to half the radius.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The section, with the scale written below it.
+
+    Raises
+    ------
+    ConvergenceError
+        The state did not converge.
+    UsageError
+        The scale leaves no journal, or the dataset holds several points.
+    """
+    ds = one_point(ds)
+    fig = style.figure(8.0, 7.4)
+    ax = fig.subplots()
+    draw_section(ax, ds, scale)
+    style.set_title(fig, ds, *style.state_facts(ds), plane_fact(ds))
+    return fig
+
+
+def draw_section(ax: Axes, ds: xr.Dataset, scale: float | None = None) -> None:
+    """Draw the section of one state into axes."""
+    plane = mid_plane(ds)
+    stretch = Stretch(number(ds, "bushing_radius"), _checked_scale(plane, scale))
+    _draw_solids(ax, plane, stretch)
+    _draw_petals(ax, plane, stretch)
+    if "pressure" in ds:
+        _draw_pressure(ax, plane, stretch)
+    surface = stretch.points(journal_surface(plane, _CIRCLE), _CIRCLE)
+    ax.plot(*surface.T, color=style.INK, linewidth=1.0, gid="journal surface")
+    _draw_contacts(ax, plane, stretch)
+    _draw_arrows(ax, plane, stretch)
+    _frame(ax, stretch)
+
+
+def default_scale(ds: xr.Dataset) -> float:
+    """The largest of 1, 2, 5, 10, ... that keeps the radial room within its share of the drawing."""
+    bore = number(ds, "bushing_radius")
+    most = max(_ROOM_SHARE * bore / (bore - number(ds, "journal_radius")), 1.0)
+    decade = 10.0 ** math.floor(math.log10(most))
+    return max(step * decade for step in (1.0, 2.0, 5.0) if step * decade <= most)
+
+
+def _checked_scale(ds: xr.Dataset, scale: float | None) -> float:
+    if scale is None:
+        return default_scale(ds)
+    bore, lowest = number(ds, "bushing_radius"), float(journal_surface(ds, _CIRCLE).min())
+    most = (1.0 - _LEAST_JOURNAL) * bore / (bore - lowest)
+    if not 1.0 <= scale <= most:
+        raise UsageError(
+            f"the scale of a cross-section must be between 1 and {most:.3g} for this bearing, got {scale:g}"
+        )
+    return scale
+
+
+def _draw_solids(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
+    ring = Wedge((0.0, 0.0), (1.0 + _RING) * stretch.bore, 0.0, 360.0, width=_RING * stretch.bore)
+    ring.set(facecolor=style.PALE, edgecolor=style.GREY, hatch="////", linewidth=0.8, gid="bushing")
+    ax.add_patch(ring)
+    surface = stretch.points(journal_surface(ds, _CIRCLE), _CIRCLE)
+    ax.fill(*surface.T, facecolor="#F4F4F4", edgecolor="none", gid="journal")
+
+
+def _draw_petals(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
+    if "radius" not in ds:
+        return
+    half, phi = number(ds, "petal_thickness") / 2, array(ds, "phi")
+    radius = array(ds, "radius")
+    for petal, root in enumerate(array(ds, "root_angle")):
+        outline = petal_outline(radius[petal], root + phi, half, stretch)
+        look: style.Look = {
+            "facecolor": style.PETALS[petal % 2],
+            "edgecolor": style.INK,
+            "linewidth": 0.5,
+            "gid": f"petal {petal}",
+        }
+        ax.fill(*outline.T, **look)
+    roots = stretch.points(np.full(ds.sizes["petal"], stretch.bore), array(ds, "root_angle"))
+    ax.plot(*roots.T, "s", color=style.INK, markersize=5, label="root of a petal", gid="roots", zorder=4)
+
+
+def petal_outline(radius: Floats, theta: Floats, half: float, stretch: Stretch) -> Floats:
+    """Outline of a petal: its inner face, and back along its outer one."""
+    inner, outer = stretch.points(radius - half, theta), stretch.points(radius + half, theta)
+    return np.concatenate([inner, outer[::-1]])
+
+
+def _draw_pressure(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
+    """The film in the colour of its pressure, and the excess pressure as a band inside the journal."""
+    ratio = array(ds, "pressure") / number(ds, "ambient_pressure")
+    norm = Normalize(min(float(ratio.min()), 1.0), max(float(ratio.max()), 1.001))
+    theta = array(ds, "root_angle")[:, None] + array(ds, "phi_exposed")
+    surface = journal_surface(ds, theta)
+    film = stretch.points(surface, theta), stretch.points(surface + array(ds, "film_thickness"), theta)
+    band = _band(ds, stretch, ratio, theta)
+    colours = np.concatenate([(row[1:] + row[:-1]) / 2 for row in ratio])
+    for (low, high), name in ((film, "film"), (band, "pressure")):
+        quads = list(_between(low, high))
+        patches = PolyCollection(quads, array=colours, cmap=style.PRESSURE_MAP, norm=norm, edgecolors="face")
+        patches.set(linewidth=0.3, gid=name)
+        ax.add_collection(patches)
+    bar = ax.figure.colorbar(ax.collections[-1], ax=ax, shrink=0.6, pad=0.02, aspect=24)
+    bar.set_label("p / p$_a$", fontsize=style.LABEL)
+
+
+def _band(ds: xr.Dataset, stretch: Stretch, ratio: Floats, theta: Floats) -> tuple[Floats, Floats]:
+    """Base line (ambient pressure) and top of the pressure band; the base line makes room for suction outside it."""
+    drawn = stretch.radius(journal_surface(ds, theta))
+    height = _BAND * stretch.radius(np.array(number(ds, "journal_radius"))) / max(np.abs(ratio - 1.0).max(), 1e-12)
+    base = drawn - height * max(1.0 - ratio.min(), 0.0)
+    direction = np.stack([np.cos(theta), np.sin(theta)], axis=-1)
+    return base[..., None] * direction, (base - height * (ratio - 1.0))[..., None] * direction
+
+
+def _between(low: Floats, high: Floats) -> Floats:
+    """Quadrilaterals between two lines of places of every strip."""
+    quads = np.stack([low[:, :-1], low[:, 1:], high[:, 1:], high[:, :-1]], axis=2)
+    return quads.reshape(-1, 4, 2)
+
+
+def _draw_contacts(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
+    kinds = {
+        "journal_contact_pressure": ("journal touches", style.VERMILLION),
+        "petal_contact_pressure": ("petal on petal", style.PURPLE),
+        "bushing_contact_pressure": ("petal on bushing", style.ORANGE),
+    }
+    for name, (label, colour) in kinds.items():
+        if name not in ds or not (touched := touching(ds, name)).any():
+            continue
+        theta = (array(ds, "root_angle")[:, None] + array(ds, str(ds[name].dims[-1])))[touched]
+        if name == "journal_contact_pressure":
+            radius = journal_surface(ds, theta)
+        else:
+            radius = array(ds, "radius")[touched] + number(ds, "petal_thickness") / 2
+        look: style.Look = {"color": colour, "markersize": 4, "markeredgecolor": style.WHITE, "markeredgewidth": 0.3}
+        ax.plot(*stretch.points(radius, theta).T, "o", label=label, gid=name, zorder=5, **look)
+
+
+def _draw_arrows(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
+    e = stretch.scale * np.array(displacement(ds))
+    drawn = float(stretch.radius(np.array(number(ds, "journal_radius"))))
+    force = np.array([number(ds, "force_x"), number(ds, "force_y")])
+    size = float(np.hypot(*force))
+    ax.plot(0.0, 0.0, "+", color=style.INK, markersize=9, gid="centre")
+    if np.hypot(*e) > 0.0:
+        _arrow(ax, np.zeros(2), e, style.INK, "displacement")
+        ax.plot([], [], color=style.INK, linewidth=1.6, label="displacement, to the scale")
+    up = math.pi / 2 if not size > 0.0 else math.atan2(force[1], force[0])
+    if size > 0.0:
+        tip = e + 0.5 * drawn * force / size
+        _arrow(ax, e, tip, style.BLUE, "force")
+        ax.plot([], [], color=style.BLUE, linewidth=1.6, label=f"force on the journal, {size:.3g} N")
+    if number(ds, "speed") > 0.0:
+        _draw_rotation(ax, e, 0.42 * drawn, up + math.pi)
+
+
+def _arrow(ax: Axes, tail: Floats, tip: Floats, colour: str, name: str) -> None:
+    arrow = FancyArrowPatch(tuple(tail), tuple(tip), arrowstyle="-|>", mutation_scale=12, shrinkA=0, shrinkB=0)
+    arrow.set(color=colour, linewidth=1.6, gid=name, zorder=6)
+    ax.add_patch(arrow)
+
+
+def _draw_rotation(ax: Axes, centre: Floats, radius: float, middle: float) -> None:
+    """An arc with a head, growing with the bushing angle, around the side where the force arrow is not."""
+    angles = middle + np.radians(np.linspace(-40.0, 40.0, 41))
+    arc = centre + radius * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    ax.plot(*arc[:-1].T, color=style.INK, linewidth=1.4, gid="rotation")
+    _arrow(ax, arc[-2], arc[-1], style.INK, "rotation head")
+    inside = centre + 0.72 * radius * np.array([math.cos(middle), math.sin(middle)])
+    ax.text(inside[0], inside[1], "ω", ha="center", va="center", fontsize=style.TITLE, color=style.INK)
+
+
+def _frame(ax: Axes, stretch: Stretch) -> None:
+    ax.set_aspect("equal")
+    ax.set_axis_off()
+    rim = 1.13 * stretch.bore
+    for degrees in (0, 90, 180, 270):
+        angle = math.radians(degrees)
+        place = (rim * math.cos(angle), rim * math.sin(angle))
+        ax.text(*place, f"{degrees}°", ha="center", va="center", fontsize=style.TICK, color=style.GREY)
+    ax.set_xlim(-1.18 * stretch.bore, 1.18 * stretch.bore)
+    ax.set_ylim(-(1.18 + _LEGEND) * stretch.bore, 1.18 * stretch.bore)
+    note = f"radial room drawn ×{stretch.scale:g}: petals, film and displacement alike"
+    ax.text(0.0, -1.24 * stretch.bore, note, ha="center", va="center", fontsize=style.TICK, color=style.INK)
+    below = {"bbox_to_anchor": (0.0, -1.27 * stretch.bore), "bbox_transform": ax.transData, "borderaxespad": 0.0}
+    style.legend(ax, loc="upper center", ncols=3, frameon=False, **below)

@@ -1,0 +1,270 @@
+"""Film and wall at one speed and journal position, in one vector `x = [w, P]`.
+
+    wall   K w - A (P - 1) - G^T lam = 0      (C1)
+    film   net outflow of each cell  = 0      (C2), h from the gaps
+    gaps   0 <= g(w)  complementary to  lam >= 0   (C3)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from petalfoil.physics.balance import FilmBalance
+from petalfoil.physics.film import Flux
+from petalfoil.problem.scales import Scales
+from petalfoil.sparsity import Pattern
+from petalfoil.structure.wall import Wall
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What never changes while speed and position do: mesh, places of entries, constant entries."""
+
+    wall: Wall
+    balance: FilmBalance
+    scales: Scales
+
+    @property
+    def n_wall(self) -> int:
+        """Deflection unknowns."""
+        return self.wall.n_unknown
+
+    @cached_property
+    def n(self) -> int:
+        """All unknowns."""
+        return self.n_wall + self.wall.film.n_unknown
+
+    @cached_property
+    def stiffness(self) -> sp.csr_array:
+        """`K` in the units of the problem [1]."""
+        return sp.csr_array(self.wall.stiffness * (self.scales.length / self.scales.force))
+
+    @cached_property
+    def stiffness_size(self) -> sp.csr_array:
+        """Magnitudes of the entries of `K` [1]."""
+        return sp.csr_array(abs(self.stiffness))
+
+    @cached_property
+    def push(self) -> sp.csr_array:
+        """`A`: nodal forces on the wall from the pressure unknowns, (n_wall, n_film) [1]."""
+        wall, unknown = self.wall.film_unknown.ravel(), self.wall.film.unknown.ravel()
+        both = (wall >= 0) & (unknown >= 0)
+        area = self.wall.load_area.ravel()[both] * self.scales.pressure / self.scales.force
+        shape = (self.n_wall, self.wall.film.n_unknown)
+        return sp.coo_array((area, (wall[both], unknown[both])), shape=shape).tocsr()
+
+    @cached_property
+    def G(self) -> sp.csr_array:
+        """Derivative of the gaps by all unknowns, (m, n) [1]."""
+        m = len(self.wall.contacts.rest)
+        return sp.csr_array(sp.hstack([self.wall.contacts.G, sp.csr_array((m, self.n - self.n_wall))], format="csr"))
+
+    @cached_property
+    def weight(self) -> Array:
+        """Area of each gap's node over a typical one, (m,) [1]."""
+        return self.wall.contacts.area / self.wall.node_area
+
+    @cached_property
+    def film_column(self) -> Index:
+        """Deflection unknown of every derivative by film thickness, -1 where the wall does not move."""
+        return self.wall.film_unknown.ravel()[self.balance.by_film.cols]
+
+    @cached_property
+    def storage_column(self) -> Index:
+        """Deflection unknown of every derivative of the stored mass by film thickness, -1 where none."""
+        return self.wall.film_unknown.ravel()[self.balance.storage_entries.cols]
+
+    @cached_property
+    def gap_products(self) -> tuple[Index, Index, Index, Array]:
+        """Entries of `G^T diag G`: rows, columns, gap, coefficient."""
+        G = self.wall.contacts.G
+        pieces = []
+        for first, second in _pairs(G):
+            gap = G_row(G)[first]
+            pieces.append((G.indices[first], G.indices[second], gap, G.data[first] * G.data[second]))
+        if not pieces:
+            none = np.zeros(0, dtype=np.intp)
+            return none, none, none, np.zeros(0)
+        rows, cols, gaps, factors = (np.concatenate(part) for part in zip(*pieces, strict=True))
+        return rows.astype(np.intp), cols.astype(np.intp), gaps.astype(np.intp), factors
+
+    @cached_property
+    def places(self) -> tuple[Index, Index]:
+        """Rows and columns of the tangent's entries in the order of `Linearization.entries`."""
+        K, A, n_w = self.stiffness.tocoo(), self.push.tocoo(), self.n_wall
+        by_P, by_H, moving = self.balance.by_pressure, self.balance.by_film, self.film_column >= 0
+        held, under = self.balance.storage_entries, self.storage_column
+        gap_rows, gap_cols, _, _ = self.gap_products
+        rows = [K.row, A.row, n_w + by_P.rows, n_w + by_H.rows[moving], gap_rows]
+        cols = [K.col, n_w + A.col, n_w + by_P.cols, self.film_column[moving], gap_cols]
+        rows += [n_w + held.rows, n_w + held.rows[under >= 0]]
+        cols += [n_w + held.rows, under[under >= 0]]
+        return np.concatenate(rows).astype(np.intp), np.concatenate(cols).astype(np.intp)
+
+    @cached_property
+    def pattern(self) -> Pattern:
+        """Sparsity of the tangent with contacts: one pattern for ever."""
+        return Pattern.of(*self.places, self.n)
+
+    @cached_property
+    def constant_entries(self) -> Array:
+        """Values of the wall's own entries."""
+        return np.concatenate([self.stiffness.tocoo().data, -self.push.tocoo().data])
+
+
+def G_row(G: sp.csr_array) -> Index:
+    """Row of every stored entry of `G`."""
+    return np.repeat(np.arange(G.shape[0]), np.diff(G.indptr))
+
+
+def _pairs(G: sp.csr_array) -> list[tuple[Index, Index]]:
+    """Pairs of stored entries that share a row of `G` (rows hold one or two)."""
+    held = np.diff(G.indptr)
+    every = np.arange(G.nnz)
+    first = G.indptr[:-1][held == 2]
+    return [(every, every), (first, first + 1), (first + 1, first)] if G.nnz else []
+
+
+@dataclass(frozen=True)
+class CoupledProblem:
+    """The system at one speed and journal position.
+
+    Attributes
+    ----------
+    layout : Layout
+        Mesh, wall and constant entries.
+    bearing_number : float
+        `Lam` on the reference film [1].
+    displacement : (2,) array
+        Journal displacement over the reference length [1].
+    """
+
+    layout: Layout
+    bearing_number: float
+    displacement: Array
+
+    def at(self, *, bearing_number: float | None = None, displacement: Array | None = None) -> CoupledProblem:
+        """The same bearing at another speed or position."""
+        Lam = self.bearing_number if bearing_number is None else bearing_number
+        return replace(self, bearing_number=Lam, displacement=self.displacement if displacement is None else displacement)
+
+    @property
+    def G(self) -> sp.csr_array:
+        """Derivative of the gaps by the unknowns."""
+        return self.layout.G
+
+    @property
+    def weight(self) -> Array:
+        """Weights of the gaps."""
+        return self.layout.weight
+
+    @property
+    def positive(self) -> slice:
+        """Unknowns that must stay positive: the pressures."""
+        return slice(self.layout.n_wall, self.layout.n)
+
+    def gaps(self, x: Array) -> Array:
+        """Gaps over the reference length, (m,) [1]."""
+        contacts, h_ref = self.layout.wall.contacts, self.layout.scales.length
+        return contacts.rest / h_ref + contacts.by_e @ self.displacement + contacts.G @ x[: self.layout.n_wall]
+
+    def film(self, x: Array, shift: Array | None = None) -> Array:
+        """Film thickness over the reference length; `shift` (m,) replaces `g` by `g + shift` on the journal rows."""
+        wall, h_ref = self.layout.wall, self.layout.scales.length
+        H = wall.film_thickness(x[: self.layout.n_wall] * h_ref, self.displacement * h_ref) / h_ref
+        if shift is None or not len(shift):
+            return H
+        return H + shift[wall.contacts.journal].reshape(H.shape)
+
+    def pressure(self, x: Array) -> Array:
+        """Pressure at every film node [1]."""
+        return self.layout.balance.nodal_pressure(x[self.layout.n_wall :])
+
+    def admits(self, x: Array) -> bool:
+        """The film is open everywhere."""
+        return bool(np.min(self.film(x)) > 0.0)
+
+    def linearize(self, x: Array, shift: Array | None = None) -> Linearization:
+        """Residual, its tangent and its row sizes at `x`."""
+        P, H, Lam = self.pressure(x), self.film(x, shift), self.bearing_number
+        balance = self.layout.balance
+        return Linearization(self.layout, x, balance.fluxes(P, H, Lam), balance.storage_tangent(P, H, Lam))
+
+
+@dataclass(frozen=True)
+class Linearization:
+    """The system at one state: residual (reactions apart), tangent, and the sizes that residuals are measured by.
+
+    `rate` adds the squeeze term of an implicit step of `1 / rate` in `tau` from this very state: the mass stored
+    has not changed yet, so the residual is the steady one and only the tangent grows.
+    """
+
+    layout: Layout
+    x: Array
+    fluxes: tuple[Flux, Flux]
+    storage: tuple[Array, Array]
+
+    @cached_property
+    def residual(self) -> Array:
+        """(C1) without reactions, then (C2); shape (n,) [1]."""
+        w, P = self.x[: self.layout.n_wall], self.x[self.layout.n_wall :]
+        elastic = self.layout.stiffness @ w
+        pushed = self.layout.push @ (P - 1.0)
+        return np.concatenate([elastic - pushed, self.layout.balance.residual(self.fluxes)])
+
+    @cached_property
+    def size(self) -> Array:
+        """What each row's residual is measured by (C4), shape (n,) [1].
+
+        A film row: the flows it adds up. A wall row: see `wall_size`.
+        """
+        film = self.layout.balance.size(self.fluxes)
+        wall = wall_size(self.layout, self.x[: self.layout.n_wall])
+        return np.concatenate([wall, film])
+
+    @cached_property
+    def _film_entries(self) -> tuple[Array, Array]:
+        return self.layout.balance.tangent(self.fluxes)
+
+    def matrix(self, theta: Array, rate: float = 0.0) -> sp.csc_array:
+        """Tangent plus `G^T diag(theta) G`, plus `rate` times the derivative of the stored mass; (n, n)."""
+        by_P, by_H = self._film_entries
+        held_P, held_H = self.storage
+        _, _, gap, factor = self.layout.gap_products
+        moving, under = self.layout.film_column >= 0, self.layout.storage_column >= 0
+        values = [self.layout.constant_entries, by_P, by_H[moving], theta[gap] * factor]
+        return self.layout.pattern.assemble(np.concatenate([*values, rate * held_P, rate * held_H[under]]))
+
+    def by_shift(self, shift: Array, rate: float = 0.0) -> Array:
+        """Derivative of the residual by the shift of the gaps, applied to `shift` (m,); shape (n,)."""
+        out = np.zeros(self.layout.n)
+        journal = shift[self.layout.wall.contacts.journal]
+        if len(journal):
+            steady, held = self.layout.balance.by_film, self.layout.balance.storage_entries
+            n_film = self.layout.n - self.layout.n_wall
+            moved = np.bincount(steady.rows, self._film_entries[1] * journal[steady.cols], n_film)
+            moved += rate * np.bincount(held.rows, self.storage[1] * journal[held.cols], n_film)
+            out[self.layout.n_wall :] = moved
+        return out
+
+
+def wall_size(layout: Layout, w: Array) -> Array:
+    """What the residual of the wall's rows is measured by, (n_wall,) [1].
+
+    Ambient pressure on the node; where the rounding of `K w` exceeds 1e-8 of that, this rounding (it grows as
+    `dphi^-4`, and no arithmetic in double precision gets below it).
+    """
+    rounding = np.finfo(float).eps * (layout.stiffness_size @ np.abs(w))
+    return np.maximum(1.0, rounding / RESIDUAL_TOLERANCE)
+
+
+RESIDUAL_TOLERANCE = 1e-8
+"""Largest scaled residual of an answer."""

@@ -1,0 +1,19 @@
+"""What a run leaves behind: labelled data that explains itself.
+
+In the order data flows:
+
+- ``schema``   every variable a result may hold: dimensions, SI unit, long name, symbol
+- ``record``   one answer as plain arrays (no xarray), checked against the schema
+- ``summary``  a record as the object of ``--json`` and as the rows of the printed table
+- ``dataset``  records to ``xarray.Dataset``: one point, or a curve of points
+- ``atomic``   a file is replaced whole or left alone
+- ``store``    datasets to NetCDF and back
+
+Conventions: SI units inside; a figure of a state that did not converge is NaN; ``dataset`` and ``store`` load xarray
+and are therefore imported by whoever needs them, never from here.
+"""
+
+from petalfoil.results.record import Record, Scalar
+from petalfoil.results.schema import VARIABLES, Kind, Variable
+
+__all__ = ["VARIABLES", "Kind", "Record", "Scalar", "Variable"]

@@ -1,0 +1,123 @@
+"""One answer as plain arrays: what an analysis returns and everything downstream reads."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from petalfoil.results.schema import COORDINATES, FIELDS, SCALARS, Kind, Role, Variable
+
+Array: TypeAlias = npt.NDArray[np.generic]
+Scalar: TypeAlias = float | int | bool | str
+
+_PLAIN: dict[Kind, tuple[type, ...]] = {
+    Kind.FLOAT: (float, int, np.floating, np.integer),
+    Kind.INT: (int, np.integer),
+    Kind.BOOL: (bool, np.bool_),
+    Kind.STR: (str,),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Record:
+    """One answer of an analysis; every name is declared in ``results.schema``.
+
+    Parameters
+    ----------
+    analysis : str
+        Verb that gave it: "solve", "curve", "static", "check".
+    scalars : dict
+        Figures by name, SI.
+    fields : dict
+        Arrays by name, SI, with the dimensions the schema declares.
+    coords : dict
+        Coordinate arrays by name.
+    case_toml : str
+        The whole case, so that the run can be repeated.
+    title : str
+        Title of the case.
+    history : list of dict
+        One entry an iteration.
+
+    Raises
+    ------
+    ValueError
+        A name, a type or a shape is not the declared one: a mistake of the program, not of its user.
+    """
+
+    analysis: str
+    scalars: dict[str, Scalar]
+    fields: dict[str, Array] = field(default_factory=dict)
+    coords: dict[str, Array] = field(default_factory=dict)
+    case_toml: str = ""
+    title: str = ""
+    history: list[dict[str, float | int | str]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        _refuse_unknown("scalar", self.scalars, SCALARS)
+        _refuse_unknown("field", self.fields, FIELDS)
+        _refuse_unknown("coordinate", self.coords, COORDINATES)
+        for name, value in self.scalars.items():
+            _refuse_type(name, value, SCALARS[name])
+        sizes = {name: len(values) for name, values in self.coords.items() if name in COORDINATES[name].dims}
+        for name, values in {**self.coords, **self.fields}.items():
+            _refuse_shape(name, values, {**COORDINATES, **FIELDS}[name], sizes)
+
+    @property
+    def converged(self) -> bool:
+        """Whether the state satisfies the equations; true where the analysis declares no such flag."""
+        return bool(self.scalars.get("converged", True))
+
+    def reported(self) -> dict[str, Scalar]:
+        """Scalars as plain Python values; figures of a state that did not converge are NaN, its flags false."""
+        return {name: _plain(name, value, self.converged) for name, value in self.scalars.items()}
+
+
+def _plain(name: str, value: Scalar, converged: bool) -> Scalar:
+    variable = SCALARS[name]
+    if variable.role is Role.ANSWER and not converged:
+        return blank(variable)
+    convert = {Kind.FLOAT: float, Kind.INT: int, Kind.BOOL: bool, Kind.STR: str}[variable.kind]
+    result: Scalar = convert(value)
+    return result
+
+
+def blank(variable: Variable) -> float | bool | str:
+    """What stands for a figure that is not there."""
+    match variable.kind:
+        case Kind.FLOAT:
+            return float("nan")
+        case Kind.BOOL:
+            return False
+        case Kind.STR:
+            return ""
+        case Kind.INT:
+            raise ValueError("a whole number has no value that means absent: declare the variable as a float")
+
+
+def _refuse_unknown(what: str, given: Mapping[str, object], declared: Mapping[str, Variable]) -> None:
+    for name in given:
+        if name not in declared:
+            near = difflib.get_close_matches(name, declared, 1)
+            hint = f" Did you mean {near[0]!r}?" if near else ""
+            raise ValueError(f"no {what} {name!r} in results.schema.{hint}")
+
+
+def _refuse_type(name: str, value: object, variable: Variable) -> None:
+    bool_as_number = isinstance(value, (bool, np.bool_)) and variable.kind is not Kind.BOOL
+    if bool_as_number or not isinstance(value, _PLAIN[variable.kind]):
+        raise ValueError(f"scalar {name!r} must be {variable.kind.value}, got {value!r}")
+
+
+def _refuse_shape(name: str, values: Array, variable: Variable, sizes: Mapping[str, int]) -> None:
+    missing = [dim for dim in variable.dims if dim not in sizes]
+    if missing:
+        raise ValueError(f"{name!r} needs the coordinate {missing[0]!r}")
+    shape = tuple(sizes[dim] for dim in variable.dims)
+    if np.shape(values) != shape:
+        raise ValueError(f"{name!r} must have shape {shape} {variable.dims}, got {np.shape(values)}")

@@ -1,0 +1,186 @@
+"""Every variable a result may hold, with its dimensions, SI unit, long name and symbol.
+
+The tables below are the one place where a name is declared: a record refuses any other, and the NetCDF file takes its
+attributes from here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+class Kind(Enum):
+    """Type of a variable's values."""
+
+    FLOAT = "float"
+    INT = "int"
+    BOOL = "bool"
+    STR = "str"
+
+
+class Role(Enum):
+    """What a variable tells, hence what becomes of it when the state did not converge or when points form a curve."""
+
+    GIVEN = "given"
+    """Input of the point: kept whatever happens."""
+    BOOKKEEPING = "bookkeeping"
+    """How the run went: kept whatever happens."""
+    ANSWER = "answer"
+    """Figure of the state: NaN (false, for a flag) when the state did not converge."""
+    GEOMETRY = "geometry"
+    """Same for all points of a curve: kept, and stored once."""
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """Declaration of one variable.
+
+    Parameters
+    ----------
+    dims : tuple of str
+        Dimensions, in order; empty for a scalar.
+    units : str
+        SI unit in UDUNITS spelling, "1" for a pure number, "" for text and flags.
+    long_name : str
+        One line for a reader of the file.
+    symbol : str
+        Symbol in ``docs/notation`` and in figures.
+    kind : Kind
+        Type of the values.
+    role : Role
+        Given, bookkeeping, answer or geometry.
+    """
+
+    dims: tuple[str, ...]
+    units: str
+    long_name: str
+    symbol: str
+    kind: Kind = Kind.FLOAT
+    role: Role = Role.ANSWER
+
+
+def _given(units: str, long_name: str, symbol: str) -> Variable:
+    return Variable((), units, long_name, symbol, role=Role.GIVEN)
+
+
+def _answer(units: str, long_name: str, symbol: str, kind: Kind = Kind.FLOAT) -> Variable:
+    return Variable((), units, long_name, symbol, kind)
+
+
+def _run(units: str, long_name: str, symbol: str, kind: Kind = Kind.FLOAT) -> Variable:
+    return Variable((), units, long_name, symbol, kind, Role.BOOKKEEPING)
+
+
+def _geometry(units: str, long_name: str, symbol: str, kind: Kind = Kind.FLOAT) -> Variable:
+    return Variable((), units, long_name, symbol, kind, Role.GEOMETRY)
+
+
+_FILM = ("petal", "phi_exposed", "z")
+_PETAL = ("petal", "phi", "z")
+
+COORDINATES: dict[str, Variable] = {
+    "petal": Variable(("petal",), "1", "petal number, growing with the bushing angle", "l", Kind.INT, Role.GEOMETRY),
+    "root_angle": Variable(("petal",), "rad", "bushing angle of the petal's root", "theta_l", role=Role.GEOMETRY),
+    "phi": Variable(("phi",), "rad", "angle from the petal's root", "phi", role=Role.GEOMETRY),
+    "phi_exposed": Variable(
+        ("phi_exposed",),
+        "rad",
+        "angle from the petal's root, on the strip exposed to the film",
+        "phi",
+        role=Role.GEOMETRY,
+    ),
+    "z": Variable(("z",), "m", "distance along the bearing axis", "z", role=Role.GEOMETRY),
+}
+
+FIELDS: dict[str, Variable] = {
+    "pressure": Variable(_FILM, "Pa", "absolute pressure of the film", "p"),
+    "film_thickness": Variable(_FILM, "m", "film thickness between journal and petal", "h"),
+    "journal_contact_pressure": Variable(_FILM, "Pa", "contact pressure between journal and petal", "lambda_J"),
+    "deflection": Variable(_PETAL, "m", "deflection of the petal, positive toward the bushing", "W"),
+    "radius": Variable(_PETAL, "m", "radius of the deformed mid-surface of the petal", "r"),
+    "free_radius": Variable(("phi",), "m", "radius of the free mid-surface of a petal", "r_0", role=Role.GEOMETRY),
+    "bushing_contact_pressure": Variable(_PETAL, "Pa", "contact pressure between petal and bushing", "lambda_B"),
+    "petal_contact_pressure": Variable(
+        _PETAL, "Pa", "contact pressure between petal l and petal l+1, at the angle of petal l", "lambda_P"
+    ),
+    "bending_stress": Variable(
+        _PETAL, "Pa", "bending stress of the petal's metal along phi, assembly included", "sigma_phi"
+    ),
+}
+
+SCALARS: dict[str, Variable] = {
+    "speed": _given("rad s-1", "angular velocity of the journal", "omega"),
+    "eccentricity_x": _given("m", "displacement of the journal's centre along x", "e_x"),
+    "eccentricity_y": _given("m", "displacement of the journal's centre along y", "e_y"),
+    "force_x": _answer("N", "force of film and contact on the journal along x", "F_x"),
+    "force_y": _answer("N", "force of film and contact on the journal along y", "F_y"),
+    "load_capacity": _answer("N", "magnitude of the force on the journal", "|F|"),
+    "attitude_angle": _answer(
+        "rad", "angle from the carried load to the displacement, positive with the rotation", "beta"
+    ),
+    "film_force_x": _answer("N", "force of the film on the journal along x", "F_film,x"),
+    "film_force_y": _answer("N", "force of the film on the journal along y", "F_film,y"),
+    "contact_force_x": _answer("N", "force of the contacts on the journal along x", "F_contact,x"),
+    "contact_force_y": _answer("N", "force of the contacts on the journal along y", "F_contact,y"),
+    "contact_total": _answer("N", "sum of the contact reactions over the journal", "sum lambda_J"),
+    "contact_share": _answer(
+        "1", "contact reactions over contact reactions plus integral of the film's excess pressure", "s_c"
+    ),
+    "min_film": _answer("m", "smallest film thickness", "h_min"),
+    "min_film_angle": _answer("rad", "bushing angle of the smallest film thickness", "theta(h_min)"),
+    "min_film_z": _answer("m", "axial place of the smallest film thickness", "z(h_min)"),
+    "max_pressure": _answer("Pa", "largest absolute pressure of the film", "p_max"),
+    "max_pressure_angle": _answer("rad", "bushing angle of the largest pressure", "theta(p_max)"),
+    "friction_torque": _answer("N m", "friction torque on the journal, film and contact", "M"),
+    "starting_torque": _answer("N m", "torque of dry friction at rest", "M_0"),
+    "power_loss": _answer("W", "friction torque times angular velocity", "M omega"),
+    "side_leakage": _answer("kg s-1", "mass flow of gas out of both ends", "G"),
+    "max_stress": _answer("Pa", "largest magnitude of the bending stress of the petals", "sigma_max"),
+    "stable": _answer("", "the equilibrium of film and petals is stable at the fixed journal", "stable", Kind.BOOL),
+    "growth_rate": _answer(
+        "s-1", "real part of the leading eigenvalue of film and petals at the fixed journal", "Re s"
+    ),
+    "growth_frequency": _answer(
+        "rad s-1", "imaginary part of the leading eigenvalue of film and petals at the fixed journal", "Im s"
+    ),
+    "residual": _run("1", "largest scaled residual of the coupled system", "res"),
+    "mass_balance": _run("1", "relative defect of the mass balance of the film", "d_mass"),
+    "reaction_balance": _run("1", "relative defect of the balance of loads and reactions of the petals", "d_force"),
+    "iterations": _run("1", "iterations of the coupled system", "N_it", Kind.INT),
+    "factorizations": _run("1", "factorisations of the coupled system", "N_lu", Kind.INT),
+    "package_iterations": _run("1", "iterations of the package alone", "N_pk", Kind.INT),
+    "probe_factorizations": _run(
+        "1", "factorisations that only asked a question: stability, other equilibria", "N_probe", Kind.INT
+    ),
+    "film_scale": _run("m", "film thickness the film equation is scaled with", "h*"),
+    "wall_time": _run("s", "time spent", "t_wall"),
+    "converged": _run("", "the state satisfies the equations to tolerance", "converged", Kind.BOOL),
+    "status": _run("", "how the run ended", "status", Kind.STR),
+    "branch": _run("", "how the equilibrium was reached", "branch", Kind.STR),
+    "branches_known": _run("1", "equilibria known at this position", "N_eq", Kind.INT),
+    "jump": _run("", "this point left the branch of the point before", "jump", Kind.BOOL),
+    "journal_radius": _geometry("m", "radius of the journal", "R_j"),
+    "bushing_radius": _geometry("m", "radius of the bushing", "R_B"),
+    "length": _geometry("m", "length of the bearing", "L"),
+    "petal_thickness": _geometry("m", "thickness of a petal with its coating", "delta"),
+    "ambient_pressure": _geometry("Pa", "ambient pressure, absolute", "p_a"),
+    "film_floor": _geometry("m", "film floor, below which the journal touches", "h_floor"),
+    "overlap": _geometry("1", "petal angle over pitch", "phi_1/phi_0"),
+    "layers": _geometry("1", "largest number of petals at one angle", "N_layers", Kind.INT),
+    "petal_angle": _geometry("rad", "angle a petal spans", "phi_1"),
+    "pitch": _geometry("rad", "angle between neighbouring roots", "phi_0"),
+    "covered_angle": _geometry("rad", "angle over which a petal is covered by the one before", "phi_3"),
+    "metric_radius": _geometry("m", "radius of the mid-surface of a petal on the bore", "r_m"),
+    "room": _geometry("m", "narrowest radial room between journal and bushing", "c"),
+    "room_left": _geometry("m", "room less the package at its thickest and the film floor", "c_left"),
+    "compressibility_number": _geometry("1", "compressibility number on the radial clearance", "Lambda"),
+    "bending_stiffness": _geometry("N m", "bending stiffness of a petal per length", "D"),
+    "root_tilt": _geometry("rad", "turn of the free petal at its root, inward from the bore's tangent", "psi"),
+    "first_contact_angle": _geometry(
+        "rad", "angle from the root at which a free petal would first meet the journal", "phi_c"
+    ),
+    "free_petal_height": _geometry("m", "largest stand-off of a free petal from the bore", "max(r_m - r_0)"),
+}
+
+VARIABLES: dict[str, Variable] = {**COORDINATES, **FIELDS, **SCALARS}

@@ -1,0 +1,78 @@
+"""Datasets to NetCDF files and back."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from petalfoil.errors import StoreError
+from petalfoil.results.atomic import replacing
+
+_MARKS = ("petalfoil_version", "analysis", "case")
+_UNREADABLE = (
+    OSError,
+    RuntimeError,
+    ValueError,
+)  # what netCDF4 and xarray raise on a file that is damaged or of another kind
+
+
+def save(ds: xr.Dataset, path: str | Path) -> None:
+    """Write a result to a NetCDF4 file; a former file is replaced whole, or left alone if the writing fails.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of ``to_dataset`` or ``curve_dataset``.
+    path : str or Path
+        Where to.
+
+    Raises
+    ------
+    StoreError
+        The file cannot be written.
+    """
+    target = Path(path)
+    # No fill value: NaN stands for itself, and a reader gets the numbers that were computed.
+    encoding = {
+        str(name): {"_FillValue": None, "zlib": variable.ndim > 0, "complevel": 4}
+        for name, variable in ds.variables.items()
+        if np.issubdtype(variable.dtype, np.floating)
+    }
+    try:
+        with replacing(target) as temporary:
+            ds.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
+    except (OSError, RuntimeError) as error:
+        raise StoreError(f"cannot write {target}: {error}") from error
+
+
+def load(path: str | Path) -> xr.Dataset:
+    """Read a result from a NetCDF4 file into memory; the file is closed afterwards.
+
+    Parameters
+    ----------
+    path : str or Path
+        File written by ``save``.
+
+    Returns
+    -------
+    xarray.Dataset
+        The result, equal to what was saved.
+
+    Raises
+    ------
+    StoreError
+        There is no such file, it cannot be read, or petalfoil did not write it.
+    """
+    source = Path(path)
+    if not source.is_file():
+        raise StoreError(f"no result file {source}")
+    try:
+        ds = xr.load_dataset(source, engine="netcdf4")
+    except _UNREADABLE as error:
+        raise StoreError(f"{source} is not a readable NetCDF file: {error}") from error
+    missing = [mark for mark in _MARKS if mark not in ds.attrs]
+    if missing:
+        raise StoreError(f"{source} was not written by petalfoil: it has no attribute {missing[0]!r}")
+    return ds

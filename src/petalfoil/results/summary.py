@@ -1,0 +1,150 @@
+"""A record for people and for programs: the object of ``--json`` and the rows of the printed table."""
+
+from __future__ import annotations
+
+import math
+from decimal import Decimal
+from typing import NamedTuple
+
+from petalfoil.results.record import Record, Scalar
+from petalfoil.results.schema import SCALARS, Kind
+
+
+class Row(NamedTuple):
+    """One line of the printed table: what, how much, in which unit."""
+
+    label: str
+    value: str
+    unit: str
+
+
+class _Show(NamedTuple):
+    label: str
+    unit: str = ""
+    factor: float = 1.0
+
+
+ABSENT = "-"
+_DEG = 180.0 / math.pi
+_RPM = 30.0 / math.pi
+
+_SHOWN: dict[str, _Show] = {
+    "status": _Show("status"),
+    "speed": _Show("speed", "rpm", _RPM),
+    "eccentricity_x": _Show("displacement x", "µm", 1e6),
+    "eccentricity_y": _Show("displacement y", "µm", 1e6),
+    "load_capacity": _Show("load capacity", "N"),
+    "force_x": _Show("force x", "N"),
+    "force_y": _Show("force y", "N"),
+    "attitude_angle": _Show("attitude angle", "deg", _DEG),
+    "contact_total": _Show("contact reactions", "N"),
+    "contact_share": _Show("contact share", "%", 100.0),
+    "min_film": _Show("smallest film", "µm", 1e6),
+    "min_film_angle": _Show("  at angle", "deg", _DEG),
+    "min_film_z": _Show("  at z", "mm", 1e3),
+    "max_pressure": _Show("largest pressure", "kPa", 1e-3),
+    "max_pressure_angle": _Show("  at angle", "deg", _DEG),
+    "friction_torque": _Show("friction torque", "mN·m", 1e3),
+    "starting_torque": _Show("starting torque", "mN·m", 1e3),
+    "power_loss": _Show("power loss", "W"),
+    "side_leakage": _Show("side leakage", "mg/s", 1e6),
+    "max_stress": _Show("largest bending stress", "MPa", 1e-6),
+    "overlap": _Show("overlap"),
+    "layers": _Show("layers"),
+    "petal_angle": _Show("petal angle", "deg", _DEG),
+    "pitch": _Show("pitch", "deg", _DEG),
+    "covered_angle": _Show("covered angle", "deg", _DEG),
+    "metric_radius": _Show("metric radius", "mm", 1e3),
+    "room": _Show("radial room", "µm", 1e6),
+    "room_left": _Show("room left", "µm", 1e6),
+    "root_tilt": _Show("root tilt", "deg", _DEG),
+    "free_petal_height": _Show("free petal height", "µm", 1e6),
+    "first_contact_angle": _Show("first contact at", "deg", _DEG),
+    "bending_stiffness": _Show("bending stiffness", "N·mm", 1e3),
+    "compressibility_number": _Show("compressibility number"),
+    "stable": _Show("stable"),
+    "growth_rate": _Show("growth rate", "1/s"),
+    "growth_frequency": _Show("growth frequency", "Hz", 0.5 / math.pi),
+    "branch": _Show("branch"),
+    "branches_known": _Show("branches known"),
+    "jump": _Show("jump"),
+    "residual": _Show("residual"),
+    "iterations": _Show("iterations"),
+    "factorizations": _Show("factorisations"),
+    "wall_time": _Show("time", "s"),
+}
+
+
+def as_json(record: Record) -> dict[str, float | int | bool | str | None]:
+    """Scalars as the object that ``--json`` prints.
+
+    Parameters
+    ----------
+    record : Record
+        One answer.
+
+    Returns
+    -------
+    dict
+        SI numbers, texts and flags in the schema's order; null for a figure that is not there.
+    """
+    reported = record.reported()
+    return {name: _or_null(reported[name]) for name in SCALARS if name in reported}
+
+
+def rows(record: Record) -> list[Row]:
+    """Lines of the printed table, in the units an engineer reads.
+
+    Parameters
+    ----------
+    record : Record
+        One answer.
+
+    Returns
+    -------
+    list of Row
+        Label, value and unit.
+    """
+    reported = record.reported()
+    return [cell(name, reported[name]) for name in _SHOWN if name in reported]
+
+
+def cell(name: str, value: Scalar) -> Row:
+    """Show one scalar, e.g. as a cell of a curve's table.
+
+    Parameters
+    ----------
+    name : str
+        Name in the schema.
+    value : float, int, bool or str
+        Value, SI.
+
+    Returns
+    -------
+    Row
+        Label, value and unit.
+    """
+    shown = _SHOWN.get(name, _Show(name.replace("_", " "), SCALARS[name].units.removeprefix("1")))
+    if isinstance(value, bool):
+        return Row(shown.label, "yes" if value else "no", shown.unit)
+    if isinstance(value, str) or SCALARS[name].kind is Kind.INT:
+        return Row(shown.label, str(value), shown.unit)
+    return Row(shown.label, number(value * shown.factor), shown.unit)
+
+
+def number(value: float) -> str:
+    """Write a number with four significant digits, plainly where that is readable, else with an exponent."""
+    if math.isnan(value):
+        return ABSENT
+    size = abs(value)
+    if size == 0.0 or math.isinf(size):
+        return f"{value + 0.0:g}"  # adding 0.0 turns -0.0 into 0.0
+    if 1e3 <= size < 1e7:
+        return f"{value:.0f}"
+    if 1e-3 <= size < 1e3:
+        return f"{Decimal(f'{value:.3e}'):f}"  # four digits, trailing zeros kept
+    return f"{value:.2e}"
+
+
+def _or_null(value: Scalar) -> Scalar | None:
+    return None if isinstance(value, float) and not math.isfinite(value) else value

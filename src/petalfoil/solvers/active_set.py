@@ -1,0 +1,155 @@
+"""Newton on a set of closed gaps, which it corrects as it goes: exact zeros, exact reactions, cheap warm starts.
+
+A closed gap whose reaction pulls is opened, an open gap that has gone negative is closed. Near an answer this needs
+a few steps; far from it the set advances a node a step and may cycle, so a set that returns ends the attempt and the
+caller takes the interior point instead.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.solvers.cone import ConeProblem, Linearized
+from petalfoil.solvers.linear import Factor, LinearSolver
+from petalfoil.solvers.ties import Ties, tie
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+class Outcome(Enum):
+    """How an attempt ended."""
+
+    CONVERGED = "converged"
+    CYCLED = "the set of closed gaps returned to an earlier one"
+    STEPS = "the steps ran out"
+    OVERDETERMINED = "closed gaps hold a chain at both ends"
+    PENETRATED = "a gap went far below zero"
+    SINGULAR = "the reduced system has no solution"
+
+
+@dataclass(frozen=True)
+class ActiveOptions:
+    """Numbers of the method."""
+
+    tolerance: float = 1e-8
+    """Largest scaled residual of an answer."""
+    sign: float = 1e-8
+    """Gaps and reactions (over their weight) that miss zero by less are zero."""
+    max_steps: int = 12
+    boundary_x: float = 0.8
+    """Fraction of the way to zero for unknowns that must stay positive."""
+
+
+@dataclass(frozen=True)
+class Closed:
+    """An answer: unknowns, reactions and closed gaps, with the last factorised tangent for predictions.
+
+    Attributes
+    ----------
+    x : (n,) array
+        Unknowns.
+    lam : (m,) array
+        Reactions, zero on open gaps.
+    closed : (m,) bool array
+        Gaps that are closed.
+    residual : float
+        Largest scaled residual.
+    ties, factor
+        Closed gaps as ties, and the reduced tangent near the answer.
+    """
+
+    x: Array
+    lam: Array
+    closed: Mask
+    residual: float
+    ties: Ties = field(repr=False)
+    factor: Factor | None = field(repr=False)
+
+
+def active_set(
+    problem: ConeProblem, x: Array, closed: Mask, solver: LinearSolver, options: ActiveOptions
+) -> tuple[Closed | None, Outcome]:
+    """Newton from `x` with the gaps `closed`, correcting the set, until residual and signs agree."""
+    seen: set[bytes] = set()
+    factor: Factor | None = None
+    state = evaluate(problem, x, closed)
+    for step in range(options.max_steps + 1):
+        if isinstance(state, Outcome):
+            return None, state
+        wanted = revise(problem, state, options) if step else state.closed
+        unchanged = bool(np.array_equal(wanted, state.closed))
+        if unchanged and state.residual <= options.tolerance and settled(problem, state, options):
+            return Closed(state.x, state.lam, state.closed, state.residual, state.ties, factor), Outcome.CONVERGED
+        if not unchanged:
+            key = np.packbits(wanted).tobytes()
+            if key in seen:
+                return None, Outcome.CYCLED
+            seen.add(key)
+            state = evaluate(problem, state.x, wanted)
+            if isinstance(state, Outcome):
+                return None, state
+        factor = solver.factor(state.ties.reduce(state.line.matrix(np.zeros(len(wanted)))))
+        state = evaluate(problem, newton_step(problem, state, factor, options), wanted)
+    return None, Outcome.STEPS
+
+
+@dataclass(frozen=True)
+class State:
+    """An iterate that closes its closed gaps exactly."""
+
+    x: Array
+    lam: Array
+    closed: Mask
+    residual: float
+    ties: Ties
+    line: Linearized
+    gaps: Array
+
+
+DEEP = -0.5
+"""A gap this far below zero (in units of the reference film) is no small correction any more."""
+
+
+def evaluate(problem: ConeProblem, x: Array, closed: Mask) -> State | Outcome:
+    """Close the gaps `closed` exactly, and find residual and reactions there."""
+    ties = tie(problem.G, closed)
+    if not ties.determinate:
+        return Outcome.OVERDETERMINED
+    x = x + ties.close(problem.gaps(x)[closed])
+    gaps = problem.gaps(x)
+    kept = x[problem.positive]
+    if np.min(gaps, initial=0.0) < DEEP or np.min(kept, initial=1.0) <= 0.0 or not np.all(np.isfinite(x)):
+        return Outcome.PENETRATED
+    if not problem.admits(x):
+        return Outcome.PENETRATED
+    line = problem.linearize(x)
+    lam = np.zeros(len(closed))
+    lam[closed] = ties.reactions(line.residual)
+    residual = float(np.max(np.abs(line.residual - problem.G.T @ lam) / line.size, initial=0.0))
+    return State(x, lam, closed, residual, ties, line, gaps)
+
+
+def revise(problem: ConeProblem, state: State, options: ActiveOptions) -> Mask:
+    """Keep closed what pushes, close what has gone negative."""
+    pushing = state.lam > -options.sign * problem.weight
+    return np.where(state.closed, pushing, state.gaps < -options.sign)
+
+
+def settled(problem: ConeProblem, state: State, options: ActiveOptions) -> bool:
+    """Signs of gaps and reactions are those of an answer."""
+    return bool(np.array_equal(revise(problem, state, options), state.closed))
+
+
+def newton_step(problem: ConeProblem, state: State, factor: Factor, options: ActiveOptions) -> Array:
+    """The next iterate, damped where unknowns must stay positive."""
+    step = state.ties.spread(factor.solve(-state.ties.gather(state.line.residual)))
+    kept = problem.positive
+    value, change = state.x[kept], step[kept]
+    falling = change < 0.0
+    reach = options.boundary_x * np.min(value[falling] / -change[falling], initial=np.inf)
+    return state.x + min(1.0, float(reach)) * step

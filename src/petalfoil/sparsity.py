@@ -1,0 +1,33 @@
+"""Sparse matrices with a fixed pattern: the places are sorted once, the values are added up at every assembly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+Index = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """Places of the entries of an `n` by `n` matrix; an entry named several times adds up."""
+
+    n: int
+    slot: Index
+    indices: NDArray[np.int32]
+    indptr: NDArray[np.int32]
+
+    @classmethod
+    def of(cls, rows: Index, cols: Index, n: int) -> Pattern:
+        """Sort the places (rows, cols), each of shape (n_entry,), by column."""
+        key, slot = np.unique(cols.astype(np.int64) * n + rows, return_inverse=True)
+        indptr = np.searchsorted(key, np.arange(n + 1, dtype=np.int64) * n)
+        return cls(n, slot, (key % n).astype(np.int32), indptr.astype(np.int32))
+
+    def assemble(self, values: NDArray[np.float64]) -> sp.csc_array:
+        """The matrix with `values` (n_entry,) at the places, in their order."""
+        data = np.bincount(self.slot, values, len(self.indices))
+        return sp.csc_array((data, self.indices, self.indptr), shape=(self.n, self.n))

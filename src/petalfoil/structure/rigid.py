@@ -1,0 +1,31 @@
+"""A rigid bore: the film closes on itself all round. The limit that everything is checked against."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from petalfoil.case import Case
+from petalfoil.mesh.strips import whole_circle
+from petalfoil.physics.contact import no_contacts
+from petalfoil.structure.axis import axial_grid
+from petalfoil.structure.wall import Wall
+
+
+def build(case: Case) -> Wall:
+    """Discretise the plain bore of `case`."""
+    axial = axial_grid(case)
+    film = whole_circle(case.cells_per_pitch, axial)
+    clearance = case.bearing.clearance
+    return Wall(
+        name="rigid",
+        film=film,
+        stiffness=sp.csr_array((0, 0)),
+        film_unknown=np.full(film.shape, -1),
+        load_area=np.zeros(film.shape),
+        rest_film=np.full(film.shape, clearance),
+        contacts=no_contacts(0),
+        node_area=case.bearing.journal_radius * float(np.diff(film.phi)[0]) * float(axial.weight.max()),
+        free_motions=sp.csr_array((0, 0)),
+        support=sp.csr_array((0, 0)),
+    )

@@ -1,0 +1,13 @@
+"""Quantities at the border: ``"25 um"`` comes in as 2.5e-05, and 2.5e-05 goes out as ``"25 µm"``.
+
+Inside the package every number is a float in SI units; text is read here and nowhere else.
+
+- `reading`: text or number → float in SI units; pairs and ranges of the command line.
+- `grammar`: the text of a unit → a pint unit; the only file that knows pint, imported when the first unit is read.
+- `writing`: float → text for a reader.
+"""
+
+from petalfoil.units.reading import parse_pair, parse_quantity, parse_range
+from petalfoil.units.writing import format_quantity
+
+__all__ = ["format_quantity", "parse_pair", "parse_quantity", "parse_range"]

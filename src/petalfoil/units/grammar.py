@@ -1,0 +1,164 @@
+"""The text of a unit, read by a grammar of its own; pint only looks up names and factors.
+
+::
+
+    unit   = factor { ( "*" | "·" | "/" | blank ) factor }
+    factor = ( name | "1" | "(" unit ")" ) [ ( "^" | "**" ) integer | superscript ]
+
+So no text is ever evaluated, and what can be written is what is drawn above. Arithmetic is done in fractions and
+rounded once: 25 µm is exactly the float 2.5e-05.
+"""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import pint
+
+MAX_POWER = 9  # a larger one is a slip, and would make numbers of any length
+
+_TOKEN = re.compile(
+    r"""\s*(?: (?P<name>  °[CF]? | % | [^\W\d_][^\W\d]* )
+             | (?P<power> \*\* | \^ )
+             | (?P<mark>  [*·/()] )
+             | (?P<int>   [+-]?[0-9]+ ) )""",
+    re.VERBOSE,
+)
+_SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺", "0123456789-+")
+_SUPERSCRIPT_RUN = re.compile(r"[⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+")
+_ANGLES = {"radian", "degree", "turn", "revolutions_per_minute", "revolutions_per_second"}
+
+
+class UnitTextError(ValueError):
+    """A unit that cannot be read or converted; the message completes "… <value> …"."""
+
+
+def convert(number: Fraction, text: str, unit: str) -> float:
+    """Convert `number` times the unit written in `text` to the SI unit `unit` (``"1"`` for a plain number)."""
+    import pint
+
+    given = _Reader(text).read()
+    _refuse_lookalikes(given, unit)
+    try:
+        return float(_registry().Quantity(number, given).to("" if unit == "1" else unit).magnitude)
+    except pint.DimensionalityError:
+        raise UnitTextError(f"measures something else ({_dimension(given)})") from None
+    except (pint.PintError, ArithmeticError, ValueError):
+        raise UnitTextError("cannot be converted") from None
+
+
+def _refuse_lookalikes(given: Any, unit: str) -> None:
+    """Refuse units that pint takes for the wanted one although a reader may mean another.
+
+    To pint ``"1000 Hz"`` is 1000 rad/s, where most people mean a thousand turns a second, and ``"30 deg"`` is a plain
+    number.
+    """
+    names = {name for name, _ in _registry().Quantity(1, given).unit_items()}
+    if unit == "rad/s" and given.dimensionality == {"[time]": -1} and names != {"second"} and not names & _ANGLES:
+        raise UnitTextError("is ambiguous: say rpm or rad/s")
+    if unit == "1" and names & _ANGLES:
+        raise UnitTextError("is an angle")
+
+
+def _dimension(given: Any) -> str:
+    """Write the dimension as ``mass length^2 time^-2``; pint's own writing stumbles over fractions."""
+    powers = {name.strip("[]"): float(power) for name, power in given.dimensionality.items()}
+    return " ".join(name if power == 1 else f"{name}^{power:g}" for name, power in powers.items()) or "a plain number"
+
+
+@lru_cache(maxsize=1)
+def _registry() -> pint.UnitRegistry[Fraction]:
+    import pint  # 0.5 s: only those who write units pay for them
+
+    registry: pint.UnitRegistry[Fraction] = pint.UnitRegistry(non_int_type=Fraction)
+    registry.define("@alias turn = rev")
+    return registry
+
+
+class _Reader:
+    """Recursive descent over the grammar drawn at the top of the file."""
+
+    def __init__(self, text: str) -> None:
+        self.tokens = list(_tokens(text))
+        self.at = 0
+
+    def read(self) -> Any:
+        """Return the pint unit of the whole text."""
+        unit = self._product()
+        kind, token = self._peek()
+        if kind != "end":
+            raise UnitTextError(f"has {token!r} where its unit should end")
+        return unit
+
+    def _peek(self) -> tuple[str, str]:
+        return self.tokens[self.at] if self.at < len(self.tokens) else ("end", "")
+
+    def _take(self) -> tuple[str, str]:
+        token = self._peek()
+        self.at += 1
+        return token
+
+    def _product(self) -> Any:
+        unit = self._factor()
+        while True:
+            kind, token = self._peek()
+            if token in ("*", "·", "/"):
+                self.at += 1
+                factor = self._factor()
+                unit = unit / factor if token == "/" else unit * factor
+            elif kind == "name" or token == "(":
+                unit = unit * self._factor()
+            else:
+                return unit
+
+    def _factor(self) -> Any:
+        base = self._base()
+        if self._peek()[0] != "power":
+            return base
+        self.at += 1
+        kind, token = self._take()
+        if kind != "int" or abs(int(token)) > MAX_POWER:
+            raise UnitTextError(
+                f"has the power {token!r}, which is not a whole number from {-MAX_POWER} to {MAX_POWER}"
+            )
+        return base ** int(token)
+
+    def _base(self) -> Any:
+        kind, token = self._take()
+        if kind == "name":
+            return _named(token)
+        if token == "1":
+            return _registry().Unit("")
+        if token != "(":
+            raise UnitTextError(f"has {token!r} where a unit was expected" if token else "lacks a unit at its end")
+        inner = self._product()
+        if self._take()[1] != ")":
+            raise UnitTextError("has a bracket that is not closed")
+        return inner
+
+
+def _tokens(text: str) -> list[tuple[str, str]]:
+    plain = _SUPERSCRIPT_RUN.sub(lambda run: "^" + run.group().translate(_SUPERSCRIPTS), text).rstrip()
+    tokens: list[tuple[str, str]] = []
+    position = 0
+    while position < len(plain):
+        match = _TOKEN.match(plain, position)
+        if match is None:
+            raise UnitTextError(f"has {plain[position:].strip()[:1]!r} where a unit was expected")
+        kind = str(match.lastgroup)
+        tokens.append((kind, match.group(kind)))
+        position = match.end()
+    return tokens
+
+
+def _named(name: str) -> Any:
+    import pint
+
+    try:
+        return _registry().Unit(name)
+    except (pint.PintError, ValueError):
+        raise UnitTextError(f"has the unknown unit {name!r}") from None

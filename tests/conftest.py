@@ -1,0 +1,19 @@
+"""Marks every test by its folder, and fixes what would make two runs differ."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+HERE = Path(__file__).parent
+FOLDERS = ("unit", "contract", "verification", "validation", "regression", "docs")
+
+settings.register_profile("petalfoil", derandomize=True, deadline=None, database=None)
+settings.load_profile("petalfoil")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        folder = item.path.relative_to(HERE).parts[0] if item.path.is_relative_to(HERE) else ""
+        if folder in FOLDERS:
+            item.add_marker(getattr(pytest.mark, folder))

@@ -1,0 +1,48 @@
+"""The package and its help come up at once: nothing heavy is loaded before a verb needs it."""
+
+from __future__ import annotations
+
+import resource
+import subprocess
+import sys
+
+import pytest
+
+BUDGET = 1.0  # [s] of CPU
+HEAVY = ("xarray", "matplotlib", "pandas", "dask", "pint", "netCDF4")
+
+IMPORT = "import petalfoil"
+HELP = """
+import sys
+from petalfoil.cli import main
+sys.argv = ["petalfoil", *{arguments}]
+try:
+    main()
+except SystemExit as end:
+    assert end.code == 0, end.code
+"""
+SPEAK = "\nimport sys; sys.stderr.write(' '.join(sorted({module.partition('.')[0] for module in sys.modules})))"
+
+STARTS = {
+    "import": IMPORT,
+    "--help": HELP.format(arguments=["--help"]),
+    "--version": HELP.format(arguments=["--version"]),
+    "solve --help": HELP.format(arguments=["solve", "--help"]),
+}
+
+
+@pytest.mark.parametrize("start", STARTS)
+def test_nothing_heavy_is_loaded(start: str) -> None:
+    code = STARTS[start] + SPEAK
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    loaded = set(done.stderr.split())
+    assert "petalfoil" in loaded
+    assert loaded.isdisjoint(HEAVY)
+
+
+@pytest.mark.parametrize("arguments", [["-c", IMPORT], ["-m", "petalfoil", "--help"], ["-m", "petalfoil", "--version"]])
+def test_start_takes_less_than_a_second_of_cpu(arguments: list[str]) -> None:
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run([sys.executable, *arguments], capture_output=True, check=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime < BUDGET

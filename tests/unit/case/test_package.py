@@ -1,0 +1,121 @@
+import math
+
+import numpy as np
+import pytest
+
+from petalfoil.case import Case, package_of
+from petalfoil.errors import PackageError
+from tests.cases import case
+
+
+def test_the_paper_s_package() -> None:
+    paper = case("paper_n8")
+    assert paper.petals is not None
+    package = package_of(paper.bearing, paper.petals)
+    assert paper.package == package
+    assert package.metric_radius == pytest.approx(25.912e-3, rel=1e-14)
+    assert package.petal_angle == pytest.approx(45 / 25.912, rel=1e-14)
+    assert package.pitch == pytest.approx(math.pi / 4, rel=1e-15)
+    assert package.overlap == pytest.approx(45 / 25.912 / (math.pi / 4), rel=1e-14)
+    assert package.covered_angle == pytest.approx(45 / 25.912 - math.pi / 4, rel=1e-14)
+    assert package.layers == 3
+
+
+@pytest.mark.parametrize(("name", "layers"), [("paper_n6", 2), ("paper_n8", 3), ("paper_n10", 3), ("rig", 2)])
+def test_layers(name: str, layers: int) -> None:
+    package = case(name).package
+    assert package is not None
+    assert package.layers == layers
+    assert layers - 1 <= package.overlap < layers
+
+
+def test_room() -> None:
+    paper = case("paper_n8", **{"operation.eccentricity": (3e-5, -4e-5)})
+    assert paper.room == pytest.approx(1e-3 - 5e-5, rel=1e-12)
+    assert paper.room_left == pytest.approx(1e-3 - 5e-5 - 3 * 0.176e-3 - 1e-6, rel=1e-12)
+    assert case("plain_journal").room_left == pytest.approx(14e-6, rel=1e-9)
+
+
+def test_a_package_is_refused_exactly_where_it_no_longer_fits() -> None:
+    paper = case("paper_n8", **{"operation.eccentricity": (0.0, 0.0)})
+    left = paper.room_left
+    fits = paper.replace(**{"operation.eccentricity": (0.0, -0.999999 * left)})
+    assert fits.room_left > 0.0
+    with pytest.raises(PackageError, match="too much") as caught:
+        paper.replace(**{"operation.eccentricity": (0.0, -(left + 2e-6))})
+    assert caught.value.key == "operation.eccentricity"
+    assert "2 µm too much" in str(caught.value)
+
+
+def test_too_thick_for_the_clearance_is_no_matter_of_the_journal() -> None:
+    with pytest.raises(PackageError, match="123 µm too much") as caught:
+        case("paper_n8", **{"operation.eccentricity": (0, 0), "petals.thickness": "0.374 mm"})
+    assert caught.value.key == "petals"
+
+
+def test_overlap_is_refused_exactly_at_one_pitch() -> None:
+    paper = case("paper_n8")
+    assert paper.package is not None
+    pitch_length = paper.package.metric_radius * paper.package.pitch
+    longer = paper.replace(**{"petals.arc_length": pitch_length * 1.001})
+    assert longer.package is not None
+    assert longer.package.overlap == pytest.approx(1.001, rel=1e-12)
+    for arc_length in (pitch_length, pitch_length * (1 + 1e-14)):
+        with pytest.raises(PackageError, match="do not overlap"):
+            paper.replace(**{"petals.arc_length": arc_length})
+    with pytest.raises(PackageError, match="1 mm short"):
+        paper.replace(**{"petals.arc_length": pitch_length - 1e-3})
+
+
+def test_the_coating_adds_to_the_thickness_but_not_to_the_stiffness() -> None:
+    bare = case("paper_n8").petals
+    coated = case("paper_n8", **{"petals.coating": "20 um"}).petals
+    assert bare is not None
+    assert coated is not None
+    assert coated.total_thickness == pytest.approx(0.196e-3, rel=1e-14)
+    assert coated.bending_stiffness == bare.bending_stiffness
+    assert bare.bending_stiffness == pytest.approx(2e11 * 0.176e-3**3 / (12 * 0.91), rel=1e-14)
+
+
+def test_free_radius_of_an_arc_and_of_its_own_table_agree() -> None:
+    paper = case("paper_n8")
+    arc = paper.package
+    assert arc is not None
+    phi = np.linspace(0.0, arc.petal_angle * 1.0001, 400)
+    rows = list(zip(phi.tolist(), arc.free_radius(phi).tolist(), strict=True))
+    measured = paper.replace(**{"petals.free_shape": rows}).package
+    assert measured is not None
+    assert math.isnan(measured.root_tilt)
+    at = np.linspace(0.0, arc.petal_angle, 57)
+    # A monotone interpolant is level at the lowest row, so there it is off by at most the sagitta of one interval.
+    step = phi[1] - phi[0]
+    sagitta = float(np.max(np.abs(np.diff(arc.free_radius(phi), 2)))) / 8.0
+    error = np.abs(measured.free_radius(at) - arc.free_radius(at))
+    lowest = phi[np.argmin(arc.free_radius(phi))]
+    assert np.all(error < sagitta)
+    np.testing.assert_allclose(error[np.abs(at - lowest) > 2 * step], 0.0, atol=1e-9)
+
+
+def test_a_measured_shape_may_span_more_than_an_arc() -> None:
+    long = {"petals.arc_length": "75 mm", "petals.thickness": "0.1 mm"}
+    with pytest.raises(PackageError, match=r"2\.4 rad"):
+        case("paper_n8", **long)
+    rows = [(angle, 25.9e-3) for angle in np.linspace(0.0, 3.0, 7)]
+    measured = case("paper_n8", **long, **{"petals.free_shape": rows}).package
+    assert measured is not None
+    assert measured.petal_angle > 2.4
+
+
+def test_several_problems_come_in_one_message() -> None:
+    with pytest.raises(PackageError) as caught:
+        case("paper_n8", **{"petals.count": 32, "petals.bend_radius": "20 mm"})
+    message = str(caught.value)
+    assert "2 problems" in message
+    assert "9 layers of 176 µm and the film floor 1 µm need 1.585 mm" in message
+    assert "petals.bend_radius: a chordal petal" in message
+
+
+def test_a_plain_bearing_has_no_package() -> None:
+    plain = case("plain_journal")
+    assert isinstance(plain, Case)
+    assert plain.package is None

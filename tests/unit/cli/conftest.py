@@ -1,0 +1,121 @@
+"""A command line whose analyses are played by the test."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner, Result
+
+import petalfoil.analysis
+from petalfoil.cli.app import app
+from petalfoil.results import Record, Scalar
+
+CASE = """
+title = "Plain [b]bearing[/b]"
+
+[bearing]
+journal_radius = "25 mm"
+bushing_radius = "25.05 mm"
+length = "50 mm"
+
+[gas]
+viscosity = "18.5 uPa*s"
+ambient_pressure = "1 bar"
+
+[operation]
+speed = "8000 rad/s"
+
+[model]
+kind = "flat"
+"""
+
+
+def point(x: float, y: float, *, converged: bool = True, analysis: str = "solve", **more: Scalar) -> Record:
+    """Give a record whose figures follow from the position."""
+    scalars: dict[str, Scalar] = {
+        "speed": 8000.0,
+        "eccentricity_x": x,
+        "eccentricity_y": y,
+        "load_capacity": 1e6 * math.hypot(x, y),
+        "min_film": 5e-6,
+        "contact_total": 12.5,
+        "iterations": 7,
+        "converged": converged,
+        "status": "converged" if converged else "the film collapsed",
+    }
+    return Record(analysis=analysis, scalars=scalars | more, title="Plain [b]bearing[/b]", case_toml=CASE)
+
+
+class Played:
+    """The analyses as the test plays them; keeps what they were called with."""
+
+    def __init__(self) -> None:
+        self.calls: list[tuple[str, tuple[Any, ...], dict[str, Any]]] = []
+        self.failing: set[int] = set()
+        self.after: dict[int, Callable[[], None]] = {}
+        self.single: Callable[[], Record] = lambda: point(0.0, -1e-4)
+
+    def run(self, name: str) -> Callable[..., Record]:
+        def play(*args: Any, **kwargs: Any) -> Record:
+            self.calls.append((name, args, kwargs))
+            return self.single()
+
+        return play
+
+    def iterate(self, name: str) -> Callable[..., Iterator[Record]]:
+        def play(case: Any, distances: Any = (0.0,), **kwargs: Any) -> Iterator[Record]:
+            self.calls.append((name, (case, distances), kwargs))
+            angle = kwargs["direction"]
+            for index, distance in enumerate(distances):
+                self.after.get(index, lambda: None)()
+                x, y = distance * math.cos(angle), distance * math.sin(angle)
+                more = {"starting_torque": 0.25} if name == "static" else {}
+                yield point(x, y, converged=index not in self.failing, analysis=name, **more)
+
+        return play
+
+
+def install(plays: Played, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the command line find the player where it looks for the analyses."""
+    for module, verb, function in (
+        ("equilibrium", "run", plays.run("solve")),
+        ("check", "run", plays.run("check")),
+        ("load_curve", "iterate", plays.iterate("curve")),
+        ("static", "iterate", plays.iterate("static")),
+    ):
+        fake = ModuleType(f"petalfoil.analysis.{module}")
+        setattr(fake, verb, function)
+        monkeypatch.setattr(petalfoil.analysis, module, fake, raising=False)
+
+
+@pytest.fixture
+def played(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory) -> Played:
+    """Replace the analyses, and keep the logs of faults out of the machine's temporary folder."""
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path_factory.mktemp("logs")))
+    plays = Played()
+    install(plays, monkeypatch)
+    return plays
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> str:
+    """Give the name of a good case file."""
+    path = tmp_path / "case.toml"
+    path.write_text(CASE, encoding="utf-8")
+    return str(path)
+
+
+@pytest.fixture
+def cli() -> Callable[..., Result]:
+    """Run the command line in this process."""
+    runner = CliRunner()
+
+    def run(*arguments: str) -> Result:
+        return runner.invoke(app, list(arguments), prog_name="petalfoil")
+
+    return run

@@ -1,0 +1,143 @@
+"""A curve keeps what is finished, whatever happens."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from petalfoil.cli.autosave import MAX_SHARE, PERIOD, Autosave
+from petalfoil.cli.series import collect
+from petalfoil.errors import StoreError
+from petalfoil.results import Record
+from petalfoil.results.store import load
+
+from .conftest import point
+
+ROOT = Path(__file__).parents[3]
+THREE = ("--eccentricity", "0 um : 200 um : 3")
+
+
+def interrupt() -> None:
+    """Do what Ctrl-C does."""
+    raise KeyboardInterrupt
+
+
+def fail() -> None:
+    """Do what a mistake in the program does."""
+    raise ZeroDivisionError
+
+
+@pytest.mark.parametrize("verb", ["curve", "static"])
+def test_interrupted_curve_keeps_its_finished_points(cli, played, case, tmp_path: Path, verb: str) -> None:
+    out = tmp_path / "curve.nc"
+    played.after[2] = interrupt
+    result = cli(verb, case, *THREE, "--json", "--out", str(out))
+    assert result.exit_code == 130
+    assert result.stderr == "interrupted: 2 of 3 points are finished and kept\n"
+    answer = json.loads(result.stdout)
+    assert (len(answer["points"]), answer["interrupted"]) == (2, True)
+    stored = load(out)
+    assert (stored.sizes["point"], stored.attrs["analysis"]) == (2, verb)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["case.toml", "curve.nc"]
+
+
+CTRL_C = """
+import os, signal, sys
+import pytest
+from tests.unit.cli.conftest import Played, install
+from petalfoil.cli import main
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # whoever runs the tests may have it ignored
+plays = Played()
+plays.after[2] = lambda: os.kill(os.getpid(), signal.SIGINT)
+install(plays, pytest.MonkeyPatch())
+main()
+"""
+
+
+def test_ctrl_c_of_a_process(case, tmp_path: Path) -> None:
+    out = tmp_path / "curve.nc"
+    command = [sys.executable, "-c", CTRL_C, "curve", case, *THREE, "--out", str(out)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (130, "interrupted: 2 of 3 points are finished and kept\n")
+    assert load(out).sizes["point"] == 2
+
+
+def test_curve_interrupted_before_its_first_point(cli, played, case, tmp_path: Path) -> None:
+    out = tmp_path / "curve.nc"
+    played.after[0] = interrupt
+    result = cli("curve", case, *THREE, "--json", "--out", str(out))
+    assert (result.exit_code, result.stdout, result.stderr) == (130, "", "interrupted: nothing was finished\n")
+    assert not out.exists()
+
+
+def test_a_fault_in_the_middle_keeps_the_finished_points(cli, played, case, tmp_path: Path) -> None:
+    out = tmp_path / "curve.nc"
+    played.after[2] = fail
+    assert cli("curve", case, *THREE, "--out", str(out)).exit_code == 1
+    assert load(out).sizes["point"] == 2
+
+
+class Clock:
+    """A clock the test turns."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def test_file_is_rewritten_as_points_finish(tmp_path: Path) -> None:
+    clock, out, seen = Clock(), tmp_path / "curve.nc", []
+
+    def points() -> Iterator[Record]:
+        for index in range(6):
+            clock.now += 0.4 * PERIOD
+            yield point(0.0, -1e-6 * index)
+            seen.append(load(out).sizes["point"] if out.exists() else 0)
+
+    answer = collect(points(), 6, Autosave(out, "curve", clock), lambda done, text: None)
+    assert len(answer.records) == 6
+    assert seen == [0, 0, 3, 3, 3, 6]
+
+
+def test_slow_writing_is_done_less_often(tmp_path: Path, monkeypatch) -> None:
+    clock, written = Clock(), []
+
+    def slow(ds, path) -> None:
+        clock.now += 3.0
+        written.append(clock.now)
+
+    monkeypatch.setattr("petalfoil.results.store.save", slow)
+    autosave = Autosave(tmp_path / "curve.nc", "curve", clock)
+    for _ in range(100):
+        clock.now += 1.0
+        autosave.offer([point(0.0, 0.0)])
+    gaps = [later - earlier for earlier, later in itertools.pairwise(written)]
+    assert len(gaps) > 1
+    assert all(gap >= 3.0 / MAX_SHARE for gap in gaps)
+
+
+def test_a_file_that_cannot_be_rewritten_does_not_end_the_run(tmp_path: Path, monkeypatch, capsys) -> None:
+    clock = Clock()
+
+    def refuse(ds, path) -> None:
+        raise StoreError("disk full")
+
+    monkeypatch.setattr("petalfoil.results.store.save", refuse)
+    autosave = Autosave(tmp_path / "curve.nc", "curve", clock)
+    clock.now += PERIOD
+    autosave.offer([point(0.0, 0.0)])
+    assert capsys.readouterr().err == "Warning: disk full; the run goes on and tries again\n"
+
+
+def test_without_a_file_nothing_is_written(tmp_path: Path) -> None:
+    Autosave(None, "curve").flush([point(0.0, 0.0)])
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,40 @@
+"""The two doors to the outside, as a process has them."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PETALFOIL = [sys.executable, "-m", "petalfoil"]
+
+
+@pytest.mark.parametrize("arguments", [["--version"], ["solve", "--help"]])
+def test_a_reader_that_goes_away_is_no_event(arguments: list[str]) -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    try:
+        done = subprocess.run([*PETALFOIL, *arguments], stdout=writing, stderr=subprocess.PIPE, text=True, check=False)
+    finally:
+        os.close(writing)
+    assert done.stderr == ""
+    assert done.returncode in (1, 141)  # 1 is what the library says that prints the help
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+def test_no_room_for_the_answer_is_said() -> None:
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([*PETALFOIL, "--version"], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith("Error: cannot write to standard output: ")
+    assert done.stderr.count("\n") == 1
+
+
+def test_a_title_the_terminal_cannot_show_is_no_failure() -> None:
+    code = "from petalfoil.cli.streams import accept_any_text, emit; accept_any_text(); emit('e = 5 \\u00b5m\\n')"
+    environment = os.environ | {"PYTHONIOENCODING": "ascii"}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout == "e = 5 ?m\n"

@@ -1,0 +1,89 @@
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from petalfoil import plot
+from petalfoil.errors import ConvergenceError
+from petalfoil.results import Record
+from petalfoil.results.dataset import to_dataset
+from tests.unit.results import factory
+
+
+def part(ax: Axes, gid: str) -> list[object]:
+    return ax.findobj(lambda artist: artist.get_gid() == gid)
+
+
+def test_the_whole_is_true_to_scale_in_millimetres(checked: xr.Dataset) -> None:
+    left = plot.package(checked).axes[0]
+    assert left.get_aspect() == 1.0
+    assert left.get_xlabel() == "x [mm]"
+    outline = part(left, "petal 3")[0].get_xy()[:-1]
+    radius = checked["radius"].values[3, :, 0] * 1e3
+    expected = np.concatenate([radius - 0.088, radius[::-1] + 0.088])
+    np.testing.assert_allclose(np.hypot(*outline.T), expected, rtol=1e-12)
+    np.testing.assert_allclose(np.hypot(*part(left, "journal")[0].get_xy().T), 25.0, rtol=1e-12)
+
+
+def test_the_unrolled_petal_shows_free_and_assembled_shape(checked: xr.Dataset) -> None:
+    right = plot.package(checked).axes[1]
+    (free,) = [line for line in right.lines if line.get_label() == "petal, free"]
+    np.testing.assert_allclose(free.get_xdata(), np.degrees(checked["phi"].values), rtol=1e-12)
+    np.testing.assert_allclose(free.get_ydata(), checked["free_radius"].values * 1e3, rtol=1e-12)
+    faces = part(right, "petal 0")[0].get_paths()[0].vertices
+    radius = checked["radius"].values[0, :, 0] * 1e3
+    assert faces[:, 1].max() == pytest.approx((radius + 0.088).max(), rel=1e-12)
+    assert faces[:, 1].min() == pytest.approx((radius - 0.088).min(), rel=1e-12)
+    low, high = right.get_ylim()
+    assert low < free.get_ydata().min()
+    assert 26.0 < high
+    assert right.get_ylabel() == "radius [mm]"
+
+
+def test_neighbours_that_pass_the_window_are_drawn_across_the_turn(checked: xr.Dataset) -> None:
+    right = plot.package(checked).axes[1]
+    assert len(part(right, "petal 7")) == 1  # its tip lies under the first petal's root, a turn away
+    assert len(part(right, "petal 1")) == 1
+    assert len(part(right, "petal 4")) == 0
+
+
+def test_the_stretch_it_states_is_the_one_it_draws(checked: xr.Dataset) -> None:
+    fig = plot.package(checked)
+    right = fig.axes[1]
+    fig.draw_without_rendering()
+    to_pixels = right.transData.transform
+    wide = to_pixels((1.0, 25.0))[0] - to_pixels((0.0, 25.0))[0]
+    high = to_pixels((0.0, 25.0))[1] - to_pixels((0.0, 24.0))[1]
+    drawn = high / (wide / (np.pi / 180 * 26.0))
+    stated = float(right.get_title().partition("×")[2])
+    assert stated == pytest.approx(drawn, rel=0.05)  # two digits
+
+
+def test_the_title_tells_the_derived_figures(checked: xr.Dataset, texts: Callable[[Figure], str]) -> None:
+    said = texts(plot.package(checked))
+    assert "overlap 1.77 · 2 layers · radial room 1000 µm · 647 µm left · Λ = 5.55" in said
+    assert "free petal meets the journal" in said
+
+
+def test_a_free_petal_that_never_meets_the_journal_has_no_mark(
+    checked: xr.Dataset, texts: Callable[[Figure], str]
+) -> None:
+    said = texts(plot.package(checked.assign(first_contact_angle=((), np.nan))))
+    assert "free petal meets the journal" not in said
+
+
+def test_a_plain_bearing_has_journal_and_bushing_only(texts: Callable[[Figure], str]) -> None:
+    geometry = {name: value for name, value in factory.GEOMETRY.items() if name != "petal_thickness"}
+    given = {"eccentricity_x": 0.0, "eccentricity_y": 0.0, "room": 1e-3, "compressibility_number": 5.55}
+    fig = plot.package(to_dataset(Record(analysis="check", scalars={**geometry, **given}, title="Plain")))
+    assert "radial room 1000 µm · Λ = 5.55" in texts(fig)
+    assert part(fig.axes[1], "journal")
+    assert part(fig.axes[1], "bushing")
+
+
+def test_a_package_that_did_not_converge_is_not_drawn(checked: xr.Dataset) -> None:
+    with pytest.raises(ConvergenceError):
+        plot.package(checked.assign(converged=((), np.False_)))

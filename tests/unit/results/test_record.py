@@ -1,0 +1,66 @@
+import math
+
+import numpy as np
+import pytest
+
+from petalfoil.results import Record
+from tests.unit.results import factory
+
+
+def test_an_unknown_scalar_is_refused_with_the_nearest_name() -> None:
+    with pytest.raises(ValueError, match=r"no scalar 'load_capacty'.*Did you mean 'load_capacity'"):
+        Record(analysis="solve", scalars={"load_capacty": 1.0})
+
+
+def test_unknown_fields_and_coordinates_are_refused() -> None:
+    with pytest.raises(ValueError, match="no field 'presure'"):
+        Record(analysis="solve", scalars={}, fields={"presure": np.zeros(3)})
+    with pytest.raises(ValueError, match="no coordinate 'theta'"):
+        Record(analysis="solve", scalars={}, coords={"theta": np.zeros(3)})
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("speed", "fast"),
+        ("speed", True),
+        ("converged", 1),
+        ("iterations", 2.0),
+        ("iterations", True),
+        ("status", 0),
+        ("branch", None),
+    ],
+)
+def test_a_value_of_another_type_is_refused(name: str, value: object) -> None:
+    with pytest.raises(ValueError, match=f"scalar '{name}' must be"):
+        Record(analysis="solve", scalars={name: value})
+
+
+def test_numpy_scalars_come_back_as_plain_python() -> None:
+    record = Record(
+        analysis="solve",
+        scalars={"speed": np.float64(2.0), "iterations": np.int64(3), "converged": np.True_, "force_x": 4},
+    )
+    reported = record.reported()
+    assert [type(value) for value in reported.values()] == [float, int, bool, float]
+    assert reported == {"speed": 2.0, "iterations": 3, "converged": True, "force_x": 4.0}
+
+
+def test_a_field_of_another_shape_is_refused() -> None:
+    good = factory.solved()
+    turned = good.fields["pressure"].transpose(1, 0, 2)
+    with pytest.raises(ValueError, match=r"'pressure' must have shape \(8, 33, 1\)"):
+        Record(analysis="solve", scalars={}, fields={"pressure": turned}, coords=good.coords)
+    with pytest.raises(ValueError, match="needs the coordinate 'petal'"):
+        Record(analysis="solve", scalars={}, fields={"pressure": turned})
+
+
+def test_figures_of_a_state_that_did_not_converge_are_withheld() -> None:
+    reported = factory.failed().reported()
+    assert math.isnan(reported["load_capacity"])
+    assert math.isnan(reported["force_y"])
+    assert reported["stable"] is False
+    assert reported["eccentricity_y"] == -300e-6
+    assert reported["status"] == "the step length fell below its limit"
+    assert reported["iterations"] == 18
+    assert reported["journal_radius"] == 25e-3

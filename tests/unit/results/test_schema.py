@@ -1,0 +1,44 @@
+import subprocess
+import sys
+
+import pytest
+
+from petalfoil.results.schema import COORDINATES, FIELDS, SCALARS, VARIABLES, Kind, Role
+
+SOLVE_KEYS = """
+    speed eccentricity_x eccentricity_y force_x force_y load_capacity attitude_angle film_force_x film_force_y
+    contact_force_x contact_force_y contact_total contact_share min_film max_pressure friction_torque power_loss
+    side_leakage max_stress residual iterations factorizations wall_time converged status""".split()
+
+
+@pytest.mark.parametrize("name", VARIABLES)
+def test_every_variable_explains_itself(name: str) -> None:
+    variable = VARIABLES[name]
+    assert variable.long_name
+    assert variable.symbol
+    assert bool(variable.units) == (
+        variable.kind in (Kind.FLOAT, Kind.INT)
+    )  # text and flags have no unit, numbers have one
+    assert set(variable.dims) <= {"petal", "phi", "phi_exposed", "z"}
+
+
+def test_the_tables_do_not_share_a_name() -> None:
+    assert len(VARIABLES) == len(COORDINATES) + len(FIELDS) + len(SCALARS)
+
+
+def test_the_keys_of_solve_are_declared_as_scalars() -> None:
+    assert set(SOLVE_KEYS) <= set(SCALARS)
+    assert all(SCALARS[name].dims == () for name in SCALARS)
+
+
+def test_no_answer_is_a_whole_number() -> None:
+    """An answer that is not there must be able to say so, and a whole number has no NaN."""
+    assert [
+        name for name, variable in VARIABLES.items() if variable.role is Role.ANSWER and variable.kind is Kind.INT
+    ] == []
+
+
+def test_results_does_not_load_xarray_until_asked() -> None:
+    code = "import sys, petalfoil.results, petalfoil.results.summary, petalfoil.results.atomic; print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert {"xarray", "netCDF4", "pandas", "matplotlib"} & set(run.stdout.split()) == set()

@@ -1,0 +1,76 @@
+import json
+import math
+
+import numpy as np
+import pytest
+
+from petalfoil.results import Record, summary
+from petalfoil.results.schema import SCALARS
+from tests.unit.results import factory
+
+
+def test_json_holds_every_scalar_in_si_and_nothing_else() -> None:
+    record = factory.solved()
+    given = summary.as_json(record)
+    assert set(given) == set(record.scalars)
+    assert list(given) == [name for name in SCALARS if name in given]
+    assert given["speed"] == 8000.0
+    assert given["eccentricity_y"] == -100e-6
+    assert given["converged"] is True
+    assert json.loads(json.dumps(given, allow_nan=False)) == given
+
+
+def test_json_is_null_where_a_figure_is_missing_or_infinite() -> None:
+    given = summary.as_json(
+        Record(analysis="solve", scalars={"min_film": float("nan"), "growth_rate": np.float64("inf"), "force_x": 0.0})
+    )
+    assert given == {"force_x": 0.0, "min_film": None, "growth_rate": None}
+
+
+def test_json_of_a_failed_state_reports_no_figure_as_an_answer() -> None:
+    given = summary.as_json(factory.failed())
+    assert given["load_capacity"] is None
+    assert given["converged"] is False
+
+
+def test_rows_are_in_the_units_an_engineer_reads() -> None:
+    rows = {row.label: (row.value, row.unit) for row in summary.rows(factory.solved())}
+    assert rows["speed"] == ("76394", "rpm")
+    assert rows["displacement y"] == ("-100.0", "µm")
+    assert rows["load capacity"] == ("25.00", "N")
+    assert rows["attitude angle"] == ("20.00", "deg")
+    assert rows["side leakage"] == ("1.200", "mg/s")
+    assert rows["largest bending stress"] == ("150.0", "MPa")
+    assert rows["status"] == ("converged", "")
+
+
+def test_rows_show_a_dash_for_a_missing_figure() -> None:
+    rows = {row.label: row.value for row in summary.rows(factory.failed())}
+    assert rows["load capacity"] == summary.ABSENT
+    assert rows["status"] == "the step length fell below its limit"
+
+
+def test_a_cell_of_a_name_without_a_unit_of_its_own_is_shown_in_si() -> None:
+    assert summary.cell("mass_balance", 2e-12) == ("mass balance", "2.00e-12", "")
+    assert summary.cell("film_force_x", 1.0) == ("film force x", "1.000", "N")
+    assert summary.cell("stable", True) == ("stable", "yes", "")
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (-0.0, "0"),
+        (1.0, "1.000"),
+        (9.99996, "10.00"),
+        (-0.0012344, "-0.001234"),
+        (123.46, "123.5"),
+        (76394.4, "76394"),
+        (1.2e-9, "1.20e-09"),
+        (3.4e9, "3.40e+09"),
+        (math.inf, "inf"),
+        (math.nan, "-"),
+    ],
+)
+def test_numbers_have_four_significant_digits(value: float, text: str) -> None:
+    assert summary.number(value) == text

@@ -1,0 +1,208 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from petalfoil.errors import PetalfoilError, UnitError, UsageError
+from petalfoil.units import parse_pair, parse_quantity, parse_range
+from petalfoil.units.reading import shown
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "expected"),
+    [
+        ("25 um", "m", 25e-6),
+        ("25um", "m", 2.5e-05),
+        ("25 µm", "m", 2.5e-05),
+        ("25 μm", "m", 2.5e-05),
+        ("0.176 mm", "m", 1.76e-4),
+        (" 1e-3m ", "m", 1e-3),
+        ("1 in", "m", 0.0254),
+        ("-100 um", "m", -1e-4),
+        ("−100 um", "m", -1e-4),
+        (".5 mm", "m", 5e-4),
+        ("+5. mm", "m", 5e-3),
+        ("0.025", "m", 0.025),
+        ("200 GPa", "Pa", 2e11),
+        ("1 bar", "Pa", 1e5),
+        ("18.5 uPa*s", "Pa*s", 1.85e-05),
+        ("18.5 uPa s", "Pa*s", 1.85e-05),
+        ("1.85e-5 kg/(m s)", "Pa*s", 1.85e-05),
+        ("1.85e-5 kg m⁻¹ s^-1", "Pa*s", 1.85e-05),
+        ("8000 rad/s", "rad/s", 8000.0),
+        ("8000 1/s", "rad/s", 8000.0),
+        ("8000 s⁻¹", "rad/s", 8000.0),
+        ("20 degC", "K", 293.15),
+        ("20 °C", "K", 293.15),
+        ("293.15 K", "K", 293.15),
+        ("287.05 J/(kg*K)", "J/(kg*K)", 287.05),
+        ("287.05 J/kg/K", "J/(kg*K)", 287.05),
+        ("1 kgf", "N", 9.80665),
+        ("5 %", "1", 0.05),
+        ("0.3", "1", 0.3),
+    ],
+)
+def test_a_text_becomes_the_float_nearest_to_it(text: str, unit: str, expected: float) -> None:
+    assert parse_quantity(text, unit) == expected
+
+
+@pytest.mark.parametrize("text", ["60000 rpm", "60000 rev/min", "1000 rps", "1000 turn/s", "360000 deg/s"])
+def test_turns_are_two_pi(text: str) -> None:
+    assert parse_quantity(text, "rad/s") == pytest.approx(60000 * 2 * math.pi / 60, rel=1e-15)
+
+
+def test_angles() -> None:
+    assert parse_quantity("-90 deg", "rad") == -math.pi / 2
+    assert parse_quantity("45°", "rad") == math.pi / 4
+    assert parse_quantity("0.5 rad", "rad") == 0.5
+    assert parse_quantity("0.5", "rad") == 0.5
+
+
+@pytest.mark.parametrize("value", [0.025, 3, np.float64(0.1), np.float32(0.5), np.int64(7)])
+def test_bare_numbers_are_si(value: float) -> None:
+    parsed = parse_quantity(value, "m")
+    assert parsed == float(value)
+    assert type(parsed) is float
+
+
+@pytest.mark.parametrize(
+    "value",
+    [True, False, None, [1.0], {"value": 1}, 1j, b"1 m", math.nan, math.inf, -math.inf, 10**400, np.array([1.0, 2.0])],
+)
+def test_no_quantity_at_all(value: object) -> None:
+    with pytest.raises(UnitError, match=r"expected a length, such as '25 um', or a bare number in m"):
+        parse_quantity(value, "m")
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "reason"),
+    [
+        ("", "m", "does not begin with a number"),
+        ("um", "m", "does not begin with a number"),
+        ("nan", "m", "does not begin with a number"),
+        ("inf m", "m", "does not begin with a number"),
+        ("1e400", "m", "is not finite"),
+        ("1e400 m", "m", "cannot be converted"),
+        ("1e9999 m", "m", "'9999'"),
+        ("25 parsnips", "m", "unknown unit 'parsnips'"),
+        ("25 kg", "m", "measures something else (mass)"),
+        ("25 m^2", "m", "measures something else (length^2)"),
+        ("1 degC/m", "K", "something else"),
+        ("3 dB", "m", "something else"),
+        ("1 Hz", "rad/s", "ambiguous: say rpm or rad/s"),
+        ("60 1/min", "rad/s", "ambiguous: say rpm or rad/s"),
+        ("30 deg", "1", "is an angle"),
+        ("1 m/", "m", "lacks a unit at its end"),
+        ("1 (m", "m", "a bracket that is not closed"),
+        ("1 m)", "m", "')'"),
+        ("1 m**m", "m", "the power 'm'"),
+        ("1 m^99", "m", "the power '99'"),
+        ("9**9**9**9 m", "m", "'**'"),
+        ("25 um + 3 um", "m", "'+'"),
+        ("1,5 mm", "m", "','"),
+        ("1 __import__('os').abort()", "m", "'_'"),
+        ("1 " + "m " * 100, "m", "too long"),
+    ],
+)
+def test_the_message_says_what_is_wrong(text: str, unit: str, reason: str) -> None:
+    with pytest.raises(UnitError) as caught:
+        parse_quantity(text, unit)
+    assert reason in str(caught.value)
+    assert "expected a" in str(caught.value)
+    assert caught.value.given == text
+    assert "such as" in caught.value.allowed
+
+
+UNIT_LIKE = st.text(alphabet="mskgPauNrdegCKJWrpbar0123456789.eE+-*/^() ·°µ²⁻¹%", max_size=40)
+
+
+@given(st.one_of(st.text(max_size=60), UNIT_LIKE.map("1 ".__add__), UNIT_LIKE))
+@example("1 ((((((((((((((((((((((((((((((((((((((m")
+@example("1 Ym^9 Ym^9 Ym^9 Ym^9 Ym^9 Ym^9 Ym^9 Ym^9")
+@example("1 m\x00")
+@example("1 ٣")
+@example("1 m^\ud800")
+def test_junk_gives_a_finite_float_or_a_unit_error(text: str) -> None:
+    for unit in ("m", "rad/s", "K", "1"):
+        try:
+            number = parse_quantity(text, unit)
+        except UnitError:
+            continue
+        assert math.isfinite(number)
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_numbers_survive_as_text(value: float) -> None:
+    assert parse_quantity(repr(value), "m") == value
+    assert parse_quantity(f"{value!r} m", "m") == value
+
+
+def test_a_pair() -> None:
+    assert parse_pair("0 um, -100 um", "m") == (0.0, -1e-4)
+    assert parse_pair("1e-6,2e-6", "m") == (1e-6, 2e-6)
+
+
+@pytest.mark.parametrize("text", ["", "1 um", "1 um, 2 um, 3 um"])
+def test_no_pair(text: str) -> None:
+    with pytest.raises(UsageError, match="is not a pair"):
+        parse_pair(text, "m")
+
+
+def test_a_pair_with_a_wrong_unit() -> None:
+    with pytest.raises(UnitError, match="mass"):
+        parse_pair("1 um, 2 kg", "m")
+
+
+def test_a_range_includes_both_ends() -> None:
+    points = parse_range("0 um : 280 um : 15", "m")
+    assert points[0] == 0.0
+    assert points[-1] == 2.8e-4
+    np.testing.assert_allclose(points, np.linspace(0.0, 2.8e-4, 15), rtol=1e-14, atol=0.0)
+
+
+def test_a_list_and_a_single_quantity_are_ranges_too() -> None:
+    assert parse_range("0 um, 50 um, 100 um", "m") == [0.0, 5e-5, 1e-4]
+    assert parse_range("100 um", "m") == [1e-4]
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("0 um : 1 um", "start : stop : count"),
+        ("0 um : 1 um : 3 : 4", "start : stop : count"),
+        ("0 um : 1 um : 1", "count"),
+        ("0 um : 1 um : 2.5", "count"),
+        ("0 um : 1 um : -3", "count"),
+        ("0 um : 1 um : many", "count"),
+        ("0 um : 1 um : 99999999999", "count"),
+        ("0 kg : 1 um : 3", "mass"),
+        ("", "does not begin with a number"),
+        ("1 um,,2 um", "does not begin with a number"),
+    ],
+)
+def test_no_range(text: str, reason: str) -> None:
+    with pytest.raises((UsageError, UnitError)) as caught:
+        parse_range(text, "m")
+    assert reason in str(caught.value)
+
+
+@given(st.text(alphabet="0123456789. um:,-e", max_size=30))
+def test_junk_ranges_raise_nothing_else(text: str) -> None:
+    for parse in (parse_range, parse_pair):
+        try:
+            points = parse(text, "m")
+        except PetalfoilError:
+            continue
+        assert all(math.isfinite(point) for point in points)
+
+
+def test_long_values_are_cut_in_messages() -> None:
+    assert shown("x" * 1000) == repr("x" * 60 + "…")
+    assert len(shown(list(range(1000)))) == 61
+    assert shown(10**5000) == "a value of type int"
+    nested: list[object] = []
+    for _ in range(100_000):
+        nested = [nested]
+    assert shown(nested) == "a value of type list"

@@ -1,0 +1,211 @@
+"""Petals and strips alone: elastic problems with gaps that the solvers take, and tables to compare them with."""
+
+import csv
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from petalfoil.mesh.axial import AxialGrid, flat_axis
+from petalfoil.mesh.package import trapezoid
+from petalfoil.mesh.pitch import petal_angles
+from petalfoil.physics.shell import PetalShell
+from petalfoil.solvers.active_set import ActiveOptions, Closed, Outcome, active_set
+from petalfoil.solvers.cone import ConePoint, ConeProblem
+from petalfoil.solvers.interior_point import InteriorOptions, Step, interior_point
+from petalfoil.solvers.linear import LinearSolver
+
+Array = NDArray[np.float64]
+REFERENCE = Path(__file__).parent / "reference"
+
+OVERLAP = 1.77
+"""Overlap of the package's own grid in these tests: two parts of unequal cells in every pitch."""
+
+
+def table(name: str) -> list[dict[str, str]]:
+    """Rows of a reference table by column."""
+    with (REFERENCE / f"{name}.csv").open(encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+# ------------------------------------------------------------------------------------------ grids and shells
+
+
+def uniform_grid(angle: float, cells: int) -> Array:
+    """`cells` equal cells over a petal of `angle` [rad]."""
+    return np.linspace(0.0, angle, cells + 1)
+
+
+def package_grid(angle: float, cells: int) -> Array:
+    """A petal's nodes as the package has them: an overlap of 1.77 pitches, `cells` a pitch."""
+    return petal_angles(angle / OVERLAP, OVERLAP, cells)
+
+
+GRIDS: dict[str, Callable[[float, int], Array]] = {"uniform": uniform_grid, "package": package_grid}
+
+
+def strip_shell(phi: Array, k: float, *, clamped: bool = True, rigidity: float = 1.0) -> PetalShell:
+    """A strip of unit width, metric radius 1 and `R_p = 1/k`; straight, with arc length `phi`, where `k = 0`."""
+    return plate_shell(phi, flat_axis(1.0), k, 0.3, clamped=clamped, rigidity=rigidity)
+
+
+def plate_shell(
+    phi: Array, axial: AxialGrid, k: float, nu: float, *, clamped: bool = True, rigidity: float = 1.0
+) -> PetalShell:
+    """A petal of metric radius 1 and `R_p = 1/k`."""
+    bend_radius = 1.0 / k if k else math.inf
+    return PetalShell(phi, axial, 1.0, bend_radius, rigidity, nu, clamped)
+
+
+def uniform_load(shell: PetalShell) -> Array:
+    """Nodal forces of a unit pressure, shape (node, axial)."""
+    return shell.metric_radius * trapezoid(shell.phi)[:, None] * shell.axial.weight[None, :]
+
+
+def bend(shell: PetalShell, force: Array) -> Array:
+    """Deflection of a clamped petal under nodal forces, both of shape (node, axial)."""
+    n_z = force.shape[1]
+    W = np.zeros_like(force)
+    inner = shell.stiffness[n_z:, n_z:]
+    W[1:] = LinearSolver().factor(sp.csc_array(inner)).solve(force[1:].ravel()).reshape(-1, n_z)
+    return W
+
+
+# ------------------------------------------------------------------------------------------ problems with gaps
+
+
+@dataclass(frozen=True)
+class ElasticProblem:
+    """`min x K x / 2 - x f` over `rest + G x >= 0`, in units that make loads and gaps of order one.
+
+    Attributes
+    ----------
+    K : (n, n) sparse
+        Stiffness.
+    force : (n,) array
+        Nodal forces.
+    G : (m, n) sparse
+        Rows hold +-1 on one unknown, or the difference of two.
+    rest : (m,) array
+        Gaps at `x = 0`.
+    weight : (m,) array
+        Weights of the gaps.
+    """
+
+    K: sp.csr_array
+    force: Array
+    G: sp.csr_array
+    rest: Array
+    weight: Array
+
+    @property
+    def positive(self) -> slice:
+        return slice(0, 0)
+
+    def gaps(self, x: Array) -> Array:
+        out: Array = self.rest + self.G @ x
+        return out
+
+    def admits(self, x: Array) -> bool:
+        return True
+
+    def linearize(self, x: Array, shift: Array | None = None) -> "ElasticLine":
+        return ElasticLine(self, x)
+
+
+@dataclass(frozen=True)
+class ElasticLine:
+    """The problem at one point; rows are measured by a unit force, or by the rounding of `K x` where that is more."""
+
+    problem: ElasticProblem
+    x: Array
+
+    @cached_property
+    def residual(self) -> Array:
+        out: Array = self.problem.K @ self.x - self.problem.force
+        return out
+
+    @cached_property
+    def size(self) -> Array:
+        rounding = np.finfo(float).eps * (abs(self.problem.K) @ np.abs(self.x))
+        return np.maximum(1.0, rounding / ActiveOptions().tolerance)
+
+    def matrix(self, theta: Array, rate: float = 0.0) -> sp.csc_array:
+        G = self.problem.G
+        return sp.csc_array(self.problem.K + G.T @ sp.diags_array(theta) @ G)
+
+    def by_shift(self, shift: Array, rate: float = 0.0) -> Array:
+        return np.zeros(len(self.x))
+
+
+def rows_of(n: int, *terms: tuple[Sequence[int] | Array, float]) -> sp.csr_array:
+    """Rows of gaps over `n` unknowns: each term puts its coefficient at its column of every row."""
+    m = len(terms[0][0])
+    rows = np.tile(np.arange(m), len(terms))
+    cols = np.concatenate([np.asarray(columns) for columns, _ in terms])
+    data = np.concatenate([np.full(m, sign) for _, sign in terms])
+    return sp.coo_array((data, (rows, cols)), shape=(m, n)).tocsr()
+
+
+# ------------------------------------------------------------------------------------------ solving them
+
+
+@dataclass(frozen=True)
+class Solved:
+    """An answer and what it took: interior-point steps, then active-set factorisations."""
+
+    x: Array
+    lam: Array
+    closed: NDArray[np.bool_]
+    steps: int
+    polish: int
+
+
+def cold_point(problem: ConeProblem, n: int, pressure: float = 300.0) -> ConePoint:
+    """Undeformed, with slacks wide enough for every gap and reactions on the central path."""
+    gaps = problem.gaps(np.zeros(n))
+    width = max(1.0, -float(gaps.min()))
+    slack = np.maximum(gaps, width)
+    return ConePoint(np.zeros(n), slack, pressure * width * problem.weight / slack)
+
+
+def follow(problem: ConeProblem, start: ConePoint, barrier: float = 1e-5) -> tuple[ConePoint, int]:
+    """Interior point from `start` until barrier, residual and infeasibility are small; the point and the steps."""
+    solver = LinearSolver()
+
+    def watch(_: ConePoint, step: Step) -> bool:
+        return step.barrier < barrier and step.residual < 1e-4 and step.infeasibility < 1e-4
+
+    point, done = interior_point(problem, start, solver, InteriorOptions(), watch)
+    assert done, f"no answer after {solver.counter.factorizations} steps"
+    return point, solver.counter.factorizations
+
+
+def polish(problem: ConeProblem, x: Array, closed: NDArray[np.bool_]) -> tuple[Closed | None, Outcome, int]:
+    """Active set from `x` and `closed`; the answer, how it ended, the factorisations."""
+    solver = LinearSolver()
+    answer, outcome = active_set(problem, x, closed, solver, ActiveOptions())
+    return answer, outcome, solver.counter.factorizations
+
+
+def solve(problem: ConeProblem, n: int, pressure: float = 300.0, barrier: float = 1e-5) -> Solved:
+    """From nothing to exact zeros: interior point, then the active set from where it ends."""
+    point, steps = follow(problem, cold_point(problem, n, pressure), barrier)
+    answer, outcome, count = polish(problem, point.x, point.lam / problem.weight > point.s)
+    assert answer is not None, outcome.value
+    return Solved(answer.x, answer.lam, answer.closed, steps, count)
+
+
+# ------------------------------------------------------------------------------------------ orders
+
+
+def orders(errors: Sequence[float] | Array) -> Array:
+    """Observed orders between errors on grids that double."""
+    size = np.abs(np.asarray(errors))
+    out: Array = np.log2(size[:-1] / size[1:])
+    return out
