@@ -11,6 +11,12 @@ from numpy.typing import NDArray
 Index = NDArray[np.intp]
 
 
+def add_up(places: Index, values: NDArray[np.float64], n: int) -> NDArray[np.float64]:
+    """Add `values` (k,) up at their `places` (k,) in a vector of length `n`."""
+    total: NDArray[np.float64] = np.bincount(places, values, n).astype(np.float64, copy=False)
+    return total
+
+
 @dataclass(frozen=True)
 class Pattern:
     """Places of the entries of an `n` by `n` matrix; an entry named several times adds up."""
@@ -29,5 +35,5 @@ class Pattern:
 
     def assemble(self, values: NDArray[np.float64]) -> sp.csc_array:
         """The matrix with `values` (n_entry,) at the places, in their order."""
-        data = np.bincount(self.slot, values, len(self.indices))
+        data = add_up(self.slot, values, len(self.indices))
         return sp.csc_array((data, self.indices, self.indptr), shape=(self.n, self.n))

@@ -15,6 +15,7 @@ from petalfoil.mesh.axial import AxialGrid, flat_axis
 from petalfoil.mesh.package import trapezoid
 from petalfoil.mesh.pitch import petal_angles
 from petalfoil.physics.shell import PetalShell
+from petalfoil.problem.coupled import WALL_ROUNDING
 from petalfoil.solvers.active_set import ActiveOptions, Closed, Outcome, active_set
 from petalfoil.solvers.cone import ConePoint, ConeProblem
 from petalfoil.solvers.interior_point import InteriorOptions, Step, interior_point
@@ -104,17 +105,26 @@ class ElasticProblem:
     weight: Array
 
     @property
+    def n(self) -> int:
+        """Unknowns."""
+        return len(self.force)
+
+    @property
     def positive(self) -> slice:
+        """No unknown is bound to stay positive."""
         return slice(0, 0)
 
     def gaps(self, x: Array) -> Array:
+        """Gaps at `x`, (m,)."""
         out: Array = self.rest + self.G @ x
         return out
 
     def admits(self, x: Array) -> bool:
+        """Elasticity can be evaluated anywhere."""
         return True
 
     def linearize(self, x: Array, shift: Array | None = None) -> "ElasticLine":
+        """Residual and tangent; gaps do not enter them."""
         return ElasticLine(self, x)
 
 
@@ -127,29 +137,47 @@ class ElasticLine:
 
     @cached_property
     def residual(self) -> Array:
+        """`K x - f`, reactions apart."""
         out: Array = self.problem.K @ self.x - self.problem.force
         return out
 
     @cached_property
     def size(self) -> Array:
-        rounding = np.finfo(float).eps * (abs(self.problem.K) @ np.abs(self.x))
+        """What each row's residual is measured by."""
+        rounding = WALL_ROUNDING * np.finfo(float).eps * (abs(self.problem.K) @ np.abs(self.x))
         return np.maximum(1.0, rounding / ActiveOptions().tolerance)
 
     def matrix(self, theta: Array, rate: float = 0.0) -> sp.csc_array:
+        """`K + G^T diag(theta) G`."""
         G = self.problem.G
         return sp.csc_array(self.problem.K + G.T @ sp.diags_array(theta) @ G)
 
     def by_shift(self, shift: Array, rate: float = 0.0) -> Array:
+        """The residual does not depend on the gaps."""
         return np.zeros(len(self.x))
 
 
-def rows_of(n: int, *terms: tuple[Sequence[int] | Array, float]) -> sp.csr_array:
+def rows_of(n: int, *terms: tuple[Sequence[int] | NDArray[np.intp], float]) -> sp.csr_array:
     """Rows of gaps over `n` unknowns: each term puts its coefficient at its column of every row."""
     m = len(terms[0][0])
     rows = np.tile(np.arange(m), len(terms))
-    cols = np.concatenate([np.asarray(columns) for columns, _ in terms])
+    cols = np.concatenate([np.asarray(columns, dtype=np.intp) for columns, _ in terms])
     data = np.concatenate([np.full(m, sign) for _, sign in terms])
     return sp.coo_array((data, (rows, cols)), shape=(m, n)).tocsr()
+
+
+UNIT = 1e-4
+"""Unit of deflection in problems of unit length, load and stiffness: small beside 1/8, as 10 um are beside a petal's
+travel."""
+
+
+def strips_problem(shells: Sequence[PetalShell], forces: Sequence[Array], G: sp.csr_array, rest: Array) -> ElasticProblem:
+    """Strips side by side with gaps along the first nodes of the first one, root apart; `forces` without the root."""
+    phi = shells[0].phi
+    cell = float(phi[-1]) / (len(phi) - 1)
+    K = sp.block_diag([shell.stiffness[1:, 1:] for shell in shells], format="csr")
+    weight = trapezoid(phi)[1 : len(rest) + 1] / cell
+    return ElasticProblem(sp.csr_array(K * (UNIT / cell)), np.concatenate(forces) / cell, G, rest / UNIT, weight)
 
 
 # ------------------------------------------------------------------------------------------ solving them
@@ -157,7 +185,19 @@ def rows_of(n: int, *terms: tuple[Sequence[int] | Array, float]) -> sp.csr_array
 
 @dataclass(frozen=True)
 class Solved:
-    """An answer and what it took: interior-point steps, then active-set factorisations."""
+    """An answer and what it took.
+
+    Attributes
+    ----------
+    x, lam : array
+        Unknowns and reactions.
+    closed : bool array
+        Gaps that are closed.
+    steps : int
+        Steps of the interior point down to the first barrier.
+    polish : int
+        Factorisations of the active set that gave the answer.
+    """
 
     x: Array
     lam: Array
@@ -166,12 +206,12 @@ class Solved:
     polish: int
 
 
-def cold_point(problem: ConeProblem, n: int, pressure: float = 300.0) -> ConePoint:
+def cold_point(problem: ConeProblem, n: int) -> ConePoint:
     """Undeformed, with slacks wide enough for every gap and reactions on the central path."""
     gaps = problem.gaps(np.zeros(n))
     width = max(1.0, -float(gaps.min()))
     slack = np.maximum(gaps, width)
-    return ConePoint(np.zeros(n), slack, pressure * width * problem.weight / slack)
+    return ConePoint(np.zeros(n), slack, 300.0 * width * problem.weight / slack)
 
 
 def follow(problem: ConeProblem, start: ConePoint, barrier: float = 1e-5) -> tuple[ConePoint, int]:
@@ -193,12 +233,22 @@ def polish(problem: ConeProblem, x: Array, closed: NDArray[np.bool_]) -> tuple[C
     return answer, outcome, solver.counter.factorizations
 
 
-def solve(problem: ConeProblem, n: int, pressure: float = 300.0, barrier: float = 1e-5) -> Solved:
+BARRIERS = (1e-5, 1e-8, 1e-11)
+"""Where the active set is tried. Along a stretch of contact whose ends carry little it moves one node a step, so on a
+fine grid it must start close."""
+
+
+def solve(problem: ConeProblem, n: int) -> Solved:
     """From nothing to exact zeros: interior point, then the active set from where it ends."""
-    point, steps = follow(problem, cold_point(problem, n, pressure), barrier)
-    answer, outcome, count = polish(problem, point.x, point.lam / problem.weight > point.s)
-    assert answer is not None, outcome.value
-    return Solved(answer.x, answer.lam, answer.closed, steps, count)
+    point, steps = cold_point(problem, n), 0
+    outcome = Outcome.STEPS
+    for barrier in BARRIERS:
+        point, more = follow(problem, point, barrier)
+        steps = steps or more
+        answer, outcome, count = polish(problem, point.x, point.lam / problem.weight > point.s)
+        if answer is not None:
+            return Solved(answer.x, answer.lam, answer.closed, steps, count)
+    raise AssertionError(outcome.value)
 
 
 # ------------------------------------------------------------------------------------------ orders

@@ -36,13 +36,13 @@ def reaction_balance(answer: Answer) -> float:
     wall, unit = layout.wall, layout.scales.length / layout.scales.force
     loads = layout.push @ (P - 1.0) + wall.contacts.G.T @ answer.lam
     parts = layout.push @ np.abs(P - 1.0) + abs(wall.contacts.G.T) @ answer.lam
-    defect = wall.free_motions.T @ loads + unit * (wall.support @ w)
+    defect = wall.free_motions.T @ loads + unit * (wall.support @ w + wall.support @ answer.state.fine)
     scale = abs(wall.free_motions.T) @ parts
     return float(np.max(np.abs(defect) / np.maximum(scale, np.finfo(float).tiny)))
 
 
 def side_leakage(answer: Answer) -> float:
-    """Flow of gas out of both ends, in the film's own unit: over `p_a^2 h_ref^3 / (12 mu)` times the density ratio [1]."""
+    """Flow of gas out of both ends, pressure times volume a second, over `p_a^2 h_ref^3 / (12 mu)` [1]."""
     balance = answer.problem.layout.balance
     axial = balance.mesh.axial
     if axial.flat:

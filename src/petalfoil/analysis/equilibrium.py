@@ -13,10 +13,13 @@ from petalfoil.case import Case, Kind
 from petalfoil.equilibria.answer import Answer
 from petalfoil.equilibria.ascent import ascend
 from petalfoil.equilibria.branches import distinct, probe
-from petalfoil.equilibria.cold import solve_cold
+from petalfoil.equilibria.cold import nothing_found, solve_cold
 from petalfoil.equilibria.stability import leading_eigenvalue
+from petalfoil.equilibria.warm import settle
 from petalfoil.equilibria.work import Work
+from petalfoil.errors import ConvergenceError
 from petalfoil.problem.build import build_problem
+from petalfoil.problem.coupled import CoupledProblem
 from petalfoil.results.record import Record
 
 PROBE_CELLS, PROBE_AXIAL = 24, 6
@@ -60,19 +63,53 @@ def positioned(case: Case, speed: float | None, eccentricity: tuple[float, float
 
 
 def chosen(case: Case, work: Work) -> tuple[Answer, Named]:
-    """The equilibrium to report, and what is known of its branch and stability."""
+    """The equilibrium to report, and what is known of its branch and stability.
+
+    Raises
+    ------
+    ConvergenceError
+        Neither a cold start nor the way up from rest found one.
+    """
     problem = build_problem(case)
-    answer = solve_cold(problem, work)
-    rate = leading_eigenvalue(answer, work)
+    found = from_nothing(problem, work)
+    rates = [leading_eigenvalue(answer, work) for answer in found]
     known = 1 if case.petals is None else probe(build_problem(coarse(case)), work)
-    if known > 1 or rate.real > 0.0:
+    way = ""
+    if known > 1 or not found or rates[0].real > 0.0:
         risen, jumps = ascend(problem, work)
         if risen is not None:
-            known = max(known, distinct([answer, risen]))
-            answer, rate = risen, leading_eigenvalue(risen, work)
-            return answer, about(answer, rate, case, (known, ascent_text(jumps)))
-        known = max(known, 2)
-    return answer, about(answer, rate, case, (known, answer.way))
+            found, rates = [risen, *found], [leading_eigenvalue(risen, work), *rates]
+            way = ascent_text(jumps)
+    if not found:
+        raise nothing_found(work)
+    if rates[0].real > 0.0:
+        found, rates, way = settled(found, rates, way, work)
+    known = max(known, distinct(found))
+    return found[0], about(rates[0], case, (known, way or found[0].way))
+
+
+def from_nothing(problem: CoupledProblem, work: Work) -> list[Answer]:
+    """The answer of a cold start, if there is one."""
+    try:
+        return [solve_cold(problem, work)]
+    except ConvergenceError as failure:
+        work.note("film", outcome=str(failure))
+        return []
+
+
+def settled(found: list[Answer], rates: list[complex], way: str, work: Work) -> tuple[list[Answer], list[complex], str]:
+    """Put first where the unstable equilibrium at the head of `found` goes, if that is stable."""
+    stable = [k for k, rate in enumerate(rates) if not rate.real > 0.0]
+    rested = None if stable else settle(found[0], work)
+    if rested is not None:
+        found, rates = [*found, rested], [*rates, leading_eigenvalue(rested, work)]
+        stable = [] if rates[-1].real > 0.0 else [len(found) - 1]
+    if not stable:
+        return found, rates, way
+    first = stable[0]
+    order = [first, *(k for k in range(len(found)) if k != first)]
+    text = f"{found[first].way}; the branch from rest has lost its stability below this speed"
+    return [found[k] for k in order], [rates[k] for k in order], text
 
 
 def coarse(case: Case) -> Case:
@@ -83,7 +120,7 @@ def coarse(case: Case) -> Case:
     return case.replace(**changes)
 
 
-def about(answer: Answer, rate: complex, case: Case, branch: tuple[int, str]) -> Named:
+def about(rate: complex, case: Case, branch: tuple[int, str]) -> Named:
     """Branch and stability as figures; a shaft at rest has no film that could grow."""
     omega = case.operation.speed
     return {

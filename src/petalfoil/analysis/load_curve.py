@@ -46,8 +46,8 @@ def iterate(
 
 def points(case: Case, eccentricities: Sequence[float], direction: float, speed: float | None) -> list[Case]:
     """The case at every displacement, each checked."""
-    n = (math.cos(direction), math.sin(direction))
-    return [positioned(case, speed, (e * n[0], e * n[1])) for e in eccentricities]
+    n = np.round([math.cos(direction), math.sin(direction)], 15)  # -90 deg means straight down
+    return [positioned(case, speed, (float(e * n[0]), float(e * n[1]))) for e in eccentricities]
 
 
 def _records(cases: list[Case], progress: Progress | None) -> Iterator[Record]:
@@ -72,7 +72,7 @@ def _point(case: Case, problem: CoupledProblem, known: Answer | None, work: Work
         return answer, {**extra, "jump": False}
     answer, jump = advance(known, problem, work)
     rate = leading_eigenvalue(answer, work)
-    return answer, {**about(answer, rate, case, (2 if jump else 1, answer.way)), "jump": jump}
+    return answer, {**about(rate, case, (2 if jump else 1, answer.way)), "jump": jump}
 
 
 def _part(progress: Progress | None, number: int, count: int) -> Progress | None:

@@ -13,6 +13,28 @@ from petalfoil.solvers.cone import ConePoint, scaled_residual
 
 Array = NDArray[np.float64]
 
+REFINEMENTS = 4
+"""Corrections below the last digit: one usually ends them, and none helps after three."""
+
+
+@dataclass(frozen=True)
+class State:
+    """Deflections and pressures, with what of the deflections lies below the last digit of `x`.
+
+    Attributes
+    ----------
+    x : (n,) array
+        Deflections and pressures [1].
+    fine : (n_wall,) array
+        Rest of the deflections, smaller than the last digit of `x` [1].
+    lam : (m,) array
+        Contact reactions over the unit of nodal force [1].
+    """
+
+    x: Array
+    fine: Array
+    lam: Array
+
 
 @dataclass(frozen=True)
 class Answer:
@@ -22,12 +44,11 @@ class Answer:
     ----------
     problem : CoupledProblem
         Speed and journal position that it belongs to.
-    x : (n,) array
-        Deflections and pressures [1].
-    lam : (m,) array
-        Contact reactions over the unit of nodal force [1].
+    state : State
+        Deflections, pressures, reactions.
     residual : float
-        Largest scaled residual: wall and film rows by their sizes, complementarity by `|min(g, lam)|`.
+        Largest scaled residual: wall rows by ambient pressure, film rows by their flows, complementarity by
+        `|min(g, lam)|`.
     way : str
         How it was reached, for people.
     closed : Closed or None
@@ -35,11 +56,20 @@ class Answer:
     """
 
     problem: CoupledProblem
-    x: Array
-    lam: Array
+    state: State
     residual: float
     way: str
     closed: Closed | None = field(default=None, repr=False)
+
+    @property
+    def x(self) -> Array:
+        """Deflections and pressures, (n,) [1]."""
+        return self.state.x
+
+    @property
+    def lam(self) -> Array:
+        """Contact reactions, (m,) [1]."""
+        return self.state.lam
 
     @property
     def in_contact(self) -> NDArray[np.bool_]:
@@ -49,22 +79,52 @@ class Answer:
         return self.lam / self.problem.weight > self.problem.gaps(self.x)
 
 
-def total_residual(problem: CoupledProblem, x: Array, lam: Array) -> float:
+def total_residual(problem: CoupledProblem, state: State) -> float:
     """Largest scaled residual of a state, from the state alone.
 
     Rows of wall and film by their sizes; gaps and reactions (over their weight) by `|min(g, lam)|`, which is zero
     exactly when both are non-negative and one of them vanishes.
     """
-    rows = scaled_residual(problem.linearize(x), problem.G.T @ lam)
-    mismatch = np.minimum(problem.gaps(x), lam / problem.weight)
+    rows = scaled_residual(problem.linearize(state.x, fine=state.fine), problem.G.T @ state.lam)
+    mismatch = np.minimum(problem.gaps(state.x), state.lam / problem.weight)
     return max(rows, float(np.max(np.abs(mismatch), initial=0.0)))
 
 
 def from_closed(problem: CoupledProblem, closed: Closed, way: str) -> Answer:
-    """The answer of the active set."""
-    return Answer(problem, closed.x, closed.lam, total_residual(problem, closed.x, closed.lam), way, closed)
+    """The answer of the active set, refined below the last digit of its deflections."""
+    state = refine(problem, closed)
+    return Answer(problem, state, total_residual(problem, state), way, closed)
 
 
 def from_point(problem: CoupledProblem, point: ConePoint, way: str) -> Answer:
     """The answer of the interior point, its slacks dropped."""
-    return Answer(problem, point.x, point.lam, total_residual(problem, point.x, point.lam), way)
+    state = State(point.x, np.zeros(problem.layout.n_wall), point.lam)
+    return Answer(problem, state, total_residual(problem, state), way)
+
+
+def refine(problem: CoupledProblem, closed: Closed) -> State:
+    """Iterative refinement with the tangent at hand: no factorisation.
+
+    Deflections are corrected below their last digit, so that the wall's rows, which lose it as `dphi^-4`, balance.
+    """
+    n, ties = problem.layout.n_wall, closed.ties
+    state = State(closed.x, np.zeros(n), closed.lam)
+    best, least = state, total_residual(problem, state)
+    for _ in range(REFINEMENTS if closed.factor is not None else 0):
+        line = problem.linearize(state.x, fine=state.fine)
+        change = ties.spread(closed.factor.solve(-ties.gather(line.residual)))  # type: ignore[union-attr]
+        x = state.x.copy()
+        x[n:] += change[n:]
+        fine = state.fine + change[:n]
+        state = State(x, fine, reactions(problem, closed, x, fine))
+        residual = total_residual(problem, state)
+        if residual < least:
+            best, least = state, residual
+    return best
+
+
+def reactions(problem: CoupledProblem, closed: Closed, x: Array, fine: Array) -> Array:
+    """Reactions of the closed gaps, (m,)."""
+    lam = np.zeros(len(closed.closed))
+    lam[closed.closed] = closed.ties.reactions(problem.linearize(x, fine=fine).residual)
+    return lam

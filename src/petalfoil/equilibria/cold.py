@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from petalfoil.equilibria.answer import Answer, from_closed, from_point
@@ -17,8 +19,9 @@ from petalfoil.solvers.linear import SingularMatrixError
 BARRIERS = (3.0, 30.0, 0.3, 300.0)
 """Barriers at which the film joins, in ambient pressure times 10 um; the first serves 97 % of random packages."""
 
-GOALS = (1e-5, 1e-8, 1e-12)
-"""Barriers at which the contact set is read and tried: the set is usually right at the first."""
+GOALS = (1e-7, 1e-10, 1e-13)
+"""Barriers at which the contact set is read and tried: it is right at the first up to 512 cells a pitch (at 1e-5 it
+is not beyond 128, where an attempt in vain costs more than two more steps)."""
 
 
 def solve_cold(problem: CoupledProblem, work: Work, barriers: tuple[float, ...] = BARRIERS) -> Answer:
@@ -33,7 +36,12 @@ def solve_cold(problem: CoupledProblem, work: Work, barriers: tuple[float, ...] 
         answer = attempt(problem, barrier, work)
         if answer is not None:
             return answer
-    raise ConvergenceError(
+    raise nothing_found(work)
+
+
+def nothing_found(work: Work) -> ConvergenceError:
+    """The error of a search that came to nothing, with its history."""
+    return ConvergenceError(
         "no equilibrium found: film, petals and contacts did not settle from any start",
         history=work.history,
         advice="refine the grid, lower the eccentricity or approach it along a curve; extreme preload (thick or short "
@@ -54,11 +62,14 @@ def attempt(problem: CoupledProblem, barrier: float, work: Work) -> Answer | Non
         return None
 
 
-def finish(problem: CoupledProblem, start: ConePoint, way: str, work: Work) -> Answer | None:
+def finish(
+    problem: CoupledProblem, start: ConePoint, way: str, work: Work, options: InteriorOptions | None = None
+) -> Answer | None:
     """Drive the barrier down from `start`; read the contact set as soon as it shows, and solve on it exactly."""
-    point = start
+    point, numbers = start, options or InteriorOptions()
     for goal in GOALS:
-        point, found = interior_point(problem, point, work.film_solver, InteriorOptions(), work.watch("film", content(goal)))
+        point, found = interior_point(problem, point, work.film_solver, numbers, work.watch("film", content(goal)))
+        numbers = InteriorOptions()
         if not found:
             return None
         touching = point.lam / problem.weight > point.s
@@ -70,7 +81,7 @@ def finish(problem: CoupledProblem, start: ConePoint, way: str, work: Work) -> A
     return answer if answer.residual <= RESIDUAL_TOLERANCE else None
 
 
-def content(goal: float):  # type: ignore[no-untyped-def]
+def content(goal: float) -> Callable[[Step], bool]:
     """Stop at the barrier `goal`, with residuals to match."""
 
     def look(step: Step) -> bool:

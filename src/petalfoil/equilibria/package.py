@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,6 +19,10 @@ Array = NDArray[np.float64]
 FIRST_PRODUCT = 300.0
 """First reactions times slacks over the deepest penetration of the free shape. 100 to 1000 serve alike (11 to 20
 steps over 60 random packages); 10 and less stay short of the boundary for long (up to 58)."""
+
+
+REST_GOALS = (1e-5, 1e-8, 1e-11)
+"""Barriers at which the contact set of the package alone is read and tried."""
 
 
 def unloaded(problem: CoupledProblem) -> PackageProblem:
@@ -52,9 +58,9 @@ def at_rest(problem: CoupledProblem, work: Work) -> tuple[Array, NDArray[np.bool
     package = unloaded(problem)
     if not len(package.weight):
         return np.zeros(0), np.zeros(0, dtype=bool)
-    start, goal = free_start(package), 1e-5
-    for _ in range(3):
-        watch = work.watch("package", lambda step: step.barrier < goal and max(step.residual, step.infeasibility) < 1e-4)  # noqa: B023
+    start = free_start(package)
+    for goal in REST_GOALS:
+        watch = work.watch("package", settled(goal))
         start, found = interior_point(package, start, work.package_solver, InteriorOptions(), watch)
         if not found:
             return None
@@ -63,5 +69,9 @@ def at_rest(problem: CoupledProblem, work: Work) -> tuple[Array, NDArray[np.bool
         work.note("package contacts", outcome=outcome.value)
         if closed is not None:
             return closed.x, closed.closed
-        goal *= 1e-3
     return None
+
+
+def settled(goal: float) -> Callable[[Step], bool]:
+    """Stop at the barrier `goal`, equations and gaps met well enough to read the contact set."""
+    return lambda step: step.barrier < goal and max(step.residual, step.infeasibility) < 1e-4

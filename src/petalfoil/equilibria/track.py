@@ -1,4 +1,4 @@
-"""One step along a branch: by the contact set if it leads there, else by the interior point, and then: was it a jump?"""
+"""One step along a branch: by the contact set if it leads there, else by the interior point. Was it a jump, then?"""
 
 from __future__ import annotations
 

@@ -11,6 +11,7 @@ from petalfoil.equilibria.work import Work
 from petalfoil.problem.coupled import CoupledProblem
 from petalfoil.solvers.active_set import ActiveOptions, active_set
 from petalfoil.solvers.cone import ConePoint
+from petalfoil.solvers.interior_point import InteriorOptions
 from petalfoil.solvers.linear import SingularMatrixError
 
 Array = NDArray[np.float64]
@@ -60,6 +61,26 @@ def restart(known: Answer, problem: CoupledProblem, work: Work) -> Answer | None
     except SingularMatrixError as failure:
         work.note("film", outcome=str(failure))
         return None
+
+
+def settle(unstable: Answer, work: Work) -> Answer | None:
+    """Disturb an unstable equilibrium and march in time to where it goes; None if it comes to no rest."""
+    problem = unstable.problem
+    x = unstable.x.copy()
+    pressures = x[problem.positive]
+    x[problem.positive] = pressures * (1.0 + DISTURBANCE * np.random.default_rng(0).standard_normal(len(pressures)))
+    s = np.maximum(problem.gaps(x), np.sqrt(RESTART_BARRIER))
+    lam = np.maximum(unstable.lam, RESTART_BARRIER * problem.weight / s)
+    way = "marched in time from a disturbed unstable equilibrium"
+    try:
+        return finish(problem, ConePoint(x, s, lam), way, work, InteriorOptions(march=True))
+    except SingularMatrixError as failure:
+        work.note("film", outcome=str(failure))
+        return None
+
+
+DISTURBANCE = 0.01
+"""Relative disturbance of the pressures of an unstable equilibrium."""
 
 
 def keep_open(x: Array, change: Array, positive: slice) -> Array:

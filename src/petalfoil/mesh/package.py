@@ -94,5 +94,5 @@ def trapezoid(nodes: NDArray[np.float64]) -> NDArray[np.float64]:
 def package_mesh(count: int, overlap: float, first_root: float, cells: int, axial: AxialGrid) -> PackageMesh:
     """Grid of a package: `cells` a pitch, petals `overlap` pitches long [1], first root at `first_root` [rad]."""
     pitch = 2.0 * np.pi / count
-    roots = first_root + pitch * np.arange(count)
+    roots = first_root + pitch * np.arange(count, dtype=np.float64)
     return PackageMesh(count, cells, petal_angles(pitch, overlap, cells), roots, axial)

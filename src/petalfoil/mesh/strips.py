@@ -37,7 +37,7 @@ class FilmMesh:
     @property
     def shape(self) -> tuple[int, int, int]:
         """(strip, node, axial)."""
-        return self.unknown.shape  # type: ignore[return-value]
+        return self.unknown.shape
 
     @property
     def n_unknown(self) -> int:
@@ -52,7 +52,7 @@ class FilmMesh:
 
 def pressure_numbers(shape: tuple[int, int, int], axial: AxialGrid, *, continuous: bool) -> NDArray[np.intp]:
     """Number the pressure unknowns of `shape` (strip, node, axial) nodes; -1 where ambient."""
-    n_strip, n_node, n_z = shape
+    n_strip, _, n_z = shape
     free = np.ones(shape, dtype=bool)
     free[:, 0, :] = False  # ambient, or tied to the last node of the strip before
     free[:, -1, :] = continuous

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from petalfoil.mesh.strips import FilmMesh
 from petalfoil.physics.film import Flux, axial_flux, circumferential_flux
+from petalfoil.sparsity import add_up
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -99,8 +100,8 @@ class FilmBalance:
     def _add_up(self, sides: list[tuple[Array, Array]]) -> Array:
         total = np.zeros(self.mesh.unknown.size)
         for (node0, node1), (at0, at1) in zip(self._faces, sides, strict=True):
-            total += np.bincount(node0, at0.ravel(), len(total))
-            total += np.bincount(node1, at1.ravel(), len(total))
+            total += add_up(node0, at0.ravel(), len(total))
+            total += add_up(node1, at1.ravel(), len(total))
         return total.reshape(self.mesh.shape)
 
     @cached_property
@@ -144,7 +145,7 @@ class FilmBalance:
 
     def _collect(self, nodal: Array) -> Array:
         numbers = self.mesh.unknown.ravel()
-        return np.bincount(numbers % (self.mesh.n_unknown + 1), nodal.ravel(), self.mesh.n_unknown + 1)[:-1]
+        return add_up(numbers % (self.mesh.n_unknown + 1), nodal.ravel(), self.mesh.n_unknown + 1)[:-1]
 
     @cached_property
     def storage_entries(self) -> Entries:

@@ -56,48 +56,86 @@ class PetalShell:
     @cached_property
     def stiffness(self) -> sp.csr_array:
         """`K` with `E_b = W K W / 2`, shape (n_node n_z, n_node n_z) [N/m]."""
+        S = self.strain @ self.difference
+        return sp.csr_array(S.T @ self.rigidity_matrix @ S)
+
+    @cached_property
+    def rigidity_matrix(self) -> sp.csr_array:
+        """`C`: curvatures and twist to their conjugate moments, weights included [N m^3]."""
         D, nu, r_m = self.rigidity, self.poisson_ratio, self.metric_radius
         full, along_phi, along_z = self._weights
-        B_phi, B_z, B_tw, cell = self.curvature_phi, self.curvature_z, self._twist, self._cell_weight
-
-        bending_phi = B_phi.T @ sp.diags_array(full + (1.0 - nu**2) * along_phi) @ B_phi
-        bending_z = B_z.T @ sp.diags_array(full + (1.0 - nu**2) * along_z) @ B_z
-        coupling = nu * (B_phi.T @ sp.diags_array(full) @ B_z)
-        twist = 2.0 * (1.0 - nu) * (B_tw.T @ sp.diags_array(cell) @ B_tw)
-        return sp.csr_array(D * r_m * (bending_phi + bending_z + coupling + coupling.T + twist))
+        bending_phi = sp.diags_array(full + (1.0 - nu**2) * along_phi)
+        bending_z = sp.diags_array(full + (1.0 - nu**2) * along_z)
+        coupling = nu * sp.diags_array(full)
+        twist = 2.0 * (1.0 - nu) * sp.diags_array(self._cell_weight)
+        blocks = [[bending_phi, coupling, None], [coupling, bending_z, None], [None, None, twist]]
+        return sp.csr_array(D * r_m * sp.block_array(blocks, format="csr"))
 
     @cached_property
-    def curvature_phi(self) -> sp.csr_array:
-        """`W -> chi_phi` at the nodes; rows where it is condensed or known to vanish are empty [1/m^2]."""
-        n, phi = len(self.phi), self.phi
-        rows = np.arange(1, n - 1)
-        before, after = phi[1:-1] - phi[:-2], phi[2:] - phi[1:-1]
-        left, right = 2.0 / (before * (before + after)), 2.0 / (after * (before + after))
-        second = sp.coo_array(
-            (np.concatenate([left, -left - right, right]), (np.tile(rows, 3), np.concatenate([rows - 1, rows, rows + 1]))),
-            shape=(n, n),
-        ).tolil()
-        keep = np.ones(n)
+    def difference(self) -> sp.csr_array:
+        """`W` -> (differences along the arc, along the shaft, across cells; `W` itself).
+
+        Entries are +-1: differences of neighbours, which lie close together, are then free of rounding, and curvatures
+        do not lose the digits that second differences of `W` would.
+        """
+        n, n_z = len(self.phi), len(self.axial.z)
+        d_phi, d_z = _jumps(n), _jumps(n_z)
+        along, across = sp.kron(d_phi, sp.eye_array(n_z)), sp.kron(sp.eye_array(n), d_z)
+        return sp.csr_array(sp.vstack([along, across, sp.kron(d_phi, d_z), sp.eye_array(n * n_z)], format="csr"))
+
+    @cached_property
+    def strain(self) -> sp.csr_array:
+        """Differences -> (`chi_phi`, `chi_z` at the nodes, `chi_phiz` at the cells).
+
+        Rows are empty where a curvature is condensed (free edges) or known to vanish (hinged root).
+        """
+        n, n_z = len(self.phi), len(self.axial.z)
+        in_place = sp.kron(sp.diags_array(self._bent / self.bend_radius**2), sp.eye_array(n_z))
+        chi_phi = sp.kron(self._second_phi / self.metric_radius**2, sp.eye_array(n_z))
+        chi_z = sp.kron(sp.eye_array(n), self._second_z)
+        cells = self._twist_scale
+        blocks = [[chi_phi, None, None, in_place], [None, chi_z, None, None], [None, None, sp.diags_array(cells), None]]
+        return sp.csr_array(sp.block_array(blocks, format="csr"))
+
+    @property
+    def _bent(self) -> Array:
+        """1 where `chi_phi` is part of the energy along the arc."""
+        keep = np.ones(len(self.phi))
         keep[-1] = 0.0
-        if self.clamped:  # the node before the root mirrors the first one
-            second[0, 0], second[0, 1] = -2.0 / (phi[1] - phi[0]) ** 2, 2.0 / (phi[1] - phi[0]) ** 2
-        else:
-            keep[0] = 0.0
-        along = second.tocsr() / self.metric_radius**2 + sp.diags_array(keep / self.bend_radius**2)
-        return sp.csr_array(sp.kron(along, sp.eye_array(len(self.axial.z)), format="csr"))
+        keep[0] = float(self.clamped)
+        return keep
 
-    @cached_property
-    def curvature_z(self) -> sp.csr_array:
-        """`W -> chi_z` at the nodes; empty on the free side edges and in the flat model [1/m^2]."""
+    @property
+    def _second_phi(self) -> sp.csr_array:
+        """Differences along the arc -> second derivative at the nodes, three points on any spacing [1]."""
+        cell = np.diff(self.phi)
+        n = len(self.phi)
+        second = sp.lil_array((n, n - 1))
+        for i in range(1, n - 1):
+            span = 0.5 * (cell[i - 1] + cell[i])
+            second[i, i - 1], second[i, i] = -1.0 / (cell[i - 1] * span), 1.0 / (cell[i] * span)
+        if self.clamped:  # the node before the root mirrors the first one
+            second[0, 0] = 2.0 / cell[0] ** 2
+        return second.tocsr()
+
+    @property
+    def _second_z(self) -> sp.csr_array:
+        """Differences along the shaft -> second derivative; none on free sides nor in the flat model [1/m^2]."""
         n_z = len(self.axial.z)
-        across = sp.lil_array((n_z, n_z))
+        second = sp.lil_array((n_z, max(n_z - 1, 0)))
         if n_z > 1:
             inverse = 1.0 / (self.axial.z[1] - self.axial.z[0]) ** 2
             for j in range(1, n_z - 1):
-                across[j, j - 1], across[j, j], across[j, j + 1] = inverse, -2.0 * inverse, inverse
+                second[j, j - 1], second[j, j] = -inverse, inverse
             if self.axial.half:  # the node past the plane of symmetry mirrors the one before it
-                across[n_z - 1, n_z - 2], across[n_z - 1, n_z - 1] = 2.0 * inverse, -2.0 * inverse
-        return sp.csr_array(sp.kron(sp.eye_array(len(self.phi)), across.tocsr(), format="csr"))
+                second[n_z - 1, n_z - 2] = -2.0 * inverse
+        return second.tocsr()
+
+    @property
+    def _twist_scale(self) -> Array:
+        """Jump across a cell -> `chi_phiz` at its centre [1/m^2]."""
+        area = np.diff(self.phi)[:, None] * np.diff(self.axial.z)[None, :]
+        return (1.0 / (self.metric_radius * area)).ravel()
 
     @cached_property
     def _weights(self) -> tuple[Array, Array, Array]:
@@ -118,13 +156,6 @@ class PetalShell:
         return full.ravel(), along_phi.ravel(), along_z.ravel()
 
     @cached_property
-    def _twist(self) -> sp.csr_array:
-        """`W -> chi_phiz` at the cell centres [1/m^2]; no rows in the flat model."""
-        d_phi = _difference(self.phi)
-        d_z = _difference(self.axial.z)
-        return sp.csr_array(sp.kron(d_phi, d_z, format="csr") / self.metric_radius)
-
-    @cached_property
     def _cell_weight(self) -> Array:
         """Angle times length of each cell; both halves of a half model."""
         cells = np.diff(self.phi)[:, None] * np.diff(self.axial.z)[None, :]
@@ -132,10 +163,9 @@ class PetalShell:
 
     def curvatures(self, W: Array) -> tuple[Array, Array]:
         """`chi_phi`, `chi_z` at all nodes, the condensed ones filled in, each of W's shape (..., node, axial) [1/m]."""
-        nu = self.poisson_ratio
-        flat = W.reshape(-1, self.curvature_phi.shape[1])
-        chi_phi = (self.curvature_phi @ flat.T).T.reshape(W.shape).copy()
-        chi_z = (self.curvature_z @ flat.T).T.reshape(W.shape).copy()
+        nu, nodes = self.poisson_ratio, len(self.phi) * len(self.axial.z)
+        strains = (self.strain @ (self.difference @ W.reshape(-1, nodes).T)).T
+        chi_phi, chi_z = (strains[:, k * nodes : (k + 1) * nodes].reshape(W.shape).copy() for k in (0, 1))
         if not self.axial.flat:
             sides = [0] if self.axial.half else [0, -1]
             for side in sides:
@@ -156,7 +186,8 @@ class PetalShell:
             `motions^T f + support W = 0`.
         """
         n_z = len(self.axial.z)
-        along = self.curvature_phi[:: n_z, :: n_z].toarray()
+        along = (self._second_phi @ _jumps(len(self.phi))).toarray() / self.metric_radius**2
+        along += np.diag(self._bent / self.bend_radius**2)
         seeds = [(1.0, -along[0, 0] / along[0, 1])] if self.clamped else [(1.0, 1.0), (0.0, 1.0)]
         motions = np.array(seeds).T
         for row in along[1:-1]:
@@ -166,11 +197,10 @@ class PetalShell:
         return np.repeat(motions, n_z, axis=0), np.outer(motions[0], root_rows)
 
 
-def _difference(nodes: Array) -> sp.csr_array:
-    """First differences over `nodes`, shape (n - 1, n)."""
-    n = len(nodes)
-    inverse = 1.0 / np.diff(nodes)
-    return sp.csr_array(sp.diags_array([-inverse, inverse], offsets=[0, 1], shape=(n - 1, n)))
+def _jumps(n: int) -> sp.csr_array:
+    """Differences of neighbours among `n` values, shape (n - 1, n)."""
+    one = np.ones(max(n - 1, 0))
+    return sp.csr_array(sp.diags_array([-one, one], offsets=[0, 1], shape=(n - 1, n)))
 
 
 def bending_stress(shell: PetalShell, W: Array, youngs_modulus: float, thickness: float) -> Array:

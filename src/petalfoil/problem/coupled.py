@@ -1,8 +1,8 @@
 """Film and wall at one speed and journal position, in one vector `x = [w, P]`.
 
-    wall   K w - A (P - 1) - G^T lam = 0      (C1)
-    film   net outflow of each cell  = 0      (C2), h from the gaps
-    gaps   0 <= g(w)  complementary to  lam >= 0   (C3)
+wall   K w - A (P - 1) - G^T lam = 0      (C1)
+film   net outflow of each cell  = 0      (C2), h from the gaps
+gaps   0 <= g(w)  complementary to  lam >= 0   (C3)
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from petalfoil.physics.balance import FilmBalance
 from petalfoil.physics.film import Flux
 from petalfoil.problem.scales import Scales
-from petalfoil.sparsity import Pattern
+from petalfoil.sparsity import Pattern, add_up
 from petalfoil.structure.wall import Wall
 
 Array = NDArray[np.float64]
@@ -45,7 +45,11 @@ class Layout:
     @cached_property
     def stiffness(self) -> sp.csr_array:
         """`K` in the units of the problem [1]."""
-        return sp.csr_array(self.wall.stiffness * (self.scales.length / self.scales.force))
+        return sp.csr_array(self.wall.elasticity.stiffness * (self.scales.length / self.scales.force))
+
+    def elastic_force(self, w: Array, fine: Array | None = None) -> Array:
+        """`K w` by its factors, differences first; (n_wall,) [1]."""
+        return self.wall.elasticity.force(w, fine) * (self.scales.length / self.scales.force)
 
     @cached_property
     def stiffness_size(self) -> sp.csr_array:
@@ -154,7 +158,8 @@ class CoupledProblem:
     def at(self, *, bearing_number: float | None = None, displacement: Array | None = None) -> CoupledProblem:
         """The same bearing at another speed or position."""
         Lam = self.bearing_number if bearing_number is None else bearing_number
-        return replace(self, bearing_number=Lam, displacement=self.displacement if displacement is None else displacement)
+        e = self.displacement if displacement is None else displacement
+        return replace(self, bearing_number=Lam, displacement=e)
 
     @property
     def G(self) -> sp.csr_array:
@@ -174,7 +179,8 @@ class CoupledProblem:
     def gaps(self, x: Array) -> Array:
         """Gaps over the reference length, (m,) [1]."""
         contacts, h_ref = self.layout.wall.contacts, self.layout.scales.length
-        return contacts.rest / h_ref + contacts.by_e @ self.displacement + contacts.G @ x[: self.layout.n_wall]
+        moved: Array = contacts.by_e @ self.displacement + contacts.G @ x[: self.layout.n_wall]
+        return contacts.rest / h_ref + moved
 
     def film(self, x: Array, shift: Array | None = None) -> Array:
         """Film thickness over the reference length; `shift` (m,) replaces `g` by `g + shift` on the journal rows."""
@@ -192,11 +198,14 @@ class CoupledProblem:
         """The film is open everywhere."""
         return bool(np.min(self.film(x)) > 0.0)
 
-    def linearize(self, x: Array, shift: Array | None = None) -> Linearization:
-        """Residual, its tangent and its row sizes at `x`."""
+    def linearize(self, x: Array, shift: Array | None = None, fine: Array | None = None) -> Linearization:
+        """Residual, its tangent and its row sizes at `x`.
+
+        `fine` (n_wall,) is what of the deflections lies below the last digit of `x`: it matters where `K w` loses it.
+        """
         P, H, Lam = self.pressure(x), self.film(x, shift), self.bearing_number
         balance = self.layout.balance
-        return Linearization(self.layout, x, balance.fluxes(P, H, Lam), balance.storage_tangent(P, H, Lam))
+        return Linearization(self.layout, x, balance.fluxes(P, H, Lam), balance.storage_tangent(P, H, Lam), fine)
 
 
 @dataclass(frozen=True)
@@ -211,12 +220,13 @@ class Linearization:
     x: Array
     fluxes: tuple[Flux, Flux]
     storage: tuple[Array, Array]
+    fine: Array | None = None
 
     @cached_property
     def residual(self) -> Array:
         """(C1) without reactions, then (C2); shape (n,) [1]."""
         w, P = self.x[: self.layout.n_wall], self.x[self.layout.n_wall :]
-        elastic = self.layout.stiffness @ w
+        elastic = self.layout.elastic_force(w, self.fine)
         pushed = self.layout.push @ (P - 1.0)
         return np.concatenate([elastic - pushed, self.layout.balance.residual(self.fluxes)])
 
@@ -227,7 +237,8 @@ class Linearization:
         A film row: the flows it adds up. A wall row: see `wall_size`.
         """
         film = self.layout.balance.size(self.fluxes)
-        wall = wall_size(self.layout, self.x[: self.layout.n_wall])
+        w = self.x[: self.layout.n_wall]
+        wall = wall_size(self.layout, w) if self.fine is None else np.ones(len(w))
         return np.concatenate([wall, film])
 
     @cached_property
@@ -250,21 +261,24 @@ class Linearization:
         if len(journal):
             steady, held = self.layout.balance.by_film, self.layout.balance.storage_entries
             n_film = self.layout.n - self.layout.n_wall
-            moved = np.bincount(steady.rows, self._film_entries[1] * journal[steady.cols], n_film)
-            moved += rate * np.bincount(held.rows, self.storage[1] * journal[held.cols], n_film)
+            moved = add_up(steady.rows, self._film_entries[1] * journal[steady.cols], n_film)
+            moved += rate * add_up(held.rows, self.storage[1] * journal[held.cols], n_film)
             out[self.layout.n_wall :] = moved
         return out
 
 
 def wall_size(layout: Layout, w: Array) -> Array:
-    """What the residual of the wall's rows is measured by, (n_wall,) [1].
+    """What the residual of the wall's rows is measured by while it is iterated on, (n_wall,) [1].
 
-    Ambient pressure on the node; where the rounding of `K w` exceeds 1e-8 of that, this rounding (it grows as
-    `dphi^-4`, and no arithmetic in double precision gets below it).
+    Ambient pressure on the node; where the rounding of `w` alone makes more than the tolerance of that, this rounding
+    (`K w` loses it as `dphi^-4`). An answer is refined below the last digit of `w` and then measured by the former.
     """
-    rounding = np.finfo(float).eps * (layout.stiffness_size @ np.abs(w))
+    rounding: Array = WALL_ROUNDING * np.finfo(float).eps * (layout.stiffness_size @ np.abs(w))
     return np.maximum(1.0, rounding / RESIDUAL_TOLERANCE)
 
+
+WALL_ROUNDING = 8.0
+"""Roundings of `K w` add up: up to 5 were seen at 512 cells a pitch."""
 
 RESIDUAL_TOLERANCE = 1e-8
 """Largest scaled residual of an answer."""

@@ -80,7 +80,7 @@ class PackageLinearization:
     @cached_property
     def residual(self) -> Array:
         """`K w - f`, reactions apart, shape (n_wall,) [1]."""
-        out: Array = self.problem.layout.stiffness @ self.x - self.problem.load
+        out: Array = self.problem.layout.elastic_force(self.x) - self.problem.load
         return out
 
     @cached_property

@@ -49,7 +49,8 @@ def rightmost(pencil: Pencil, step: float, solver: LinearSolver) -> complex:
     count = n - first
 
     def advance(mass: Array) -> Array:
-        return (pencil.M @ sdirk(pencil, factor, mass))[first:]
+        stored: Array = pencil.M @ sdirk(pencil, factor, mass)
+        return stored[first:]
 
     if count <= DENSE:
         values, vectors = la.eig(np.column_stack([advance(column) for column in np.eye(count)]))
@@ -93,7 +94,7 @@ def solve_any(factor: Factor, rhs: Array) -> Array:
     """Solve a real or a complex right-hand side with a real factor."""
     if np.iscomplexobj(rhs):
         both = factor.solve(np.column_stack([rhs.real, rhs.imag]))
-        return both[:, 0] + 1j * both[:, 1]  # type: ignore[return-value]
+        return both[:, 0] + 1j * both[:, 1]
     return factor.solve(rhs)
 
 

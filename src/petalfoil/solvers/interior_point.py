@@ -38,6 +38,8 @@ class InteriorOptions:
     """Barrier below which centring does not aim."""
     short: float = 0.2
     """A step shorter than this, twice in a row, says that Newton's direction leads nowhere."""
+    march: bool = False
+    """Begin in time: what is found is then stable, as far as the steps resolve."""
     first_time: float = 1.0
     """First time step of a march, in radians of rotation."""
     growth: float = 3.0
@@ -86,14 +88,14 @@ class Pace:
 def interior_point(
     problem: ConeProblem, start: ConePoint, solver: LinearSolver, options: InteriorOptions, watch: Watch
 ) -> tuple[ConePoint, bool]:
-    """Follow the central path from `start` until `watch` is content.
+    """Follow the central path from `start` until `watch` is content; in time first, if the options say so.
 
     Returns
     -------
     (ConePoint, bool)
         The last point, and whether `watch` was content with it before the steps ran out.
     """
-    point, pace = start, Pace()
+    point, pace = start, Pace(rate=1.0 / options.first_time if options.march else 0.0)
     for _ in range(options.max_steps + 1):
         shift = point.s - problem.gaps(point.x)
         line = problem.linearize(point.x, shift)

@@ -15,6 +15,8 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
+from petalfoil.sparsity import add_up
+
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
@@ -41,7 +43,7 @@ class Ties:
     def determinate(self) -> bool:
         """No closed gap repeats what others already say (a chain held at both ends)."""
         n = len(self.group)
-        return self.G.shape[0] == n - self.n_free
+        return int(self.G.shape[0]) == n - self.n_free
 
     @cached_property
     def _normal(self) -> spla.SuperLU:
@@ -60,7 +62,7 @@ class Ties:
     def gather(self, full: Array) -> Array:
         """Add up the equations of unknowns that move together; shape (n_free,)."""
         inside = self.group >= 0
-        return np.bincount(self.group[inside], full[inside], self.n_free)
+        return add_up(self.group[inside], full[inside], self.n_free)
 
     def spread(self, free: Array) -> Array:
         """Move every unknown with its group; shape (n,)."""

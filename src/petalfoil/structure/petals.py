@@ -11,7 +11,7 @@ from petalfoil.mesh.strips import exposed_strips
 from petalfoil.physics.contact import package_contacts
 from petalfoil.physics.shell import PetalShell
 from petalfoil.structure.axis import axial_grid
-from petalfoil.structure.wall import Wall
+from petalfoil.structure.wall import Elasticity, Wall
 
 
 def petals_of(case: Case) -> tuple[Petals, Package]:
@@ -41,6 +41,13 @@ def build_shell(case: Case, mesh: PackageMesh) -> PetalShell:
     )
 
 
+def package_elasticity(shell: PetalShell, mesh: PackageMesh) -> Elasticity:
+    """Elastic energy of all petals, their roots held."""
+    every, free = sp.eye_array(mesh.count), slice(mesh.n_z, None)
+    parts = (shell.difference[:, free], shell.strain, shell.rigidity_matrix)
+    return Elasticity(*(sp.csr_array(sp.kron(every, part, format="csr")) for part in parts))
+
+
 def build(case: Case) -> Wall:
     """Discretise the package of `case`."""
     (petals, package), mesh = petals_of(case), build_mesh(case)
@@ -60,7 +67,7 @@ def build(case: Case) -> Wall:
     return Wall(
         name="petals",
         film=film,
-        stiffness=sp.csr_array(sp.kron(every, shell.stiffness[free, free], format="csr")),
+        elasticity=package_elasticity(shell, mesh),
         film_unknown=mesh.free_numbers()[:, mesh.exposed],
         load_area=np.broadcast_to(load_area, film.shape),
         rest_film=np.broadcast_to(rest[None, :, None], film.shape),

@@ -9,7 +9,7 @@ from petalfoil.case import Case
 from petalfoil.mesh.strips import whole_circle
 from petalfoil.physics.contact import no_contacts
 from petalfoil.structure.axis import axial_grid
-from petalfoil.structure.wall import Wall
+from petalfoil.structure.wall import Wall, no_elasticity
 
 
 def build(case: Case) -> Wall:
@@ -20,7 +20,7 @@ def build(case: Case) -> Wall:
     return Wall(
         name="rigid",
         film=film,
-        stiffness=sp.csr_array((0, 0)),
+        elasticity=no_elasticity(),
         film_unknown=np.full(film.shape, -1),
         load_area=np.zeros(film.shape),
         rest_film=np.full(film.shape, clearance),

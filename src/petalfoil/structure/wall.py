@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -15,6 +16,45 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
+class Elasticity:
+    """Elastic energy `|strain difference W|^2 / 2` in the metric of `rigidity`, kept in factors.
+
+    Attributes
+    ----------
+    difference : (k, n) sparse
+        Differences of neighbouring deflections, entries +-1: free of rounding.
+    strain : (m, k) sparse
+        Strains from differences.
+    rigidity : (m, m) sparse
+        Symmetric, positive semi-definite: generalised stresses from strains, weights included.
+    """
+
+    difference: sp.csr_array
+    strain: sp.csr_array
+    rigidity: sp.csr_array
+
+    @cached_property
+    def stiffness(self) -> sp.csr_array:
+        """Nodal forces from deflections, (n, n), symmetric [N/m]."""
+        S = self.strain @ self.difference
+        return sp.csr_array(S.T @ self.rigidity @ S)
+
+    def force(self, W: Array, fine: Array | None = None) -> Array:
+        """Nodal forces of deflections `W` plus `fine`, what of them lies below the last digit of `W`; (n,) [N]."""
+        jumps = self.difference @ W
+        if fine is not None:
+            jumps = jumps + self.difference @ fine
+        out: Array = self.difference.T @ (self.strain.T @ (self.rigidity @ (self.strain @ jumps)))
+        return out
+
+
+def no_elasticity() -> Elasticity:
+    """A wall that does not move."""
+    nothing = sp.csr_array((0, 0))
+    return Elasticity(nothing, nothing, nothing)
+
+
+@dataclass(frozen=True)
 class Wall:
     """A discretised wall: all that the coupled problem needs to know of it.
 
@@ -24,8 +64,8 @@ class Wall:
         Kind of wall, as registered.
     film : FilmMesh
         The film's strips over the wall.
-    stiffness : (n, n) sparse
-        Symmetric, positive semi-definite: elastic nodal forces from deflections [N/m].
+    elasticity : Elasticity
+        Elastic nodal forces from deflections.
     film_unknown : (strip, node, axial) int array
         Number of the deflection unknown under each film node, -1 where the wall does not move.
     load_area : (strip, node, axial) array
@@ -45,7 +85,7 @@ class Wall:
 
     name: str
     film: FilmMesh
-    stiffness: sp.csr_array
+    elasticity: Elasticity
     film_unknown: NDArray[np.intp]
     load_area: Array
     rest_film: Array
@@ -57,10 +97,11 @@ class Wall:
     @property
     def n_unknown(self) -> int:
         """Deflection unknowns."""
-        return int(self.stiffness.shape[0])
+        return int(self.elasticity.difference.shape[1])
 
     def film_thickness(self, W: Array, e: Array) -> Array:
         """Film over deflections `W` (n,) and journal displacement `e` (2,), shape of the film mesh [m]."""
         normal = self.film.theta
         displaced = self.rest_film - (e[0] * np.cos(normal) + e[1] * np.sin(normal))[:, :, None]
-        return displaced + np.append(W, 0.0)[self.film_unknown]
+        thickness: Array = displaced + np.append(W, 0.0)[self.film_unknown]
+        return thickness

@@ -1,0 +1,73 @@
+"""Taylor's test of a tangent, and the states to take it at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.case import Case
+from petalfoil.problem.coupled import CoupledProblem
+from tests.cases import case
+
+Array = NDArray[np.float64]
+
+SLOPE = 2.0
+TOLERANCE = 0.05
+HALVINGS = 5
+
+
+def taylor_slopes(along: Callable[[float], Array], change: Array, largest: float = 2.0**-7) -> Array:
+    """Slopes of the remainder `|f(t) - f(0) - t f'(0)|` between steps `t`, each half of the one before.
+
+    2 says that `change` is the derivative; 1 that it is not. Steps of 1e-2 to 1e-4 of the unknowns leave the next
+    order of the series below 1 % of the remainder, and rounding too.
+    """
+    start = along(0.0)
+    remainder = [float(np.linalg.norm(along(t) - start - t * change)) for t in largest * 0.5 ** np.arange(HALVINGS + 1)]
+    assert remainder[-1] > 0.0, "the function is linear: there is no remainder to measure"
+    return np.asarray(np.log2(np.array(remainder[:-1]) / np.array(remainder[1:])))
+
+
+def assert_tangent(along: Callable[[float], Array], change: Array, largest: float = 2.0**-7) -> None:
+    """The remainder falls with slope 2 ± 0.05."""
+    np.testing.assert_allclose(taylor_slopes(along, change, largest), SLOPE, rtol=0.0, atol=TOLERANCE)
+
+
+BEARINGS: dict[str, tuple[str, str, str, bool]] = {
+    "plain, flat": ("plain_journal", "flat", "ambient", True),
+    "plain, half": ("plain_journal", "spatial", "ambient", True),
+    "plain, whole": ("plain_journal", "spatial", "ambient", False),
+    "petals, flat": ("paper_n8", "flat", "ambient", True),
+    "petals, half": ("paper_n8", "spatial", "ambient", True),
+    "petals, whole": ("paper_n8", "spatial", "ambient", False),
+    "stepped petals, flat": ("paper_n8", "flat", "continuous", True),
+    "stepped petals, half": ("paper_n8", "spatial", "continuous", True),
+    "stepped petals, whole": ("paper_n8", "spatial", "continuous", False),
+}
+"""Example, kind, edges, symmetry."""
+
+
+def bearing(name: str) -> Case:
+    """One of `BEARINGS` on a coarse grid."""
+    example, kind, edges, symmetry = BEARINGS[name]
+    changes: dict[str, object] = {
+        "model.kind": kind,
+        "model.edges": edges,
+        "model.symmetry": symmetry,
+        "model.cells_per_pitch": 6 if example.startswith("paper") else 16,
+        "model.axial_cells": 4,
+    }
+    return case(example, **changes)
+
+
+def open_state(problem: CoupledProblem, rng: np.random.Generator) -> Array:
+    """Unknowns `[w, P]` with films between 0.5 and 2 of the reference film and pressures between 0.7 and 1.7."""
+    layout = problem.layout
+    w = rng.uniform(-1.0, 1.0, layout.n_wall)
+    rest = problem.film(np.concatenate([np.zeros(layout.n_wall), np.ones(layout.n - layout.n_wall)]))
+    under = layout.wall.film_unknown
+    film = rng.uniform(0.5, 2.0, rest.shape)
+    w[under[under >= 0]] = (film - rest)[under >= 0]
+    return np.concatenate([w, rng.uniform(0.7, 1.7, layout.n - layout.n_wall)])

@@ -1,0 +1,160 @@
+"""The coupled system and the solvers' linear systems are told their derivatives: Taylor's test, and gaps beside it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from numpy.typing import NDArray
+
+from petalfoil.problem.build import build_problem
+from petalfoil.problem.coupled import CoupledProblem
+from petalfoil.solvers.cone import ConePoint
+from petalfoil.solvers.interior_point import NewtonSystem
+from petalfoil.solvers.linear import LinearSolver
+from petalfoil.solvers.ties import tie
+from tests.contract.taylor import BEARINGS, assert_tangent, bearing, open_state
+
+Array = NDArray[np.float64]
+
+PETALS = [name for name in BEARINGS if "petals" in name]
+
+
+def stepped_residual(problem: CoupledProblem, x: Array, shift: Array, start: tuple[Array, float]) -> Array:
+    """`F(x)` plus `rate` times the mass stored since the start: an implicit step of `1 / rate` in time."""
+    stored, rate = start
+    residual = problem.linearize(x, shift).residual.copy()
+    residual[problem.layout.n_wall :] += rate * (storage(problem, x, shift) - stored)
+    return residual
+
+
+def storage(problem: CoupledProblem, x: Array, shift: Array) -> Array:
+    """Mass in the cells of the film."""
+    return problem.layout.balance.storage(problem.pressure(x), problem.film(x, shift), problem.bearing_number)
+
+
+def random_shift(problem: CoupledProblem, rng: np.random.Generator) -> Array:
+    """A shift of the gaps that opens the film by up to a tenth."""
+    return rng.uniform(0.0, 0.1, len(problem.layout.wall.contacts.rest))
+
+
+@pytest.mark.parametrize("rate", [0.0, 0.3])
+@pytest.mark.parametrize("name", BEARINGS)
+def test_coupled_tangent(name: str, rate: float) -> None:
+    """The film's rows to slope 2; the wall's rows are linear, and exact."""
+    problem, rng = build_problem(bearing(name)), np.random.default_rng(11)
+    x, shift = open_state(problem, rng), random_shift(problem, rng)
+    direction = rng.uniform(-1.0, 1.0, len(x))
+    start = (storage(problem, x, shift), rate)
+    line, wall = problem.linearize(x, shift), problem.layout.n_wall
+    change = line.matrix(np.zeros(len(shift)), rate) @ direction
+    assert_tangent(
+        lambda t: stepped_residual(problem, x + t * direction, shift, start)[wall:], change[wall:], largest=2.0**-8
+    )
+    moved = problem.linearize(x + direction, shift).residual[:wall]
+    assert_allclose(
+        moved, line.residual[:wall] + change[:wall], rtol=0.0, atol=1e-12 * np.max(np.abs(moved), initial=1.0)
+    )
+
+
+@pytest.mark.parametrize("rate", [0.0, 0.3])
+@pytest.mark.parametrize("name", PETALS)
+def test_derivative_by_the_gaps_shift(name: str, rate: float) -> None:
+    problem, rng = build_problem(bearing(name)), np.random.default_rng(12)
+    x, shift = open_state(problem, rng), random_shift(problem, rng)
+    direction = rng.uniform(-1.0, 1.0, len(shift))
+    start = (storage(problem, x, shift), rate)
+    change = problem.linearize(x, shift).by_shift(direction, rate)
+    assert_tangent(lambda t: stepped_residual(problem, x, shift + t * direction, start), change, largest=2.0**-8)
+
+
+@pytest.mark.parametrize("name", BEARINGS)
+def test_gaps_and_what_they_add_to_the_matrix(name: str) -> None:
+    """`g` is linear with derivative `G`, and `theta` enters as `G^T diag(theta) G`."""
+    problem, rng = build_problem(bearing(name)), np.random.default_rng(13)
+    x = open_state(problem, rng)
+    direction, theta = rng.uniform(-1.0, 1.0, len(x)), rng.uniform(0.0, 2.0, problem.G.shape[0])
+    size = np.max(np.abs(problem.gaps(x)), initial=1.0)
+    assert_allclose(problem.gaps(x + direction), problem.gaps(x) + problem.G @ direction, rtol=0.0, atol=1e-14 * size)
+    line = problem.linearize(x)
+    added = (line.matrix(theta) - line.matrix(0.0 * theta)) @ direction
+    expected = problem.G.T @ (theta * (problem.G @ direction))
+    largest = np.max(np.abs(line.matrix(0.0 * theta)).data)  # the difference of the two matrices rounds by this
+    assert_allclose(added, expected, rtol=0.0, atol=1e-14 * largest)
+
+
+# ---------------------------------------------------------------------------------------------- the kink
+
+
+SIDES_OF_THE_KINK = {
+    "open": (0.0, -6.0),
+    "closed": (-6.0, 0.0),
+    "some open, some closed": (None, None),
+    "at the corner": (-3.0, -3.0),
+}
+"""Powers of ten of slacks and reactions."""
+
+
+def cone_point(problem: CoupledProblem, side: str, rng: np.random.Generator) -> ConePoint:
+    """A point of the interior-point method on one side of the kink of the gaps; none of its equations holds."""
+    m = problem.G.shape[0]
+    s_power, lam_power = SIDES_OF_THE_KINK[side]
+    is_open = rng.random(m) < 0.5
+    s_powers = np.where(is_open, 0.0, -6.0) if s_power is None else np.full(m, s_power)
+    lam_powers = np.where(is_open, -6.0, 0.0) if lam_power is None else np.full(m, lam_power)
+    s, lam = rng.uniform(0.5, 2.0, m) * 10.0**s_powers, rng.uniform(0.5, 2.0, m) * 10.0**lam_powers
+    x = open_state(problem, rng)
+    x[: problem.layout.n_wall] *= 1e-3
+    return ConePoint(x, s, lam)
+
+
+@pytest.mark.parametrize("rate", [0.0, 0.3])
+@pytest.mark.parametrize("side", SIDES_OF_THE_KINK)
+@pytest.mark.parametrize("name", PETALS)
+def test_newton_direction_of_the_interior_point(name: str, side: str, rate: float) -> None:
+    """Along Newton's direction `[F - G^T lam; s - g; lam s - target]` goes to zero as `1 - t`, up to `t^2`."""
+    problem, rng = build_problem(bearing(name)), np.random.default_rng(14)
+    point = cone_point(problem, side, rng)
+    target = 0.1 * point.barrier(problem.weight) * problem.weight
+    shift = point.s - problem.gaps(point.x)
+    line, start = problem.linearize(point.x, shift), (storage(problem, point.x, shift), rate)
+    factor = LinearSolver().factor(line.matrix(point.lam / point.s, rate))
+    newton = NewtonSystem(problem, point, line, factor, rate)
+    direction = newton.direction(target - point.lam * point.s)
+    x, s, lam = direction.parts
+
+    def equations(t: float) -> tuple[Array, Array, Array]:
+        moved = point.s + t * s - problem.gaps(point.x + t * x)
+        forces = stepped_residual(problem, point.x + t * x, moved, start) - problem.G.T @ (point.lam + t * lam)
+        return forces, moved, (point.lam + t * lam) * (point.s + t * s) - target
+
+    forces, gaps, products = equations(0.0)
+    wall, H = problem.layout.n_wall, problem.film(point.x, shift)
+    widest = max(np.max(np.abs(s[: H.size]) / H.ravel()), np.max(np.abs(x[wall:] / point.x[wall:])))
+    assert_tangent(lambda t: equations(t)[0][wall:], -forces[wall:], largest=2.0**-6 / widest)
+    assert_tangent(lambda t: equations(t)[2], -products, largest=1.0)
+    # the wall's rows and the gaps are linear: a full step closes them, up to rounding of their terms
+    there = equations(1.0)
+    terms = problem.layout.stiffness_size @ np.abs(x[:wall]) + abs(problem.G[:, :wall].T) @ np.abs(lam)
+    assert_allclose(there[0][:wall], 0.0, rtol=0.0, atol=1e-13 * np.max(terms))
+    assert_allclose(there[1], 0.0, rtol=0.0, atol=1e-13 * np.max(np.abs(gaps)))
+    # gap by gap, small ones beside large ones
+    change, scale = point.lam * s + point.s * lam, np.abs(point.lam * s) + np.abs(products)
+    assert_allclose((change + products) / scale, 0.0, rtol=0.0, atol=1e-14)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.1])
+@pytest.mark.parametrize("name", PETALS)
+def test_tangent_with_closed_gaps(name: str, share: float) -> None:
+    """Unknowns tied by closed gaps move together: the reduced matrix is the derivative of the merged equations."""
+    problem, rng = build_problem(bearing(name)), np.random.default_rng(15)
+    x = open_state(problem, rng)
+    ties = tie(problem.G, rng.random(problem.G.shape[0]) < share)
+    direction = rng.uniform(-1.0, 1.0, ties.n_free)
+    free_of_wall = np.unique(ties.group[problem.layout.n_wall :])
+    change = ties.reduce(problem.linearize(x).matrix(np.zeros(problem.G.shape[0]))) @ direction
+
+    def merged(t: float) -> Array:
+        return ties.gather(problem.linearize(x + t * ties.spread(direction)).residual)[free_of_wall]
+
+    assert_tangent(merged, change[free_of_wall], largest=2.0**-8)
