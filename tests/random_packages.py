@@ -47,9 +47,7 @@ def _draw(rng: np.random.Generator) -> Case:
     reach = rng.uniform(0.0, 0.3) * (clearance - layers * delta - FILM_FLOOR)
     direction = rng.uniform(0.0, 2.0 * math.pi)
     return Case(
-        bearing=Bearing(
-            journal_radius=R_j, bushing_radius=R_j + clearance, length=2.0 * R_j * rng.uniform(0.5, 1.5)
-        ),
+        bearing=Bearing(journal_radius=R_j, bushing_radius=R_j + clearance, length=2.0 * R_j * rng.uniform(0.5, 1.5)),
         petals=Petals(
             count=count,
             arc_length=overlap * pitch * r_m,

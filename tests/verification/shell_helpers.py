@@ -171,7 +171,9 @@ UNIT = 1e-4
 travel."""
 
 
-def strips_problem(shells: Sequence[PetalShell], forces: Sequence[Array], G: sp.csr_array, rest: Array) -> ElasticProblem:
+def strips_problem(
+    shells: Sequence[PetalShell], forces: Sequence[Array], G: sp.csr_array, rest: Array
+) -> ElasticProblem:
     """Strips side by side with gaps along the first nodes of the first one, root apart; `forces` without the root."""
     phi = shells[0].phi
     cell = float(phi[-1]) / (len(phi) - 1)

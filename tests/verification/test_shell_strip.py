@@ -25,6 +25,10 @@ from tests.verification.shell_helpers import (
 )
 
 CELLS = (16, 32, 64)
+BOUND = 5e-4
+"""Relative error at 64 cells: a strip (uniform), a pitch (package)."""
+BOUNDS = {"w_tip_moment*D/(m0 r^2)": 1.2e-3}
+"""The moment bends the last half cell, which carries no energy, and turns it most where `k` is large."""
 ROWS = table("d1_petal_strip")
 POISSON = 0.3  # of `strip_shell`
 
@@ -99,7 +103,7 @@ def test_every_row_of_the_table(quantity: str, grid: str) -> None:
         k, phi1, exact = float(row["k=r/Rp"]), float(row["phi1"]), float(row[quantity])
         errors = [QUANTITIES[quantity](GRIDS[grid](phi1, cells), k) / exact - 1.0 for cells in CELLS]
         where = f"k = {k}, phi1 = {phi1}"
-        assert abs(errors[-1]) < 1e-3, where
+        assert abs(errors[-1]) < BOUNDS.get(quantity, BOUND), where
         rounding = abs(errors[0]) < 1e-8  # a straight strip's moments are statics alone: exact on any grid
         assert rounding or orders(errors).min() > 1.9, f"{where}: {errors}"
 
@@ -116,7 +120,7 @@ def test_deflection_and_moment_along_the_strip(grid: str) -> None:
         M = (1.0 - np.cos(k * (phi1 - phi))) / k**2
         chi = shell.curvatures(W[:, None])[0][:, 0]
         errors.append([np.abs(W - w).max() / w.max(), np.abs(chi - M).max() / M.max()])
-    assert max(errors[-1]) < 5e-4
+    assert max(errors[-1]) < BOUND
     assert orders(np.array(errors)).min() > 1.9
 
 

@@ -18,7 +18,7 @@ def mass_balance(answer: Answer) -> float:
     """
     problem = answer.problem
     balance = problem.layout.balance
-    fluxes = problem.linearize(answer.x).fluxes
+    fluxes = problem.linearize(answer.x).film.fluxes
     gained = balance.outflow(fluxes)
     inside = balance.mesh.unknown >= 0
     inside[:, [0, -1]] = False  # a shared edge belongs to two strips
@@ -47,6 +47,6 @@ def side_leakage(answer: Answer) -> float:
     axial = balance.mesh.axial
     if axial.flat:
         return 0.0
-    gained = balance.outflow(answer.problem.linearize(answer.x).fluxes)
+    gained = balance.outflow(answer.problem.linearize(answer.x).film.fluxes)
     ends = [0] if axial.half else [0, -1]
     return float(-gained[:, 1:-1, ends].sum())

@@ -15,9 +15,9 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.physics.balance import FilmBalance
-from petalfoil.physics.film import Flux
+from petalfoil.problem.film_rows import FilmRows, FilmState
 from petalfoil.problem.scales import Scales
-from petalfoil.sparsity import Pattern, add_up
+from petalfoil.sparsity import Pattern
 from petalfoil.structure.wall import Wall
 
 Array = NDArray[np.float64]
@@ -36,6 +36,11 @@ class Layout:
     def n_wall(self) -> int:
         """Deflection unknowns."""
         return self.wall.n_unknown
+
+    @cached_property
+    def film_rows(self) -> FilmRows:
+        """The film's equations."""
+        return FilmRows(self.balance)
 
     @cached_property
     def n(self) -> int:
@@ -79,7 +84,7 @@ class Layout:
     @cached_property
     def film_column(self) -> Index:
         """Deflection unknown of every derivative by film thickness, -1 where the wall does not move."""
-        return self.wall.film_unknown.ravel()[self.balance.by_film.cols]
+        return self.wall.film_unknown.ravel()[self.film_rows.by_film.cols]
 
     @cached_property
     def storage_column(self) -> Index:
@@ -104,7 +109,7 @@ class Layout:
     def places(self) -> tuple[Index, Index]:
         """Rows and columns of the tangent's entries in the order of `Linearization.entries`."""
         K, A, n_w = self.stiffness.tocoo(), self.push.tocoo(), self.n_wall
-        by_P, by_H, moving = self.balance.by_pressure, self.balance.by_film, self.film_column >= 0
+        by_P, by_H, moving = self.film_rows.by_pressure, self.film_rows.by_film, self.film_column >= 0
         held, under = self.balance.storage_entries, self.storage_column
         gap_rows, gap_cols, _, _ = self.gap_products
         rows = [K.row, A.row, n_w + by_P.rows, n_w + by_H.rows[moving], gap_rows]
@@ -203,9 +208,8 @@ class CoupledProblem:
 
         `fine` (n_wall,) is what of the deflections lies below the last digit of `x`: it matters where `K w` loses it.
         """
-        P, H, Lam = self.pressure(x), self.film(x, shift), self.bearing_number
-        balance = self.layout.balance
-        return Linearization(self.layout, x, balance.fluxes(P, H, Lam), balance.storage_tangent(P, H, Lam), fine)
+        film = self.layout.film_rows.at(self.pressure(x), self.film(x, shift), self.bearing_number)
+        return Linearization(self.layout, x, film, fine)
 
 
 @dataclass(frozen=True)
@@ -218,8 +222,7 @@ class Linearization:
 
     layout: Layout
     x: Array
-    fluxes: tuple[Flux, Flux]
-    storage: tuple[Array, Array]
+    film: FilmState
     fine: Array | None = None
 
     @cached_property
@@ -228,7 +231,7 @@ class Linearization:
         w, P = self.x[: self.layout.n_wall], self.x[self.layout.n_wall :]
         elastic = self.layout.elastic_force(w, self.fine)
         pushed = self.layout.push @ (P - 1.0)
-        return np.concatenate([elastic - pushed, self.layout.balance.residual(self.fluxes)])
+        return np.concatenate([elastic - pushed, self.film.residual])
 
     @cached_property
     def size(self) -> Array:
@@ -236,19 +239,14 @@ class Linearization:
 
         A film row: the flows it adds up. A wall row: see `wall_size`.
         """
-        film = self.layout.balance.size(self.fluxes)
         w = self.x[: self.layout.n_wall]
         wall = wall_size(self.layout, w) if self.fine is None else np.ones(len(w))
-        return np.concatenate([wall, film])
-
-    @cached_property
-    def _film_entries(self) -> tuple[Array, Array]:
-        return self.layout.balance.tangent(self.fluxes)
+        return np.concatenate([wall, self.film.size])
 
     def matrix(self, theta: Array, rate: float = 0.0) -> sp.csc_array:
         """Tangent plus `G^T diag(theta) G`, plus `rate` times the derivative of the stored mass; (n, n)."""
-        by_P, by_H = self._film_entries
-        held_P, held_H = self.storage
+        by_P, by_H = self.film.tangent
+        held_P, held_H = self.film.storage
         _, _, gap, factor = self.layout.gap_products
         moving, under = self.layout.film_column >= 0, self.layout.storage_column >= 0
         values = [self.layout.constant_entries, by_P, by_H[moving], theta[gap] * factor]
@@ -259,11 +257,7 @@ class Linearization:
         out = np.zeros(self.layout.n)
         journal = shift[self.layout.wall.contacts.journal]
         if len(journal):
-            steady, held = self.layout.balance.by_film, self.layout.balance.storage_entries
-            n_film = self.layout.n - self.layout.n_wall
-            moved = add_up(steady.rows, self._film_entries[1] * journal[steady.cols], n_film)
-            moved += rate * add_up(held.rows, self.storage[1] * journal[held.cols], n_film)
-            out[self.layout.n_wall :] = moved
+            out[self.layout.n_wall :] = self.film.moved(journal, rate)
         return out
 
 
