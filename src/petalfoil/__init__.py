@@ -14,7 +14,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from petalfoil.api import check, curve, solve, static
+    from petalfoil.api import check, converge, curve, solve, static
     from petalfoil.case import Case
     from petalfoil.errors import (
         ConvergenceError,
@@ -39,6 +39,7 @@ __all__ = [
     "UsageError",
     "__version__",
     "check",
+    "converge",
     "curve",
     "solve",
     "static",
@@ -47,6 +48,7 @@ __all__ = [
 _HOMES = {
     "Case": "petalfoil.case",
     "check": "petalfoil.api",
+    "converge": "petalfoil.api",
     "curve": "petalfoil.api",
     "solve": "petalfoil.api",
     "static": "petalfoil.api",

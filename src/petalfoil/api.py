@@ -29,6 +29,7 @@ def solve(
     *,
     speed: Number | None = None,
     eccentricity: Sequence[Number] | str | None = None,
+    error: bool = False,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Solve film, petals and contact at one position of the journal.
@@ -41,6 +42,9 @@ def solve(
         Angular speed instead of the case's [rad/s].
     eccentricity : pair of float or str, optional
         Displacement (x, y) instead of the case's [m].
+    error : bool
+        Add error bars from a study on the case's grid and two more, as the attribute ``grid_error`` of each figure,
+        in the figure's unit.
     progress : callable, optional
         Called with the share done (0 to 1) and a text.
 
@@ -56,13 +60,73 @@ def solve(
     PackageError
         The displaced journal leaves the package no room.
     """
-    from petalfoil.analysis import equilibrium
+    from petalfoil.analysis import equilibrium, grid_study
     from petalfoil.results.dataset import to_dataset
 
     record = equilibrium.run(
         _checked(case), speed=_speed(speed), eccentricity=_position(eccentricity), progress=progress
     )
-    return to_dataset(record)
+    if not error:
+        return to_dataset(record)
+    from petalfoil.results.study import with_error_bars
+
+    return with_error_bars(to_dataset(record), grid_study.error_bars(record, progress))
+
+
+def converge(
+    case: Case,
+    *,
+    speed: Number | None = None,
+    eccentricity: Sequence[Number] | str | None = None,
+    levels: int = 3,
+    coarsest: int | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Solve one position of the journal on nested grids: order, limit and error bar of every figure.
+
+    Parameters
+    ----------
+    case : Case
+        The bearing.
+    speed : float or str, optional
+        Angular speed instead of the case's [rad/s].
+    eccentricity : pair of float or str, optional
+        Displacement (x, y) instead of the case's [m].
+    levels : int
+        Number of grids, each twice as fine as the one before.
+    coarsest : int, optional
+        Cells along a pitch of the coarsest grid, 16 at least. By default the case's own grid is the finest, as long as
+        the coarser ones are fine enough to tell anything.
+    progress : callable, optional
+        Called with the share done (0 to 1) and a text.
+
+    Returns
+    -------
+    xarray.Dataset
+        Figures along the dimension `grid`; for each figure ``f`` also ``f_limit``, ``f_error``, ``f_order`` (nan
+        where none could be observed) and ``f_trusted``.
+
+    Raises
+    ------
+    ConvergenceError
+        Fewer than two grids have an answer.
+    UsageError
+        These grids cannot be made.
+    PackageError
+        The displaced journal leaves the package no room.
+    """
+    from petalfoil.analysis import grid_study
+    from petalfoil.results.study import study_dataset
+
+    records = grid_study.run(
+        _checked(case),
+        speed=_speed(speed),
+        eccentricity=_position(eccentricity),
+        levels=levels,
+        coarsest=coarsest,
+        progress=progress,
+    )
+    return study_dataset(records, grid_study.table(records))
 
 
 def curve(

@@ -21,9 +21,13 @@ def called(monkeypatch: pytest.MonkeyPatch) -> list[tuple[tuple[Any, ...], dict[
         calls.append((args, kwargs))
         return ["record"]
 
-    for target in ("equilibrium.run", "load_curve.iterate", "static.iterate", "check.run"):
+    for target in ("equilibrium.run", "load_curve.iterate", "static.iterate", "check.run", "grid_study.run"):
         monkeypatch.setattr(f"petalfoil.analysis.{target}", analysis)
     monkeypatch.setattr("petalfoil.results.dataset.to_dataset", lambda record: record)
+    monkeypatch.setattr("petalfoil.analysis.grid_study.table", lambda records: f"estimates of {records[0]}")
+    monkeypatch.setattr("petalfoil.analysis.grid_study.error_bars", lambda record, progress: {"load_capacity": 0.5})
+    for target in ("study_dataset", "with_error_bars"):
+        monkeypatch.setattr(f"petalfoil.results.study.{target}", lambda *both: both)
     monkeypatch.setattr("petalfoil.results.dataset.curve_dataset", lambda records, analysis: (records, analysis))
     return calls
 
@@ -59,6 +63,20 @@ def test_static(called: list[Any]) -> None:
 def test_check(called: list[Any]) -> None:
     assert petalfoil.check(PLAIN) == ["record"]
     assert called.pop() == ((PLAIN,), {})
+
+
+def test_converge(called: list[Any]) -> None:
+    assert petalfoil.converge(PLAIN) == (["record"], "estimates of record")
+    args, kwargs = called.pop()
+    assert args == (PLAIN,)
+    assert kwargs == {"speed": None, "eccentricity": None, "levels": 3, "coarsest": None, "progress": None}
+    petalfoil.converge(PLAIN, speed=5, eccentricity=("1 um", 0), levels=2, coarsest=24)
+    _, kwargs = called.pop()
+    assert (kwargs["speed"], kwargs["eccentricity"], kwargs["levels"], kwargs["coarsest"]) == (5.0, (1e-6, 0.0), 2, 24)
+
+
+def test_solve_with_error_bars(called: list[Any]) -> None:
+    assert petalfoil.solve(PLAIN, error=True) == (["record"], {"load_capacity": 0.5})
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,7 @@ NAMES = {
     "UsageError",
     "__version__",
     "check",
+    "converge",
     "curve",
     "solve",
     "static",

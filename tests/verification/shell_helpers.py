@@ -145,7 +145,8 @@ class ElasticLine:
     def size(self) -> Array:
         """What each row's residual is measured by."""
         rounding = WALL_ROUNDING * np.finfo(float).eps * (abs(self.problem.K) @ np.abs(self.x))
-        return np.maximum(1.0, rounding / ActiveOptions().tolerance)
+        size: Array = np.maximum(1.0, rounding / ActiveOptions().tolerance)
+        return size
 
     def matrix(self, theta: Array, rate: float = 0.0) -> sp.csc_array:
         """`K + G^T diag(theta) G`."""

@@ -76,7 +76,7 @@ def root_moment(phi: Array, k: float) -> float:
 
 
 def prop_reaction(phi: Array, k: float) -> float:
-    return float(propped(phi, k, clamped=True).lam[0]) * phi[-1] / (len(phi) - 1)
+    return float(propped(phi, k, clamped=True).lam[0] * phi[-1] / (len(phi) - 1))
 
 
 def hinged_middle(phi: Array, k: float) -> float:

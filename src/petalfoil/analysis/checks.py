@@ -28,7 +28,7 @@ def mass_balance(answer: Answer) -> float:
 
 
 def reaction_balance(answer: Answer) -> float:
-    """Largest defect of a petal's loads against its support, in motions that bend nothing, over the loads [1]."""
+    """Largest defect of a petal's loads against its support, in motions that bend nothing (S4), over the loads [1]."""
     layout = answer.problem.layout
     w, P = answer.x[: layout.n_wall], answer.x[layout.n_wall :]
     if not layout.n_wall:
@@ -42,11 +42,18 @@ def reaction_balance(answer: Answer) -> float:
 
 
 def side_leakage(answer: Answer) -> float:
-    """Flow of gas out of both ends, pressure times volume a second, over `p_a^2 h_ref^3 / (12 mu)` [1]."""
+    """Gas that leaves at both ends, pressure times volume a second, over `p_a^2 h_ref^3 / (12 mu)` [1].
+
+    What enters again where the film is below ambient pressure is not subtracted: in a film that runs on all round
+    the difference is nothing.
+    """
     balance = answer.problem.layout.balance
-    axial = balance.mesh.axial
+    axial, unknown = balance.mesh.axial, balance.mesh.unknown
     if axial.flat:
         return 0.0
-    gained = balance.outflow(answer.problem.linearize(answer.x).film.fluxes)
-    ends = [0] if axial.half else [0, -1]
-    return float(-gained[:, 1:-1, ends].sum())
+    leaving = -balance.outflow(answer.problem.linearize(answer.x).film.fluxes)
+    ends = leaving[..., [0] if axial.half else [0, -1]]
+    shared = unknown[:, -1, unknown.shape[2] // 2] >= 0  # the film runs on over the edge: two halves of one cell
+    ends[:, -1] += np.roll(ends[:, 0], -1, axis=0)
+    ends[:, -1] *= shared[:, None]
+    return float(np.maximum(ends[:, 1:], 0.0).sum())

@@ -61,7 +61,7 @@ def given(case: Case) -> Named:
 
 
 def forces(case: Case, answer: Answer) -> Named:
-    """Forces on the journal (62)-(64) and the share that contact carries."""
+    """Forces on the journal (J1), (J2) and the share that contact carries (J3)."""
     film, scales = answer.problem.layout.wall.film, answer.problem.layout.scales
     Q = (answer.problem.pressure(answer.x) - 1.0) * scales.pressure
     by_film = film_force(film, case.bearing.journal_radius, Q)
@@ -116,6 +116,7 @@ def leakage(case: Case, answer: Answer) -> float:
 def trust(answer: Answer) -> Named:
     """Residual and balances."""
     return {
+        "film_scale": answer.problem.layout.scales.length,
         "residual": answer.residual,
         "mass_balance": mass_balance(answer),
         "reaction_balance": reaction_balance(answer),

@@ -17,10 +17,12 @@ from petalfoil.case.problems import Problem, joined
 from petalfoil.case.sections import Bearing, Gas, Kind, Model, Operation, Surface
 from petalfoil.errors import DefinitionError, PackageError
 
-# Grids whose error in the load stays under 1 %.
-DEFAULT_CELLS = {Kind.FLAT: 32, Kind.SPATIAL: 32}  # along the pitch of a package
+# Grids whose error in the load stays under 1 %: measured on the paper's packages (six to ten petals, displaced by 100 to
+# 280 um: at most 0.4 % flat, 0.7 % spatial) and on plain bearings (L/D 1/2 to 2).
+DEFAULT_CELLS = {Kind.FLAT: 128, Kind.SPATIAL: 64}  # along the pitch of a package
+DEFAULT_AXIAL_CELLS = 24
 DEFAULT_PLAIN_CELLS = 128  # a plain bearing's pitch is the whole circle
-DEFAULT_AXIAL_CELLS = 16
+DEFAULT_PLAIN_AXIAL_CELLS = 32
 
 
 class Case(Definition):
@@ -109,7 +111,9 @@ class Case(Definition):
     @property
     def axial_cells(self) -> int:
         """Cells over the whole length, the default filled in; without meaning in a flat model."""
-        return DEFAULT_AXIAL_CELLS if self.model.axial_cells is None else self.model.axial_cells
+        if self.model.axial_cells is not None:
+            return self.model.axial_cells
+        return DEFAULT_PLAIN_AXIAL_CELLS if self.petals is None else DEFAULT_AXIAL_CELLS
 
     # ------------------------------------------------------------------------------------------ validation
 

@@ -1,7 +1,7 @@
 """Free shape of a petal: the radius of its unloaded mid-surface over the angle from its root.
 
 A petal made to a bend radius is a circular arc (equations (14)–(17) of the paper). In the petal's own frame, root on
-the x-axis, its centre and radius are::
+the x-axis, its centre and radius are (G3)::
 
     C = (r_m − R_p cos ψ, −R_p sin ψ)
     r0(φ) = c + sqrt(c² − |C|² + R_p²),     c = C·(cos φ, sin φ)
@@ -25,7 +25,7 @@ def chordal_tilt(metric_radius: float, bend_radius: float, petal_angle: float) -
     """Return the root tilt that lays the free edge on the bore, ``r0(φ1) = r_m`` [rad].
 
     Root and free edge are then the ends of a chord of the bore. The chord makes the angle ``φ1/2`` with the tangent of
-    the bore and ``asin(r_m sin(φ1/2) / R_p)`` with the tangent of the arc; the tilt is the difference::
+    the bore and ``asin(r_m sin(φ1/2) / R_p)`` with the tangent of the arc; the tilt is the difference (G4)::
 
         ψ = φ1/2 − asin(r_m sin(φ1/2) / R_p)
 

@@ -5,7 +5,7 @@
     r_m = R_B − δ/2        metric radius
     φ0  = 2π/n             pitch
     φ1  = l_p / r_m        angle of a petal;  φ1/φ0 = k + f,  0 ≤ f < 1
-    φ3  = φ1 − φ0          angle covered by the neighbour; φ3 ≤ φ ≤ φ1 is exposed to the film
+    φ3  = φ1 − φ0          angle covered by the neighbour; φ3 ≤ φ ≤ φ1 is exposed to the film   (G1)
     layers = k + 1         number of petals where the package is thickest
 """
 
@@ -125,7 +125,7 @@ def bearing_problems(bearing: Bearing, surface: Surface, operation: Operation) -
 
 
 def package_problems(bearing: Bearing, petals: Petals, surface: Surface, operation: Operation) -> Iterator[Problem]:
-    """Yield what keeps a package from being assembled: no overlap, no room, no free shape."""
+    """Yield what keeps a package from being assembled: no overlap, no room (G2), no free shape."""
     if bearing.bushing_radius <= petals.total_thickness:
         yield Problem(
             "petals.thickness",

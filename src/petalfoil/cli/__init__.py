@@ -4,12 +4,13 @@ In the order a call runs through them:
 
 - ``app``        the verbs under one name; ``main`` is the entry point
 - ``options``    the options the verbs share, declared once
-- ``solve`` ``curve`` ``static`` ``check`` ``show``   one verb each
+- ``solve`` ``curve`` ``static`` ``check`` ``converge`` ``show``   one verb each
 - ``parsing``    text of the options to SI numbers
 - ``progress``   the bar on standard error
 - ``series``     runs through the points of a curve and keeps what is finished
 - ``autosave``   rewrites the result file of a curve as its points finish
 - ``answer``     what a verb has to give out: one record or the points of a curve; as JSON and as labelled data
+- ``study``      the grids of `converge` and what they tell, as JSON and as labelled data
 - ``stored``     a result read from a file as the answer it was
 - ``tables``     an answer as the printed table
 - ``outputs``    where an answer goes: checked before the run, written after it

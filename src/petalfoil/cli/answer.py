@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -30,12 +31,15 @@ class Answer:
         Whether the records are points of a curve, be it of one point.
     interrupted : bool
         Whether points are missing because the user stopped the run.
+    errors : dict of float, optional
+        Error bars of the figures of a single record, from a grid study; None where none was asked for.
     """
 
     verb: str
     records: tuple[Record, ...]
     is_curve: bool = False
     interrupted: bool = False
+    errors: Mapping[str, float] | None = None
 
     @property
     def title(self) -> str:
@@ -48,7 +52,8 @@ class Answer:
 
     def _plain(self) -> dict[str, object]:
         if not self.is_curve:
-            return dict(as_json(self.records[0]))
+            single: dict[str, object] = dict(as_json(self.records[0]))
+            return single if self.errors is None else single | {"error": dict(self.errors)}
         plain: dict[str, object] = dict(self.preload()) if self.verb == "static" else {}
         plain["points"] = [as_json(record) for record in self.records]
         return plain | ({"interrupted": True} if self.interrupted else {})
@@ -64,7 +69,14 @@ class Answer:
         """Labelled data of the whole answer."""
         from petalfoil.results.dataset import curve_dataset, to_dataset
 
-        return curve_dataset(self.records, self.verb) if self.is_curve else to_dataset(self.records[0])
+        if self.is_curve:
+            return curve_dataset(self.records, self.verb)
+        ds = to_dataset(self.records[0])
+        if self.errors is None:
+            return ds
+        from petalfoil.results.study import with_error_bars
+
+        return with_error_bars(ds, self.errors)
 
     def failures(self) -> list[str]:
         """One line for each record that did not converge: which and why."""

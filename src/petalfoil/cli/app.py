@@ -8,6 +8,7 @@ import typer
 
 from petalfoil import __version__
 from petalfoil.cli.check import check
+from petalfoil.cli.converge import converge
 from petalfoil.cli.curve import curve
 from petalfoil.cli.failures import handled
 from petalfoil.cli.show import show
@@ -21,7 +22,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,  # `failures` speaks to the user, not a decorated traceback
     rich_markup_mode="rich",
 )
-for verb in (solve, curve, static, check, show):
+for verb in (solve, curve, static, check, converge, show):
     app.command()(verb)
 
 

@@ -34,6 +34,18 @@ Direction: TypeAlias = Annotated[
     str,
     typer.Option(metavar="ANGLE", help="Direction of the displacements, from x toward y."),
 ]
+Levels: TypeAlias = Annotated[int, typer.Option(metavar="COUNT", help="Number of grids, each twice as fine.")]
+Coarsest: TypeAlias = Annotated[
+    int | None,
+    typer.Option(
+        metavar="CELLS",
+        help="Cells along a pitch of the coarsest grid; by default the case's own grid is the finest, if it can be.",
+    ),
+]
+ErrorBars: TypeAlias = Annotated[
+    bool,
+    typer.Option("--error", help="Add error bars, from a study on the case's grid and two more."),
+]
 Json: TypeAlias = Annotated[
     bool,
     typer.Option("--json", help="Print one JSON object in SI units instead of the table."),

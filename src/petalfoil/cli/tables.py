@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 import sys
+from collections.abc import Mapping
 
 from rich import box
 from rich.console import Console
 from rich.table import Table
 
 from petalfoil.cli.answer import Answer
+from petalfoil.cli.study import StudyAnswer, grid_text
 from petalfoil.results import Record
-from petalfoil.results.summary import cell, rows
+from petalfoil.results.summary import ABSENT, cell, in_order, with_bar
 
 PIPE_WIDTH = 120  # where no terminal says how wide it is: no column of a curve is cut off
 
@@ -45,20 +48,51 @@ def render(answer: Answer) -> str:
     """
     width = None if sys.stdout.isatty() else PIPE_WIDTH
     console = Console(width=width, markup=False, highlight=False, emoji=False)
-    table = _curve(answer) if answer.is_curve else _single(answer.records[0])
+    table = _table(answer)
     with console.capture() as capture:
         console.print(f"{answer.verb}: {answer.title}" if answer.title else answer.verb, style="bold")
         console.print(table)
     return "\n".join(line.rstrip() for line in capture.get().rstrip().splitlines()) + "\n"
 
 
-def _single(record: Record) -> Table:
+def _table(answer: Answer) -> Table:
+    if isinstance(answer, StudyAnswer):
+        return _study(answer)
+    return _curve(answer) if answer.is_curve else _single(answer.records[0], answer.errors or {})
+
+
+def _single(record: Record, errors: Mapping[str, float]) -> Table:
     table = Table(box=None, show_header=False, pad_edge=False)
     table.add_column()
     table.add_column(justify="right")
+    table.add_column(justify="right")
     table.add_column()
-    for row in rows(record):
-        table.add_row(*row)
+    reported = record.reported()
+    for name in in_order(reported):
+        row, bar = cell(name, reported[name]), ""
+        if name in errors:
+            (value,), bar = with_bar(name, [float(reported[name])], errors[name])
+            row = row._replace(value=value)
+        table.add_row(row.label, row.value, bar and f"± {bar}", row.unit)
+    return table
+
+
+def _study(answer: StudyAnswer) -> Table:
+    estimates = {estimate.name: estimate for estimate in answer.estimates}
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column("cells")
+    table.add_column("")
+    for record in answer.records:
+        table.add_column(grid_text(record), justify="right")
+    for heading in ("order", "limit", "error"):
+        table.add_column(heading, justify="right")
+    table.add_column("trust")
+    for name in in_order(estimates):
+        found = estimates[name]
+        (*values, limit), bar = with_bar(name, [*found.values, found.limit], found.error)
+        order = ABSENT if math.isnan(found.order) else f"{found.order:.2f}"
+        row = cell(name, 0.0)
+        table.add_row(row.label.strip(), row.unit, *values, order, limit, f"± {bar}", found.trust)
     return table
 
 

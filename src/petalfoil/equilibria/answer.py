@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.problem.coupled import CoupledProblem
+from petalfoil.problem.coupled import RESIDUAL_TOLERANCE, CoupledProblem
 from petalfoil.solvers.active_set import Closed
 from petalfoil.solvers.cone import ConePoint, scaled_residual
 
@@ -90,29 +90,36 @@ def total_residual(problem: CoupledProblem, state: State) -> float:
     return max(rows, float(np.max(np.abs(mismatch), initial=0.0)))
 
 
-def from_closed(problem: CoupledProblem, closed: Closed, way: str) -> Answer:
-    """The answer of the active set, refined below the last digit of its deflections."""
+def from_closed(problem: CoupledProblem, closed: Closed | None, way: str) -> Answer | None:
+    """The answer of the active set, refined below the last digit of its deflections; None if it is none."""
+    if closed is None:
+        return None
     state = refine(problem, closed)
-    return Answer(problem, state, total_residual(problem, state), way, closed)
+    return accepted(Answer(problem, state, total_residual(problem, state), way, closed))
 
 
-def from_point(problem: CoupledProblem, point: ConePoint, way: str) -> Answer:
-    """The answer of the interior point, its slacks dropped."""
+def from_point(problem: CoupledProblem, point: ConePoint, way: str) -> Answer | None:
+    """The answer of the interior point, its slacks dropped; None if it is none."""
     state = State(point.x, np.zeros(problem.layout.n_wall), point.lam)
-    return Answer(problem, state, total_residual(problem, state), way)
+    return accepted(Answer(problem, state, total_residual(problem, state), way))
+
+
+def accepted(answer: Answer) -> Answer | None:
+    """`answer`, if its residual makes it one."""
+    return answer if answer.residual <= RESIDUAL_TOLERANCE else None
 
 
 def refine(problem: CoupledProblem, closed: Closed) -> State:
-    """Iterative refinement with the tangent at hand: no factorisation.
+    """Iterative refinement with the tangent at hand (R1): no factorisation.
 
     Deflections are corrected below their last digit, so that the wall's rows, which lose it as `dphi^-4`, balance.
     """
     n, ties = problem.layout.n_wall, closed.ties
     state = State(closed.x, np.zeros(n), closed.lam)
     best, least = state, total_residual(problem, state)
-    for _ in range(REFINEMENTS if closed.factor is not None else 0):
+    for _ in range(REFINEMENTS):
         line = problem.linearize(state.x, fine=state.fine)
-        change = ties.spread(closed.factor.solve(-ties.gather(line.residual)))  # type: ignore[union-attr]
+        change = ties.spread(closed.factor.solve(-ties.gather(line.residual)))
         x = state.x.copy()
         x[n:] += change[n:]
         fine = state.fine + change[:n]

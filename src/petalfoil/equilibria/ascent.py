@@ -64,4 +64,4 @@ def rest(problem: CoupledProblem, work: Work) -> Answer | None:
     x = np.concatenate([w, np.ones(problem.layout.n - problem.layout.n_wall)])
     answer, outcome = active_set(still, x, closed, work.film_solver, ActiveOptions())
     work.note("contacts", outcome=outcome.value)
-    return None if answer is None else from_closed(still, answer, "assembled package at rest")
+    return from_closed(still, answer, "assembled package at rest")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,15 +14,15 @@ from petalfoil.errors import ConvergenceError
 from petalfoil.problem.coupled import RESIDUAL_TOLERANCE, CoupledProblem
 from petalfoil.solvers.active_set import ActiveOptions, active_set
 from petalfoil.solvers.cone import ConePoint
-from petalfoil.solvers.interior_point import InteriorOptions, Step, interior_point
+from petalfoil.solvers.interior_point import InteriorOptions, Step, contact_set, interior_point
 from petalfoil.solvers.linear import SingularMatrixError
 
 BARRIERS = (3.0, 30.0, 0.3, 300.0)
 """Barriers at which the film joins, in ambient pressure times 10 um; the first serves 97 % of random packages."""
 
-GOALS = (1e-7, 1e-10, 1e-13)
-"""Barriers at which the contact set is read and tried: it is right at the first up to 512 cells a pitch (at 1e-5 it
-is not beyond 128, where an attempt in vain costs more than two more steps)."""
+GOALS = (1e-5, 1e-8, 1e-11)
+"""Barriers at which the contact set is read and tried: it is right, or close, at the first on grids up to 512 cells a
+pitch."""
 
 
 def solve_cold(problem: CoupledProblem, work: Work, barriers: tuple[float, ...] = BARRIERS) -> Answer:
@@ -68,17 +69,18 @@ def finish(
     """Drive the barrier down from `start`; read the contact set as soon as it shows, and solve on it exactly."""
     point, numbers = start, options or InteriorOptions()
     for goal in GOALS:
+        numbers = replace(numbers, least_barrier=0.1 * goal)
         point, found = interior_point(problem, point, work.film_solver, numbers, work.watch("film", content(goal)))
-        numbers = InteriorOptions()
+        numbers = replace(numbers, march=False)
         if not found:
             return None
-        touching = point.lam / problem.weight > point.s
-        closed, outcome = active_set(problem, point.x, touching, work.film_solver, ActiveOptions())
+        x, touching = contact_set(problem, point, work.film_solver)
+        closed, outcome = active_set(problem, x, touching, work.film_solver, ActiveOptions())
         work.note("contacts", outcome=outcome.value, touching=int(touching.sum()))
-        if closed is not None:
-            return from_closed(problem, closed, way)
-    answer = from_point(problem, point, way)
-    return answer if answer.residual <= RESIDUAL_TOLERANCE else None
+        answer = from_closed(problem, closed, way)
+        if answer is not None:
+            return answer
+    return from_point(problem, point, way)
 
 
 def content(goal: float) -> Callable[[Step], bool]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,16 +13,21 @@ from petalfoil.problem.coupled import CoupledProblem
 from petalfoil.problem.package import PackageProblem
 from petalfoil.solvers.active_set import ActiveOptions, active_set
 from petalfoil.solvers.cone import ConePoint
-from petalfoil.solvers.interior_point import InteriorOptions, Step, interior_point
+from petalfoil.solvers.interior_point import InteriorOptions, Step, contact_set, interior_point
 
 Array = NDArray[np.float64]
 
-FIRST_PRODUCT = 300.0
-"""First reactions times slacks over the deepest penetration of the free shape. 100 to 1000 serve alike (11 to 20
-steps over 60 random packages); 10 and less stay short of the boundary for long (up to 58)."""
+FIRST_PRODUCT = 100.0
+"""First reactions times slacks over the deepest penetration of the free shape. 100 to 1000 serve alike; 10 and less
+stay short of the boundary for long (up to 58 steps where 20 serve)."""
 
+CONVEX = InteriorOptions(near=np.inf, calm=np.inf, boundary=0.995, correctors=5)
+"""The package alone is convex: Mehrotra's steps serve from the start, close to the boundary."""
 
-REST_GOALS = (1e-5, 1e-8, 1e-11)
+SEARCHING = ActiveOptions(patience=0)
+"""Its contact set is searched for at once: swaps save nothing here."""
+
+REST_GOALS = (1e-6, 1e-9, 1e-12)
 """Barriers at which the contact set of the package alone is read and tried."""
 
 
@@ -42,7 +48,7 @@ def free_start(package: PackageProblem) -> ConePoint:
 def assembled(problem: CoupledProblem, barrier: float, work: Work) -> ConePoint:
     """The assembled package on its central path at `barrier`, extended by ambient pressures: a start for the film."""
     package = unloaded(problem)
-    options = InteriorOptions(least_barrier=barrier)
+    options = replace(CONVEX, least_barrier=barrier)
 
     def content(step: Step) -> bool:
         return step.barrier < 2.0 * barrier and step.infeasibility < 1e-3 and step.residual < 1e-2
@@ -61,11 +67,11 @@ def at_rest(problem: CoupledProblem, work: Work) -> tuple[Array, NDArray[np.bool
     start = free_start(package)
     for goal in REST_GOALS:
         watch = work.watch("package", settled(goal))
-        start, found = interior_point(package, start, work.package_solver, InteriorOptions(), watch)
+        start, found = interior_point(package, start, work.package_solver, CONVEX, watch)
         if not found:
             return None
-        touching = start.lam / package.weight > start.s
-        closed, outcome = active_set(package, start.x, touching, work.package_solver, ActiveOptions())
+        x, touching = contact_set(package, start, work.package_solver)
+        closed, outcome = active_set(package, x, touching, work.package_solver, SEARCHING)
         work.note("package contacts", outcome=outcome.value)
         if closed is not None:
             return closed.x, closed.closed

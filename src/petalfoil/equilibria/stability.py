@@ -1,7 +1,7 @@
 """Is an equilibrium stable at a fixed journal position?
 
 The wall has no mass; the film has. With the contacts that carry load kept closed, small disturbances obey
-`J u + s M u = 0` in `exp(s tau)`, `tau = omega t`: stable if every `s` has a negative real part.
+`J u + s M u = 0` (E1) in `exp(s tau)`, `tau = omega t`: stable if every `s` has a negative real part.
 """
 
 from __future__ import annotations

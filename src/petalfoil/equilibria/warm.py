@@ -21,12 +21,12 @@ RESTART_BARRIER = 0.3
 
 
 def predict(known: Answer, problem: CoupledProblem) -> Array:
-    """First-order change of the unknowns from `known` to another speed or position, shape (n,); no factorisation.
+    """First-order change of the unknowns from `known` to another speed or position (T4), shape (n,); no factorisation.
 
     Closed gaps stay closed; the tangent is the last one that led to `known`.
     """
     closed = known.closed
-    if closed is None or closed.factor is None:
+    if closed is None:
         return np.zeros_like(known.x)
     moved = problem.gaps(known.x) - known.problem.gaps(known.x)
     follow = closed.ties.close(moved[closed.closed])
@@ -48,7 +48,7 @@ def follow(known: Answer, problem: CoupledProblem, work: Work, options: ActiveOp
         work.note("contacts", outcome=str(failure))
         return None
     work.note("contacts", outcome=outcome.value)
-    return None if closed is None else from_closed(problem, closed, "followed from the neighbouring point")
+    return from_closed(problem, closed, "followed from the neighbouring point")
 
 
 def restart(known: Answer, problem: CoupledProblem, work: Work) -> Answer | None:

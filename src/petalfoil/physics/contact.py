@@ -1,11 +1,11 @@
 """One-sided constraints of the package (18)-(22): gaps, linear in deflections and journal displacement.
 
-    journal   g_J = r0 + W - delta/2 - R_j - (e_x cos theta + e_y sin theta) - h_min     exposed strips
-    bushing   g_B = r_m - r0 - W                                                         phi < phi0
-    petals    g_P = (r0 + W)^{l+1} - (r0 + W)^l - delta                                  phi0 <= phi <= phi1
+    journal   g_J = r0 + W - delta/2 - R_j - (e_x cos theta + e_y sin theta) - h_min     exposed strips         (K1)
+    bushing   g_B = r_m - r0 - W                                                         phi < phi0             (K2)
+    petals    g_P = (r0 + W)^{l+1} - (r0 + W)^l - delta                                  phi0 <= phi <= phi1    (K3)
 
 Every gap is `g = rest + by_e e + G W >= 0`; its nodal reaction `lam >= 0` pushes with `G^T lam` and is complementary
-to it. The same `G` serves both, so the reactions do no work but through the gaps.
+to it (K4). The same `G` serves both, so the reactions do no work but through the gaps.
 """
 
 from __future__ import annotations

@@ -16,18 +16,18 @@ def node_area(mesh: FilmMesh, radius: float) -> Array:
 
 
 def film_force(mesh: FilmMesh, radius: float, Q: Array) -> Array:
-    """Force of the film on the journal, `-sum Q n R_j dphi dz` (62), from the excess pressure [Pa]; (2,) [N]."""
+    """Force of the film on the journal, `-sum Q n R_j dphi dz` (J1), from the excess pressure [Pa]; (2,) [N]."""
     push = np.sum(Q * node_area(mesh, radius), axis=2)
     return -np.array([np.sum(push * np.cos(mesh.theta)), np.sum(push * np.sin(mesh.theta))])
 
 
 def contact_force(theta: Array, reaction: Array) -> Array:
-    """Force of the petals that touch it on the journal, `-sum lam_J n`; (2,) [N]."""
+    """Force of the petals that touch it on the journal, `-sum lam_J n` (J1); (2,) [N]."""
     return -np.array([np.sum(reaction * np.cos(theta)), np.sum(reaction * np.sin(theta))])
 
 
 def viscous_torque(mesh: FilmMesh, radius: float, state: tuple[Array, Array], shear: tuple[float, float]) -> float:
-    """Torque of the film's shear on the journal [N m].
+    """Torque of the film's shear on the journal (J4) [N m].
 
     `R_j sum (mu U / h + (h/2) dp/dx) dA`: the first at nodes, the second on faces.
 
@@ -46,7 +46,7 @@ def viscous_torque(mesh: FilmMesh, radius: float, state: tuple[Array, Array], sh
 
 
 def attitude_angle(force: Array, displacement: Array) -> float:
-    """Angle from `-F` to the displacement `e`, positive in the sense of rotation [rad]; nan without either."""
+    """Angle from `-F` to the displacement `e` (J2), positive in the sense of rotation [rad]; nan without either."""
     if not np.any(force) or not np.any(displacement):
         return float("nan")
     difference = np.arctan2(displacement[1], displacement[0]) - np.arctan2(-force[1], -force[0])

@@ -204,7 +204,7 @@ def _jumps(n: int) -> sp.csr_array:
 
 
 def bending_stress(shell: PetalShell, W: Array, youngs_modulus: float, thickness: float) -> Array:
-    """Bending stress along the arc at the surface of the metal, shape of `W` [Pa].
+    """Bending stress along the arc at the surface of the metal (J6), shape of `W` [Pa].
 
     `sigma = E / (1 - nu^2) delta0 / 2 (chi_phi + nu chi_z)`: the assembly strain is part of it.
     """

@@ -5,10 +5,12 @@ In the order data flows:
 - ``reading``   what figures take from a dataset: one converged point, strips of the film, contacts
 - ``style``     colours, sizes, axes and titles all figures share
 - ``around``    pressure and film against the bushing angle (`pressure_and_film`)
+- ``profiles``  pressure and film over one petal, for a family (`petal_profiles`)
 - ``unrolled``  pressure and film over angle and length (`maps`)
 - ``curves``    characteristics against displacement (`load_characteristic`, `static`)
 - ``section``   the loaded bearing, cut across (`cross_section`)
 - ``assembly``  the package as it is put together (`package`)
+- ``refinement`` figures against the grid (`convergence`)
 - ``overview``  the figure that suits a result (`summary`)
 - ``files``     figures to files (`save`)
 
@@ -27,16 +29,31 @@ if TYPE_CHECKING:
     from petalfoil.plot.curves import load_characteristic, static
     from petalfoil.plot.files import save
     from petalfoil.plot.overview import summary
+    from petalfoil.plot.profiles import petal_profiles
+    from petalfoil.plot.refinement import convergence
     from petalfoil.plot.section import cross_section
     from petalfoil.plot.unrolled import maps
 
-__all__ = ["cross_section", "load_characteristic", "maps", "package", "pressure_and_film", "save", "static", "summary"]
+__all__ = [
+    "convergence",
+    "cross_section",
+    "load_characteristic",
+    "maps",
+    "package",
+    "petal_profiles",
+    "pressure_and_film",
+    "save",
+    "static",
+    "summary",
+]
 
 _HOME = {
+    "convergence": "refinement",
     "cross_section": "section",
     "load_characteristic": "curves",
     "maps": "unrolled",
     "package": "assembly",
+    "petal_profiles": "profiles",
     "pressure_and_film": "around",
     "save": "files",
     "static": "curves",

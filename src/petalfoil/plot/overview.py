@@ -11,6 +11,7 @@ from petalfoil.plot.around import draw_film, draw_pressure, plane_fact
 from petalfoil.plot.assembly import package
 from petalfoil.plot.curves import load_characteristic, static
 from petalfoil.plot.reading import is_spatial, one_point
+from petalfoil.plot.refinement import convergence
 from petalfoil.plot.section import cross_section, draw_section
 from petalfoil.plot.unrolled import draw_film_map, draw_pressure_map
 
@@ -26,7 +27,8 @@ def summary(ds: xr.Dataset) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        A point: section, pressure and film. A curve: its characteristic. A check: the package.
+        A point: section, pressure and film. A curve: its characteristic. A check: the package. A grid study:
+        figures against the grid.
 
     Raises
     ------
@@ -39,11 +41,13 @@ def summary(ds: xr.Dataset) -> Figure:
     single = ds.sizes.get("point", 1) == 1
     if analysis == "check":
         return package(ds)
+    if analysis == "converge":
+        return convergence(ds)
     if analysis == "static":
         return cross_section(ds) if single else static(ds)
     if analysis in ("solve", "curve"):
         return _state(ds) if single else load_characteristic([("", ds)])
-    raise UsageError(f"no figure suits a result of {analysis!r}; known: check, curve, solve, static")
+    raise UsageError(f"no figure suits a result of {analysis!r}; known: check, converge, curve, solve, static")
 
 
 def _state(ds: xr.Dataset) -> Figure:

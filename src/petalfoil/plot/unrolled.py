@@ -97,6 +97,7 @@ def refined(x: Floats, y: Floats, values: Floats) -> tuple[Floats, Floats, Float
 
 
 def outline_contact(ax: Axes, ds: xr.Dataset, z: Floats) -> None:
+    """Draw a line around every area where the journal touches."""
     if "journal_contact_pressure" not in ds:
         return
     contact = touching(ds, "journal_contact_pressure").astype(np.float64)

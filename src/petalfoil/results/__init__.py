@@ -4,13 +4,15 @@ In the order data flows:
 
 - ``schema``   every variable a result may hold: dimensions, SI unit, long name, symbol
 - ``record``   one answer as plain arrays (no xarray), checked against the schema
+- ``estimate`` what a sequence of grids tells about a figure: limit, order, error bar
 - ``summary``  a record as the object of ``--json`` and as the rows of the printed table
 - ``dataset``  records to ``xarray.Dataset``: one point, or a curve of points
+- ``study``    the records of a grid study and its estimates to ``xarray.Dataset``, and back
 - ``atomic``   a file is replaced whole or left alone
 - ``store``    datasets to NetCDF and back
 
-Conventions: SI units inside; a figure of a state that did not converge is NaN; ``dataset`` and ``store`` load xarray
-and are therefore imported by whoever needs them, never from here.
+Conventions: SI units inside; a figure of a state that did not converge is NaN; ``dataset``, ``study`` and ``store``
+load xarray and are therefore imported by whoever needs them, never from here.
 """
 
 from petalfoil.results.record import Record, Scalar

@@ -127,15 +127,15 @@ SCALARS: dict[str, Variable] = {
     "contact_share": _answer(
         "1", "contact reactions over contact reactions plus integral of the film's excess pressure", "s_c"
     ),
-    "min_film": _answer("m", "smallest film thickness", "h_min"),
-    "min_film_angle": _answer("rad", "bushing angle of the smallest film thickness", "theta(h_min)"),
-    "min_film_z": _answer("m", "axial place of the smallest film thickness", "z(h_min)"),
+    "min_film": _answer("m", "smallest film thickness", "min h"),
+    "min_film_angle": _answer("rad", "bushing angle of the smallest film thickness", "theta(min h)"),
+    "min_film_z": _answer("m", "axial place of the smallest film thickness", "z(min h)"),
     "max_pressure": _answer("Pa", "largest absolute pressure of the film", "p_max"),
     "max_pressure_angle": _answer("rad", "bushing angle of the largest pressure", "theta(p_max)"),
     "friction_torque": _answer("N m", "friction torque on the journal, film and contact", "M"),
     "starting_torque": _answer("N m", "torque of dry friction at rest", "M_0"),
     "power_loss": _answer("W", "friction torque times angular velocity", "M omega"),
-    "side_leakage": _answer("kg s-1", "mass flow of gas out of both ends", "G"),
+    "side_leakage": _answer("kg s-1", "mass flow of gas that leaves at both ends", "m_dot"),
     "max_stress": _answer("Pa", "largest magnitude of the bending stress of the petals", "sigma_max"),
     "stable": _answer("", "the equilibrium of film and petals is stable at the fixed journal", "stable", Kind.BOOL),
     "growth_rate": _answer(
@@ -153,7 +153,9 @@ SCALARS: dict[str, Variable] = {
     "probe_factorizations": _run(
         "1", "factorisations that only asked a question: stability, other equilibria", "N_probe", Kind.INT
     ),
-    "film_scale": _run("m", "film thickness the film equation is scaled with", "h*"),
+    "cells_per_pitch": _run("1", "cells along a pitch; of a plain bearing, round the circle", "N", Kind.INT),
+    "axial_cells": _run("1", "cells over the whole length", "N_z", Kind.INT),
+    "film_scale": _run("m", "film thickness the film equation is scaled with", "h_ref"),
     "wall_time": _run("s", "time spent", "t_wall"),
     "converged": _run("", "the state satisfies the equations to tolerance", "converged", Kind.BOOL),
     "status": _run("", "how the run ended", "status", Kind.STR),
@@ -165,7 +167,7 @@ SCALARS: dict[str, Variable] = {
     "length": _geometry("m", "length of the bearing", "L"),
     "petal_thickness": _geometry("m", "thickness of a petal with its coating", "delta"),
     "ambient_pressure": _geometry("Pa", "ambient pressure, absolute", "p_a"),
-    "film_floor": _geometry("m", "film floor, below which the journal touches", "h_floor"),
+    "film_floor": _geometry("m", "film floor, below which the journal touches", "h_min"),
     "overlap": _geometry("1", "petal angle over pitch", "phi_1/phi_0"),
     "layers": _geometry("1", "largest number of petals at one angle", "N_layers", Kind.INT),
     "petal_angle": _geometry("rad", "angle a petal spans", "phi_1"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from decimal import Decimal
 from typing import NamedTuple
 
@@ -25,6 +26,8 @@ class _Show(NamedTuple):
 
 
 ABSENT = "-"
+FINEST_SHARE = 1e-7
+"""Share of a value below which its error bar adds no digits."""
 _DEG = 180.0 / math.pi
 _RPM = 30.0 / math.pi
 
@@ -68,6 +71,8 @@ _SHOWN: dict[str, _Show] = {
     "branch": _Show("branch"),
     "branches_known": _Show("branches known"),
     "jump": _Show("jump"),
+    "cells_per_pitch": _Show("cells a pitch"),
+    "axial_cells": _Show("cells along the axis"),
     "residual": _Show("residual"),
     "iterations": _Show("iterations"),
     "factorizations": _Show("factorisations"),
@@ -130,6 +135,40 @@ def cell(name: str, value: Scalar) -> Row:
     if isinstance(value, str) or SCALARS[name].kind is Kind.INT:
         return Row(shown.label, str(value), shown.unit)
     return Row(shown.label, number(value * shown.factor), shown.unit)
+
+
+def in_order(names: Iterable[str]) -> list[str]:
+    """Those of the names that the printed table shows, in its order."""
+    known = set(names)
+    return [name for name in _SHOWN if name in known]
+
+
+def with_bar(name: str, values: Sequence[float], error: float) -> tuple[list[str], str]:
+    """Show values of one scalar to the digits that its error bar leaves, and the bar.
+
+    Parameters
+    ----------
+    name : str
+        Name in the schema.
+    values : sequence of float
+        Values, SI.
+    error : float
+        Error bar, SI.
+
+    Returns
+    -------
+    tuple of (list of str, str)
+        Values and bar, in the unit of `cell`.
+    """
+    factor = _SHOWN[name].factor if name in _SHOWN else 1.0
+    bar, size = abs(error * factor), max((abs(v * factor) for v in values if math.isfinite(v)), default=0.0)
+    if bar == 0.0 or not math.isfinite(bar) or bar < size * FINEST_SHARE:
+        return [cell(name, value).value for value in values], number(bar)
+    if size >= 1e7 or bar < 1e-6:
+        return [ABSENT if math.isnan(v) else f"{v * factor:.2e}" for v in values], f"{bar:.0e}"
+    decimals = max(0, 1 - math.floor(math.log10(bar)))  # two digits of the bar
+    texts = [ABSENT if math.isnan(v) else f"{v * factor:.{decimals}f}" for v in values]
+    return texts, f"{bar:.{decimals}f}"
 
 
 def number(value: float) -> str:

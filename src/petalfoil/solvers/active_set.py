@@ -1,8 +1,8 @@
 """Newton on a set of closed gaps, which it corrects as it goes: exact zeros, exact reactions, cheap warm starts.
 
 A closed gap whose reaction pulls is opened, an open gap that has gone negative is closed. Near an answer this needs
-a few steps; far from it the set advances a node a step and may cycle, so a set that returns ends the attempt and the
-caller takes the interior point instead.
+a few steps; far from it the set advances a node a step and may cycle, so after a few changes the set is searched for
+among the gaps in doubt (`set_search`).
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.solvers.cone import ConeProblem, Linearized
-from petalfoil.solvers.linear import Factor, LinearSolver
+from petalfoil.solvers.linear import Factor, LinearSolver, SingularMatrixError
+from petalfoil.solvers.set_search import near, search
 from petalfoil.solvers.ties import Ties, tie
 
 Array = NDArray[np.float64]
@@ -25,7 +26,6 @@ class Outcome(Enum):
     """How an attempt ended."""
 
     CONVERGED = "converged"
-    CYCLED = "the set of closed gaps returned to an earlier one"
     STEPS = "the steps ran out"
     OVERDETERMINED = "closed gaps hold a chain at both ends"
     PENETRATED = "a gap went far below zero"
@@ -41,6 +41,8 @@ class ActiveOptions:
     sign: float = 1e-8
     """Gaps and reactions (over their weight) that miss zero by less are zero."""
     max_steps: int = 12
+    patience: int = 1
+    """Times that all gaps of wrong sign are swapped at once before the set is searched for."""
     boundary_x: float = 0.8
     """Fraction of the way to zero for unknowns that must stay positive."""
 
@@ -68,34 +70,49 @@ class Closed:
     closed: Mask
     residual: float
     ties: Ties = field(repr=False)
-    factor: Factor | None = field(repr=False)
+    factor: Factor = field(repr=False)
 
 
 def active_set(
     problem: ConeProblem, x: Array, closed: Mask, solver: LinearSolver, options: ActiveOptions
 ) -> tuple[Closed | None, Outcome]:
     """Newton from `x` with the gaps `closed`, correcting the set, until residual and signs agree."""
-    seen: set[bytes] = set()
     factor: Factor | None = None
+    doubt, swaps = np.zeros(len(closed), dtype=bool), 0
     state = evaluate(problem, x, closed)
     for step in range(options.max_steps + 1):
         if isinstance(state, Outcome):
             return None, state
         wanted = revise(problem, state, options) if step else state.closed
         unchanged = bool(np.array_equal(wanted, state.closed))
-        if unchanged and state.residual <= options.tolerance and settled(problem, state, options):
+        done = unchanged and state.residual <= options.tolerance and settled(problem, state, options)
+        if done and factor is not None:  # without a tangent, one more step: refinement and prediction need it
             return Closed(state.x, state.lam, state.closed, state.residual, state.ties, factor), Outcome.CONVERGED
+        if step == options.max_steps:
+            break
+        doubt, swaps = doubt | (wanted != state.closed), swaps + (not unchanged)
+        found = searched(problem, state, doubt, solver) if swaps > options.patience and not unchanged else None
+        if found is not None:
+            state, factor = found, None
+            continue
         if not unchanged:
-            key = np.packbits(wanted).tobytes()
-            if key in seen:
-                return None, Outcome.CYCLED
-            seen.add(key)
             state = evaluate(problem, state.x, wanted)
             if isinstance(state, Outcome):
                 return None, state
-        factor = solver.factor(state.ties.reduce(state.line.matrix(np.zeros(len(wanted)))))
+        try:
+            factor = solver.factor(state.ties.reduce(state.line.matrix(np.zeros(len(wanted)))))
+        except SingularMatrixError:
+            return None, Outcome.SINGULAR
         state = evaluate(problem, newton_step(problem, state, factor, options), wanted)
     return None, Outcome.STEPS
+
+
+def searched(problem: ConeProblem, state: State, doubt: Mask, solver: LinearSolver) -> State | Outcome | None:
+    """The state after a step that looks for the set among the gaps in doubt and their neighbours; None if none fits."""
+    matrix = state.line.matrix(np.zeros(len(doubt)))
+    wide = near(problem, doubt, matrix)
+    found = search(problem, (state.x, state.gaps, state.closed, state.line), wide, solver)
+    return None if found is None else evaluate(problem, *found)
 
 
 @dataclass(frozen=True)
@@ -136,7 +153,8 @@ def evaluate(problem: ConeProblem, x: Array, closed: Mask) -> State | Outcome:
 
 def revise(problem: ConeProblem, state: State, options: ActiveOptions) -> Mask:
     """Keep closed what pushes, close what has gone negative."""
-    pushing = state.lam > -options.sign * problem.weight
+    noise = np.maximum(problem.weight, abs(problem.G) @ state.line.size)  # rows that lose digits blur reactions too
+    pushing = state.lam > -options.sign * noise
     return np.where(state.closed, pushing, state.gaps < -options.sign)
 
 

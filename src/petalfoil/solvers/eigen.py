@@ -1,4 +1,4 @@
-"""Rightmost eigenvalue of `J u = -s M u` with a singular `M`: does a disturbance die out?
+"""Rightmost eigenvalue of `J u = -s M u` (E1) with a singular `M`: does a disturbance die out?
 
 Algebraic rows (a wall without mass) make `M` singular and put eigenvalues at infinity. The pencil is therefore seen
 through one step of an L-stable Runge-Kutta method (SDIRK of order 2, `gamma = 1 - 1/sqrt 2`), which maps the left half
@@ -83,7 +83,7 @@ def survivor(operator: spla.LinearOperator, state: Array) -> tuple[Array, Array]
 
 
 def sdirk(pencil: Pencil, factor: Factor, mass: Array) -> Array:
-    """State after one step from the stored mass `mass` (differential rows), (n,)."""
+    """State after one step (E2) from the stored mass `mass` (differential rows), (n,)."""
     start = np.concatenate([np.zeros(pencil.first, dtype=mass.dtype), mass])
     stage = solve_any(factor, start)
     rate = (pencil.M @ stage - start) / GAMMA
@@ -99,7 +99,7 @@ def solve_any(factor: Factor, rhs: Array) -> Array:
 
 
 def rayleigh(pencil: Pencil, u: Array) -> complex:
-    """`s` of the eigenvector `u`, from the differential rows."""
+    """`s` of the eigenvector `u` (E3), from the differential rows."""
     mass = (pencil.M @ u)[pencil.first :]
     force = (pencil.J @ u)[pencil.first :]
     return complex(-np.vdot(mass, force) / np.vdot(mass, mass))

@@ -54,11 +54,11 @@ class LinearSolver:
         SingularMatrixError
             The matrix has no inverse, or not a finite one.
         """
-        scaled, row, col = equilibrate(matrix)
         self.counter.factorizations += 1
         self.counter.largest = max(self.counter.largest, matrix.shape[0])
-        if not np.all(np.isfinite(scaled.data)):
+        if not np.all(np.isfinite(matrix.data)):
             raise SingularMatrixError("matrix with entries that are not finite")
+        scaled, row, col = equilibrate(matrix)
         try:
             lu = spla.splu(scaled, permc_spec="COLAMD", options={"Equil": False})
         except RuntimeError as failure:  # SuperLU says "Factor is exactly singular" this way

@@ -50,12 +50,12 @@ class Ties:
         return spla.splu(sp.csc_array(self.G @ self.G.T))
 
     def close(self, gaps: Array) -> Array:
-        """Smallest change of the unknowns that closes gaps of `gaps` (k,); shape (n,)."""
+        """Smallest change of the unknowns that closes gaps of `gaps` (k,) (T1); shape (n,)."""
         out: Array = -(self.G.T @ self._normal.solve(gaps)) if len(gaps) else np.zeros(len(self.group))
         return out
 
     def reactions(self, residual: Array) -> Array:
-        """Reactions `lam` (k,) with `G^T lam = residual` on the tied equations."""
+        """Reactions `lam` (k,) with `G^T lam = residual` on the tied equations (T2)."""
         out: Array = self._normal.solve(self.G @ residual) if self.G.shape[0] else np.zeros(0)
         return out
 

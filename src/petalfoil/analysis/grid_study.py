@@ -1,0 +1,274 @@
+"""The same question on finer and finer grids: how far is an answer from its limit?
+
+Grids are nested: cells double along the pitch and, in a spatial model, along the axis too.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.analysis import equilibrium
+from petalfoil.analysis.equilibrium import positioned
+from petalfoil.analysis.figures import failed_record
+from petalfoil.analysis.richardson import richardson
+from petalfoil.analysis.session import Progress
+from petalfoil.case import Case, Kind
+from petalfoil.equilibria.work import Work
+from petalfoil.errors import ConvergenceError, UsageError
+from petalfoil.mesh.pitch import COARSEST_FAMILY
+from petalfoil.results.estimate import Estimate
+from petalfoil.results.record import Record
+from petalfoil.results.schema import SCALARS, Role
+from petalfoil.results.schema import Kind as Type
+
+Array = NDArray[np.float64]
+
+RATIO = 2.0
+"""Cells of a grid over those of the next coarser one [1]."""
+
+MOST_LEVELS = 10
+
+LEAST_CELLS = {Kind.FLAT: 32, Kind.SPATIAL: 24}
+"""Cells along a pitch below which the default adds finer grids instead of coarser ones: at 16 the film of the paper's
+packages comes down to the floor where it should not, and such a grid only widens the bars."""
+
+LEAST_AXIAL = 4
+"""Coarsest division of the length: its pressure is zero at both ends, and one value is no profile."""
+
+RESIDUAL = 1e-8
+"""Residual of an answer over ambient pressure, see `equilibria/answer.py`: forces are not known better."""
+
+ANGLES = {name for name, variable in SCALARS.items() if variable.units == "rad"}
+
+
+def run(
+    case: Case,
+    *,
+    speed: float | None = None,
+    eccentricity: tuple[float, float] | None = None,
+    levels: int = 3,
+    coarsest: int | None = None,
+    progress: Progress | None = None,
+) -> list[Record]:
+    """Solve `case` on nested grids, coarsest first; a grid without an answer is recorded as such.
+
+    Parameters
+    ----------
+    case : Case
+        The bearing.
+    speed : float, optional
+        Angular speed instead of the case's [rad/s].
+    eccentricity : pair of float, optional
+        Displacement (x, y) instead of the case's [m].
+    levels : int
+        Number of grids, 2 at least.
+    coarsest : int, optional
+        Cells along a pitch of the coarsest grid. By default the case's own grid is the finest, as long as coarser
+        ones can be nested in it.
+    progress : callable, optional
+        Called with the share done (0 to 1) and a text.
+
+    Raises
+    ------
+    UsageError
+        These grids cannot be made.
+    PackageError
+        The displaced journal leaves the package no room.
+    """
+    cases = grids(case, levels, coarsest, speed=speed, eccentricity=eccentricity)
+    return list(iterate(cases, progress))
+
+
+def iterate(cases: Sequence[Case], progress: Progress | None = None, known: Record | None = None) -> Iterator[Record]:
+    """Yield the record of each case; the one of `known` is not solved again."""
+    done = np.cumsum([0.0, *(float(unknowns(case)) for case in cases)])
+    done /= done[-1]
+    for number, case in enumerate(cases):
+        if known is not None and known.case_toml == case.to_toml():
+            yield _labelled(known, case)
+        else:
+            yield _record(case, _part(progress, float(done[number]), float(done[number + 1]), grid_text(case)))
+
+
+def grids(
+    case: Case,
+    levels: int = 3,
+    coarsest: int | None = None,
+    *,
+    speed: float | None = None,
+    eccentricity: tuple[float, float] | None = None,
+) -> list[Case]:
+    """The case on nested grids, coarsest first; arguments and errors as of `run`."""
+    case = positioned(case, speed, eccentricity)
+    if not 2 <= levels <= MOST_LEVELS:
+        raise UsageError(f"levels: a grid study takes 2 to {MOST_LEVELS} grids, got {levels}")
+    cells, axial = (case.cells_per_pitch, case.axial_cells) if coarsest is None else _shared(case, coarsest)
+    if coarsest is None:
+        for _ in range(levels - 1):
+            if not _can_be_halved(case, cells, axial):
+                break
+            cells, axial = cells // 2, axial // 2
+    return [_on(case, cells * 2**level, axial * 2**level) for level in range(levels)]
+
+
+def grid_of(case: Case) -> tuple[int, int]:
+    """Cells along a pitch, and over the length (0 in a flat model)."""
+    return case.cells_per_pitch, case.axial_cells if case.model.kind is Kind.SPATIAL else 0
+
+
+def grid_text(case: Case) -> str:
+    """The grid of a case in words."""
+    cells, axial = grid_of(case)
+    return f"grid {cells} x {axial}" if axial else f"grid {cells}"
+
+
+def unknowns(case: Case) -> int:
+    """What the cost of a grid grows with."""
+    cells, axial = grid_of(case)
+    return cells * max(axial, 1)
+
+
+def table(records: Sequence[Record]) -> list[Estimate]:
+    """What the grids tell about every figure that all answers have.
+
+    The last three grids in unbroken order count; of fewer than three, no order can be observed.
+
+    Raises
+    ------
+    ConvergenceError
+        Fewer than two grids have an answer.
+    """
+    answered = [record.converged for record in records]
+    if sum(answered) < 2:
+        states = ", ".join(f"{r.scalars['cells_per_pitch']}: {r.scalars['status']}" for r in records)
+        advice = "choose other grids with --coarsest, or see why a single one does not converge with `solve`"
+        raise ConvergenceError(f"a grid study needs answers on two grids at least ({states})", advice=advice)
+    first, good = records[answered.index(True)], [record for record in records if record.converged]
+    names = [name for name in SCALARS if _is_figure(name) and all(_known(name, record) for record in good)]
+    scale = resolution(first)
+    return [_estimate(name, records, scale.get(SCALARS[name].units, 0.0)) for name in names]
+
+
+def error_bars(own: Record, progress: Progress | None = None) -> dict[str, float]:
+    """Error bars of the figures of an answer, from its own grid and two more that are nested with it.
+
+    Raises
+    ------
+    ConvergenceError
+        Neither of the other grids has an answer.
+    """
+    case = Case.from_toml(own.case_toml)
+    case = _on(case, *grid_of(case))
+    own = replace(own, case_toml=case.to_toml())
+    estimates = table(list(iterate(grids(case), progress, known=own)))
+    return {estimate.name: _bar(estimate, float(own.scalars[estimate.name])) for estimate in estimates}
+
+
+def resolution(record: Record) -> dict[str, float]:
+    """Differences that residuals of `RESIDUAL` over ambient pressure can make, by unit."""
+    pressure, radius, length = (float(record.scalars[k]) for k in ("ambient_pressure", "journal_radius", "length"))
+    force = RESIDUAL * pressure * 2.0 * radius * length
+    return {"N": force, "N m": force * radius}
+
+
+# ---------------------------------------------------------------------------------------------- grids
+
+
+def _shared(case: Case, coarsest: int) -> tuple[int, int]:
+    """Cells of the coarsest grid; those along the axis in the proportion of the case."""
+    if coarsest < COARSEST_FAMILY:
+        raise UsageError(f"coarsest: nested grids begin at {COARSEST_FAMILY} cells along a pitch, got {coarsest}")
+    axial = 2 * round(case.axial_cells * coarsest / case.cells_per_pitch / 2)
+    return coarsest, max(axial, LEAST_AXIAL)
+
+
+def _can_be_halved(case: Case, cells: int, axial: int) -> bool:
+    if cells % 2 or cells // 2 < LEAST_CELLS[case.model.kind]:
+        return False
+    step = 4 if case.model.symmetry else 2  # half the length takes half the cells
+    return case.model.kind is Kind.FLAT or (axial % step == 0 and axial // 2 >= LEAST_AXIAL)
+
+
+def _on(case: Case, cells: int, axial: int) -> Case:
+    changes: dict[str, object] = {"model.cells_per_pitch": cells}
+    if case.model.kind is Kind.SPATIAL:
+        changes["model.axial_cells"] = axial
+    return case.replace(**changes)
+
+
+# ---------------------------------------------------------------------------------------------- records
+
+
+def _record(case: Case, progress: Progress) -> Record:
+    try:
+        record = equilibrium.run(case, progress=progress)
+    except ConvergenceError as failure:
+        work = Work()
+        work.history.extend(failure.history)
+        record = failed_record("solve", case, f"not converged: {failure}", work)
+    return _labelled(record, case)
+
+
+def _labelled(record: Record, case: Case) -> Record:
+    cells, axial = grid_of(case)
+    grid = {"cells_per_pitch": cells} | ({"axial_cells": axial} if axial else {})
+    return replace(record, scalars={**record.scalars, **grid})
+
+
+def _part(progress: Progress | None, start: float, end: float, text: str) -> Progress:
+    """Progress of one grid as a part of the whole."""
+
+    def tell(share: float, phase: str) -> None:
+        if progress is not None:
+            progress(start + share * (end - start), f"{text}, {phase}")
+
+    return tell
+
+
+# ---------------------------------------------------------------------------------------------- figures
+
+
+def _is_figure(name: str) -> bool:
+    return SCALARS[name].role is Role.ANSWER and SCALARS[name].kind is Type.FLOAT
+
+
+def _known(name: str, record: Record) -> bool:
+    return math.isfinite(float(record.scalars.get(name, math.nan)))
+
+
+def _estimate(name: str, records: Sequence[Record], scale: float) -> Estimate:
+    values = np.array([float(r.scalars[name]) if r.converged else math.nan for r in records])
+    counted = _unbroken(values)
+    if name in ANGLES:
+        counted = np.unwrap(counted)
+    found = richardson([float(value) for value in counted], RATIO, scale)
+    return Estimate(
+        name=name,
+        values=tuple(float(value) for value in values),
+        limit=found.limit,
+        order=found.order,
+        error=min(found.error, math.pi) if name in ANGLES else found.error,
+        trusted=found.trusted,
+    )
+
+
+def _bar(estimate: Estimate, value: float) -> float:
+    """Error bar of the value on any grid of the study: its distance from the finest one's, and that one's bar."""
+    finest = next(v for v in reversed(estimate.values) if not math.isnan(v))
+    if estimate.name in ANGLES:
+        return min(abs(math.remainder(value - finest, 2.0 * math.pi)) + estimate.error, math.pi)
+    return abs(value - finest) + estimate.error
+
+
+def _unbroken(values: Array) -> Array:
+    """The values that one ratio connects: up to the finest, without a gap; the last two where that leaves one."""
+    known = np.flatnonzero(np.isfinite(values))
+    last = int(known[-1])
+    gaps = np.flatnonzero(~np.isfinite(values[:last]))
+    start = int(gaps[-1]) + 1 if len(gaps) else 0
+    return values[start : last + 1] if last > start else values[known[-2:]]

@@ -1,0 +1,123 @@
+"""What a sequence of grids tells about the limit: observed order, Richardson's value, and an error bar.
+
+With errors `C h**p` and cells divided by `r`, three values give the order and the limit:
+
+    p = log(|f1 - f2| / |f2 - f3|) / log(r)          f = f3 + (f3 - f2) / (r**p - 1)
+
+The bar is the grid convergence index (Roache 1994) of the finest value, `1.25 |f - f3|`, where `p` is credible: close to the
+order of the discretisation. Contacts begin at nodes, so figures may jump by a cell as grids are refined, and two
+differences may be small or large by accident. Then the bar is the largest that the differences allow.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+DECLARED_ORDER = 2.0
+"""Order of shell and film where they are smooth."""
+
+CREDIBLE = 0.5
+"""Distance from the declared order up to which an observed one is believed."""
+
+LEAST_ORDER, LARGEST_ORDER = 0.8, 4.0
+"""An observed order beyond these is an accident of two differences; the extrapolation stays within."""
+
+SAFETY = 1.25
+"""Safety factor of a bar from three grids of credible order (Roache 1994)."""
+
+SUSPICION = 3.0
+"""Safety factor where the order is not credible, or not known (Roache 1994)."""
+
+AGREEMENT = 1e-8
+"""Relative difference below which values are equal: residuals are solved to this."""
+
+
+@dataclass(frozen=True, slots=True)
+class Extrapolation:
+    """What a sequence of values tends to.
+
+    Attributes
+    ----------
+    limit : float
+        Value for vanishing cells; the finest value where no order could be observed.
+    order : float
+        Observed order [1], as it was observed, nan where there is none.
+    error : float
+        Error bar of the finest value, and of the limit.
+    trusted : bool
+        The values behave as the discretisation promises, or do not change.
+    """
+
+    limit: float
+    order: float
+    error: float
+    trusted: bool
+
+
+def richardson(values: Sequence[float], ratio: float = 2.0, resolution: float = 0.0) -> Extrapolation:
+    """Extrapolate values on grids whose cells shrink by one ratio; the last three of them count.
+
+    Parameters
+    ----------
+    values : sequence of float
+        Values, coarsest grid first; two at least.
+    ratio : float
+        Cell size over that of the next grid [1].
+    resolution : float
+        Difference below which values are equal whatever their size, in the unit of the values.
+
+    Returns
+    -------
+    Extrapolation
+        Limit, observed order, error bar, and whether they can be trusted.
+
+    Raises
+    ------
+    ValueError
+        Fewer than two values, one that is not finite, or a ratio that is not above 1.
+    """
+    finest = _checked(values, ratio)
+    differences = [after - before for before, after in pairwise(values[-3:])]
+    largest = max(map(abs, differences))
+    resolved = max(resolution, AGREEMENT * max(map(abs, values[-3:])))
+    if largest <= resolved:
+        return Extrapolation(finest, math.nan, 0.0 if largest == 0.0 else resolved, True)
+    order = observed_order(differences, ratio)
+    if math.isnan(order):
+        return Extrapolation(finest, order, max(SUSPICION * largest, resolved), False)
+    used = min(max(order, LEAST_ORDER), LARGEST_ORDER)
+    limit = finest + differences[1] / (ratio**used - 1.0)
+    if abs(order - DECLARED_ORDER) <= CREDIBLE:
+        return Extrapolation(limit, order, max(SAFETY * abs(limit - finest), resolved), True)
+    return Extrapolation(limit, order, max(SUSPICION * cautious(differences, ratio, used), resolved), False)
+
+
+def observed_order(differences: Sequence[float], ratio: float) -> float:
+    """Order at which differences of successive grids shrink [1]; nan where they grow, change sign, or are too few."""
+    if len(differences) < 2:
+        return math.nan
+    before, after = differences
+    if before * after <= 0.0 or abs(after) >= abs(before):
+        return math.nan
+    return math.log(before / after) / math.log(ratio)
+
+
+def cautious(differences: Sequence[float], ratio: float, order: float) -> float:
+    """Distance from the limit without faith in the order: neither difference may be small by accident."""
+    before, after = map(abs, differences)
+    expected = before / ratio**DECLARED_ORDER
+    distance: float = max(after, expected) / (ratio ** min(order, DECLARED_ORDER) - 1.0)
+    return distance
+
+
+def _checked(values: Sequence[float], ratio: float) -> float:
+    if len(values) < 2:
+        raise ValueError(f"an extrapolation needs two values at least, got {len(values)}")
+    if not all(map(math.isfinite, values)):
+        raise ValueError(f"an extrapolation needs finite values, got {list(values)}")
+    if not ratio > 1.0:
+        raise ValueError(f"each grid must be finer than the one before: the ratio must be above 1, got {ratio:g}")
+    return float(values[-1])

@@ -1,0 +1,119 @@
+"""`docs/notation.md` against the definitions of a case and the schema of a result."""
+
+from __future__ import annotations
+
+import re
+import typing
+from dataclasses import dataclass
+
+import pytest
+from pydantic import BaseModel
+
+from petalfoil.case import Case
+from petalfoil.case.fields import Quantity
+from petalfoil.results.schema import VARIABLES
+from tests.docs.texts import DOCS, text
+
+
+@dataclass(frozen=True)
+class Row:
+    """One row of the table."""
+
+    symbol: str
+    names: tuple[str, ...]
+    meaning: str
+    unit: str
+    shape: str
+
+
+def rows() -> list[Row]:
+    """The rows of the one table."""
+    lines = [line for line in text(DOCS / "notation.md").splitlines() if line.startswith("|")]
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[2:]]
+    return [Row(cell[0], tuple(re.findall(r"`([^`]+)`", cell[1])), *cell[2:]) for cell in cells]
+
+
+def test_the_table_has_five_columns_and_no_empty_row() -> None:
+    lines = [line for line in text(DOCS / "notation.md").splitlines() if line.startswith("|")]
+    assert {line.count("|") for line in lines} == {6}
+    assert all(row.meaning and row.unit and row.shape and (row.symbol or row.names) for row in rows())
+
+
+def row_of(name: str) -> Row:
+    """The one row that names `name`."""
+    found = [row for row in rows() if name in row.names]
+    assert len(found) == 1, f"{len(found)} rows name {name!r}"
+    return found[0]
+
+
+def normal(unit: str) -> str:
+    """A unit in the spelling of result files: "J/(kg*K)" becomes "J kg-1 K-1", no unit "–"."""
+    over, _, under = unit.replace("(", "").replace(")", "").partition("/")
+    parts = over.replace("*", " ").split() + [f"{part}-1" for part in under.replace("*", " ").split()]
+    return " ".join(parts) or "–"
+
+
+# ---------------------------------------------------------------------------------------------- results
+
+
+@pytest.mark.parametrize("name", VARIABLES)
+def test_every_result_variable_has_its_unit_and_dimensions(name: str) -> None:
+    variable, row = VARIABLES[name], row_of(name)
+    assert row.unit == normal(variable.units)
+    assert row.shape == (f"({', '.join(variable.dims)})" if variable.dims else row.shape)
+    assert bool(variable.dims) == row.shape.startswith("(")
+
+
+# ---------------------------------------------------------------------------------------------- cases
+
+
+def case_fields() -> dict[str, set[str]]:
+    """Dotted name of every field of a case, and the units declared in it."""
+    found: dict[str, set[str]] = {}
+    for name, info in Case.model_fields.items():
+        section = sections(info.annotation)
+        if section is None:
+            found[name] = set()
+            continue
+        for field, declared in section.model_fields.items():
+            found[f"{name}.{field}"] = units((declared.annotation, *declared.metadata))
+    return found
+
+
+def sections(annotation: object) -> type[BaseModel] | None:
+    """The section that a field of a case holds, perhaps optionally."""
+    for candidate in (annotation, *typing.get_args(annotation)):
+        if isinstance(candidate, type) and issubclass(candidate, BaseModel):
+            return candidate
+    return None
+
+
+def units(declared: typing.Iterable[object]) -> set[str]:
+    """Units of all quantities in annotations, however deep."""
+    found: set[str] = set()
+    for item in declared:
+        if isinstance(item, Quantity):
+            found.add(normal(item.unit))
+        found |= units((*typing.get_args(item), *getattr(item, "__metadata__", ())))
+    return found
+
+
+@pytest.mark.parametrize(("name", "declared"), case_fields().items())
+def test_every_case_field_has_its_unit(name: str, declared: set[str]) -> None:
+    unit = row_of(name).unit
+    counted = unit == "1" and not declared
+    assert counted or set(unit.split(", ")) == (declared or {"–"})
+
+
+def test_the_reader_of_cases_reads() -> None:
+    fields = case_fields()
+    assert fields["gas.gas_constant"] == {"J kg-1 K-1"}
+    assert fields["petals.free_shape"] == {"rad", "m"}
+    assert fields["operation.eccentricity"] == {"m"}
+    assert fields["model.kind"] == set()
+
+
+def test_every_dotted_name_of_the_table_is_a_field() -> None:
+    prefixes = tuple(f"{name}." for name in Case.model_fields)
+    dotted = {name for row in rows() for name in row.names if name.startswith(prefixes)}
+    assert dotted - set(case_fields()) == set()

@@ -1,0 +1,80 @@
+"""Work that must not grow: factorisations of cold starts, of curves, of packages."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from petalfoil.analysis import load_curve
+from petalfoil.case import Case
+from petalfoil.equilibria.cold import solve_cold
+from petalfoil.equilibria.package import at_rest
+from petalfoil.equilibria.work import Work
+from petalfoil.problem.build import build_problem
+from tests.cases import case
+
+PACKAGES = ("paper_n6", "paper_n8", "paper_n10")
+DISPLACEMENTS = (0.0, 100e-6, 200e-6, 280e-6)
+
+COLD_AT_32 = 20
+"""Worst cold start on 32 cells a pitch, package included; 19 when this was written (required: 30)."""
+
+
+def bearing(name: str, cells: int, e: float = 0.0) -> Case:
+    return case(name, **{"model.cells_per_pitch": cells, "operation.eccentricity": (0.0, -e)})
+
+
+def cold(cells: int) -> list[int]:
+    counts = []
+    for name in PACKAGES:
+        for e in DISPLACEMENTS:
+            work = Work()
+            solve_cold(build_problem(bearing(name, cells, e)), work)
+            counts.append(work.film.factorizations + work.package.factorizations)
+    return counts
+
+
+def test_cold_starts_cost_the_same_on_any_grid() -> None:
+    coarse, fine = cold(32), cold(128)
+    assert max(coarse) <= COLD_AT_32
+    assert max(fine) <= 30
+    assert np.median(fine) <= 1.5 * np.median(coarse)
+    assert max(fine) <= 1.5 * max(coarse)
+
+
+@pytest.mark.slow
+def test_cold_starts_on_the_finest_grid() -> None:
+    assert max(cold(512)) <= 30
+
+
+def warm(cells: int) -> list[int]:
+    counts: list[int] = []
+    for name in PACKAGES:
+        for speed in (8000.0, 2000.0):
+            points = load_curve.iterate(bearing(name, cells), np.linspace(0.0, 280e-6, 15), speed=speed)
+            records = list(points)
+            assert all(record.converged for record in records)
+            assert not any(record.scalars["jump"] for record in records)
+            counts += [int(record.scalars["factorizations"]) for record in records[1:]]
+    return counts
+
+
+def test_warm_points_of_a_curve() -> None:
+    counts = warm(32)
+    assert np.median(counts) <= 5  # 4 when this was written (required: 8)
+    assert max(counts) <= 20  # 16 (required: 25)
+
+
+@pytest.mark.slow
+def test_warm_points_cost_the_same_on_a_fine_grid() -> None:
+    coarse, fine = warm(32), warm(128)
+    assert np.median(fine) <= 1.5 * np.median(coarse)
+    assert max(fine) <= min(25, 1.5 * max(coarse))
+
+
+@pytest.mark.parametrize("cells", [32, 256])
+@pytest.mark.parametrize("name", PACKAGES)
+def test_package_from_nothing(name: str, cells: int) -> None:
+    work = Work()
+    assert at_rest(build_problem(bearing(name, cells)), work) is not None
+    assert work.package.factorizations <= 20

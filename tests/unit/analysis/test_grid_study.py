@@ -1,0 +1,183 @@
+"""Grids are nested, failures are told, and the limit of a smooth problem is met."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+from numpy.testing import assert_allclose
+
+from petalfoil.analysis import equilibrium, grid_study
+from petalfoil.analysis.grid_study import error_bars, grid_of, grids, resolution, run, table
+from petalfoil.case import Case
+from petalfoil.errors import ConvergenceError, PackageError, UsageError
+from petalfoil.results import Record
+from petalfoil.results.estimate import Estimate
+from tests.cases import case
+
+FLAT = case("paper_n8")
+SPATIAL = case("paper_n8_spatial")
+JOURNAL = case("plain_journal", **{"model.kind": "flat", "model.cells_per_pitch": 64})
+
+
+def cells_of(cases: list[Case]) -> list[tuple[int, int]]:
+    return [grid_of(one) for one in cases]
+
+
+def on(base: Case, cells: int, axial: int | None = None) -> Case:
+    return base.replace(**{"model.cells_per_pitch": cells, "model.axial_cells": axial})
+
+
+# ---------------------------------------------------------------------------------------------- grids
+
+
+@pytest.mark.parametrize(
+    ("own", "expected"),
+    [(32, [32, 64, 128]), (64, [32, 64, 128]), (128, [32, 64, 128]), (256, [64, 128, 256]), (50, [50, 100, 200])],
+)
+def test_the_own_grid_is_the_finest_as_long_as_coarser_ones_can_be_had(own: int, expected: list[int]) -> None:
+    assert cells_of(grids(on(FLAT, own))) == [(cells, 0) for cells in expected]
+
+
+def test_the_length_is_divided_in_step() -> None:
+    assert cells_of(grids(on(SPATIAL, 48, 24), levels=2)) == [(24, 12), (48, 24)]
+    assert cells_of(grids(on(SPATIAL, 48, 14), levels=2)) == [(48, 14), (96, 28)]  # half of 14 cannot be halved
+    assert cells_of(grids(on(SPATIAL, 48, 14).replace(**{"model.symmetry": False}), levels=2)) == [(24, 7), (48, 14)]
+    assert cells_of(grids(on(SPATIAL, 32, 16), levels=3, coarsest=24)) == [(24, 12), (48, 24), (96, 48)]
+    assert cells_of(grids(on(SPATIAL, 64, 4), levels=2, coarsest=16)) == [(16, 4), (32, 8)]
+
+
+def test_speed_and_position_go_to_every_grid() -> None:
+    for one in grids(FLAT, speed=100.0, eccentricity=(1e-6, 2e-6)):
+        assert one.operation.speed == 100.0
+        assert one.operation.eccentricity == (1e-6, 2e-6)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [({"levels": 1}, "2 to 10"), ({"levels": 11}, "2 to 10"), ({"coarsest": 15}, "begin at 16")],
+)
+def test_grids_that_tell_nothing_are_refused(arguments: dict[str, Any], reason: str) -> None:
+    with pytest.raises(UsageError, match=reason):
+        grids(FLAT, **arguments)
+
+
+def test_a_position_without_room_is_refused_before_any_grid() -> None:
+    with pytest.raises(PackageError):
+        grids(FLAT, eccentricity=(0.0, 1e-3))
+
+
+# ---------------------------------------------------------------------------------------------- studies
+
+
+def named(estimates: list[Estimate]) -> dict[str, Estimate]:
+    return {estimate.name: estimate for estimate in estimates}
+
+
+@pytest.fixture(scope="module")
+def smooth() -> list[Record]:
+    """A plain gas bearing: no contact, second order."""
+    return run(JOURNAL, levels=3, coarsest=32)
+
+
+def test_a_smooth_figure_has_order_two_and_its_limit(smooth: list[Record]) -> None:
+    found = named(table(smooth))["load_capacity"]
+    fine = named(table(run(JOURNAL, levels=3, coarsest=128)))["load_capacity"]
+    assert found.trusted
+    assert_allclose(found.order, 2.0, atol=0.1)
+    assert abs(found.limit - fine.limit) < found.error
+    assert found.error < 2e-3 * found.limit
+    assert_allclose(fine.limit, found.limit, rtol=5e-5)
+    assert [len(record.coords["phi_exposed"]) - 1 for record in smooth] == [32, 64, 128]
+
+
+def test_figures_without_a_value_are_left_out_and_no_bookkeeping_is_in(smooth: list[Record]) -> None:
+    names = named(table(smooth))
+    assert {"load_capacity", "min_film", "max_pressure", "friction_torque", "attitude_angle"} <= set(names)
+    assert not {"wall_time", "residual", "speed", "iterations", "stable", "converged"} & set(names)
+    centred = run(JOURNAL, eccentricity=(0.0, 0.0), levels=2, coarsest=16)
+    assert "attitude_angle" not in named(table(centred))
+
+
+def test_error_bars_belong_to_the_own_grid(smooth: list[Record]) -> None:
+    own = equilibrium.run(JOURNAL)
+    bars = error_bars(own)
+    load = named(table(smooth))["load_capacity"]  # 32, 64, 128: the grids of a case with 64 cells, too
+    assert_allclose(bars["load_capacity"], abs(load.values[1] - load.values[2]) + load.error, rtol=1e-6)
+    assert abs(load.values[1] - load.limit) < bars["load_capacity"]
+
+
+# ---------------------------------------------------------------------------------------------- failures
+
+
+def point(cells: int, **scalars: float) -> Record:
+    """A record of a grid; without figures, one that failed."""
+    known = {"ambient_pressure": 1e5, "journal_radius": 0.02, "length": 0.04, "cells_per_pitch": cells}
+    outcome = {"converged": bool(scalars), "status": "converged" if scalars else "not converged: lost"}
+    return Record(analysis="solve", scalars={**known, **outcome, **scalars})
+
+
+def test_a_failed_grid_is_recorded_and_the_others_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    solve = equilibrium.run
+
+    def play(case: Case, **options: Any) -> Record:
+        if case.cells_per_pitch == 64:
+            raise ConvergenceError("no equilibrium found", history=[{"phase": "film"}], advice="try")
+        return solve(case, **options)
+
+    monkeypatch.setattr(grid_study.equilibrium, "run", play)
+    records = run(JOURNAL, levels=3, coarsest=32)
+    assert [record.converged for record in records] == [True, False, True]
+    assert records[1].scalars["status"] == "not converged: no equilibrium found"
+    assert records[1].history == [{"phase": "film"}]
+    load = named(table(records))["load_capacity"]
+    assert [math.isnan(value) for value in load.values] == [False, True, False]
+    assert load.limit == load.values[2]
+    assert_allclose(load.error, 3.0 * abs(load.values[2] - load.values[0]), rtol=1e-12)
+    assert not load.trusted
+
+
+@pytest.mark.parametrize(
+    ("lost", "limit"),
+    [((), 1.0), ((0,), 1.0), ((3,), 1.0), ((1,), 1.0 + 2.0**-6), ((0, 1), 1.0 + 2.0**-6)],
+)
+def test_the_last_unbroken_grids_count(lost: tuple[int, ...], limit: float) -> None:
+    figures = [{"load_capacity": 1.0 + 4.0**-level} for level in range(4)]
+    records = [point(16 * 2**k, **({} if k in lost else figures[k])) for k in range(4)]
+    (load,) = table(records)
+    assert load.limit == limit
+    assert load.trusted == (limit == 1.0)
+
+
+def test_a_force_that_is_rounding_is_no_failure_to_converge() -> None:
+    records = [point(16 * 2**k, load_capacity=force, min_film=force) for k, force in enumerate((3e-13, 1e-13, 4e-13))]
+    found = named(table(records))
+    assert found["load_capacity"].trusted
+    assert found["load_capacity"].error == resolution(records[0])["N"] == 1e-8 * 1e5 * 0.04 * 0.04
+    assert not found["min_film"].trusted
+
+
+def test_two_answers_are_the_least() -> None:
+    with pytest.raises(ConvergenceError, match=r"two grids at least.*32: not converged: lost"):
+        table([point(16, load_capacity=1.0), point(32), point(64)])
+
+
+def test_angles_are_compared_the_short_way_round() -> None:
+    turn = 2.0 * math.pi
+    records = [point(16 * 2**k, min_film_angle=(0.02 - 0.01 * k) % turn) for k in range(4)]
+    (angle,) = table(records)
+    assert_allclose(angle.values[-1], turn - 0.01, rtol=1e-12)
+    assert angle.error < 0.1
+    (halved,) = table([point(16, min_film_angle=0.0), point(32, min_film_angle=3.0)])
+    assert halved.error == math.pi
+
+
+def test_progress_rises_from_grid_to_grid() -> None:
+    told: list[tuple[float, str]] = []
+    run(JOURNAL, levels=2, coarsest=16, progress=lambda share, text: told.append((share, text)))
+    shares = [share for share, _ in told]
+    assert shares == sorted(shares)
+    assert 0.0 <= shares[0] < 1.0 / 3.0 < shares[-1] <= 1.0
+    assert told[0][1].startswith("grid 16, ")
+    assert told[-1][1].startswith("grid 32, ")

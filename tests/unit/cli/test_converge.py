@@ -1,0 +1,190 @@
+"""`converge` and `solve --error`: what they ask of the grid study, print, store and say when grids fail."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+from numpy.testing import assert_allclose
+
+import petalfoil.analysis
+from petalfoil.errors import ConvergenceError
+from petalfoil.results import Record
+from petalfoil.results.estimate import Estimate
+from petalfoil.results.store import load
+
+from .conftest import CASE, Played, point
+
+LOADS = (10.25, 10.0625, 10.015625)  # 10 + h^2
+
+
+class Study:
+    """The grid study as the test plays it."""
+
+    def __init__(self) -> None:
+        self.asked: dict[str, Any] = {}
+        self.failing: set[int] = set()
+        self.interrupted_at: int | None = None
+        self.bars: dict[str, float] | ConvergenceError = {"load_capacity": 0.25, "min_film": 2e-7}
+
+    def grids(self, case: Any, levels: int = 3, coarsest: int | None = None, **where: Any) -> list[int]:
+        self.asked = {"case": case, "levels": levels, "coarsest": coarsest, **where}
+        return [(coarsest or 32) * 2**k for k in range(levels)]
+
+    def iterate(self, cells: list[int], progress: Any) -> Any:
+        for number, count in enumerate(cells):
+            if number == self.interrupted_at:
+                raise KeyboardInterrupt
+            progress(number / len(cells), f"grid {count}")
+            yield _on(count, LOADS[number], number not in self.failing)
+
+    def table(self, records: list[Record]) -> list[Estimate]:
+        loads = tuple(float(r.scalars["load_capacity"]) if r.converged else float("nan") for r in records)
+        film = tuple(5e-6 if r.converged else float("nan") for r in records)
+        return [
+            Estimate(name="load_capacity", values=loads, limit=10.0, order=2.0, error=0.02, trusted=True),
+            Estimate(name="min_film", values=film, limit=5e-6, order=float("nan"), error=3e-7, trusted=False),
+        ]
+
+    def error_bars(self, record: Record, progress: Any) -> dict[str, float]:
+        self.asked = {"own": record}
+        if isinstance(self.bars, ConvergenceError):
+            raise self.bars
+        return self.bars
+
+
+def _on(cells: int, force: float, converged: bool) -> Record:
+    record = point(0.0, -1e-4, converged=converged, cells_per_pitch=cells, load_capacity=force)
+    return Record(analysis="solve", scalars=record.scalars, title=record.title, case_toml=CASE)
+
+
+@pytest.fixture
+def study(played: Played, monkeypatch: pytest.MonkeyPatch) -> Study:
+    plays = Study()
+    fake = ModuleType("petalfoil.analysis.grid_study")
+    for name in ("grids", "iterate", "table", "error_bars"):
+        setattr(fake, name, getattr(plays, name))
+    monkeypatch.setattr(petalfoil.analysis, "grid_study", fake, raising=False)
+    return plays
+
+
+def test_help_has_an_example_and_the_json_keys(cli) -> None:
+    result = cli("converge", "--help")
+    assert result.exit_code == 0
+    assert "Example: petalfoil converge " in result.stdout
+    for key in ("grids", "quantities", "values", "order", "limit", "error", "trusted"):
+        assert key in result.stdout
+
+
+def test_options_reach_the_study(cli, study: Study, case: str) -> None:
+    arguments = ("--levels", "2", "--coarsest", "48", "--speed", "100 rad/s", "--eccentricity", "1 um, -2 um")
+    assert cli("converge", case, *arguments).exit_code == 0
+    assert study.asked.pop("case").title == "Plain [b]bearing[/b]"
+    assert study.asked == {"levels": 2, "coarsest": 48, "speed": 100.0, "eccentricity": (1e-6, -2e-6)}
+    assert cli("converge", case).exit_code == 0
+    del study.asked["case"]
+    assert study.asked == {"levels": 3, "coarsest": None, "speed": None, "eccentricity": None}
+
+
+def test_the_table_has_every_grid_order_limit_error_and_trust(cli, study: Study, case: str) -> None:
+    result = cli("converge", case)
+    assert (result.exit_code, result.stderr) == (0, "")
+    lines = [line.split() for line in result.stdout.splitlines()]
+    assert ["cells", "32", "64", "128", "order", "limit", "error", "trust"] in lines
+    assert ["load", "capacity", "N", "10.250", "10.062", "10.016", "2.00", "10.000", "±", "0.020", "yes"] in lines
+    assert ["smallest", "film", "µm", "5.00", "5.00", "5.00", "-", "5.00", "±", "0.30", "no", "order"] in lines
+
+
+def test_json_has_the_grids_and_the_quantities(cli, study: Study, case: str) -> None:
+    result = cli("converge", case, "--json")
+    answer = json.loads(result.stdout)
+    assert list(answer) == ["grids", "quantities"]
+    assert [grid["cells_per_pitch"] for grid in answer["grids"]] == [32, 64, 128]
+    assert [grid["load_capacity"] for grid in answer["grids"]] == list(LOADS)
+    assert answer["quantities"]["load_capacity"] == {
+        "values": list(LOADS),
+        "order": 2.0,
+        "limit": 10.0,
+        "error": 0.02,
+        "trusted": True,
+    }
+    assert answer["quantities"]["min_film"]["order"] is None
+
+
+def test_a_failed_grid_is_named_and_left_blank(cli, study: Study, case: str) -> None:
+    study.failing = {1}
+    result = cli("converge", case, "--json")
+    assert result.exit_code == 3
+    assert "the grid of 64 cells did not converge: the film collapsed" in result.stderr
+    answer = json.loads(result.stdout)
+    assert answer["quantities"]["load_capacity"]["values"] == [LOADS[0], None, LOADS[2]]
+    assert answer["grids"][1]["load_capacity"] is None
+
+
+def test_interrupted_it_keeps_what_is_finished(cli, study: Study, case: str) -> None:
+    study.interrupted_at = 2
+    result = cli("converge", case, "--json")
+    assert result.exit_code == 130
+    assert "2 of 3 grids are finished" in result.stderr
+    answer = json.loads(result.stdout)
+    assert answer["interrupted"] is True
+    assert len(answer["grids"]) == 2
+    study.interrupted_at = 1
+    result = cli("converge", case, "--json")
+    assert (result.exit_code, result.stdout) == (130, "")
+
+
+def test_out_holds_the_study_and_show_repeats_it(cli, study: Study, case: str, tmp_path: Path) -> None:
+    out = str(tmp_path / "study.nc")
+    study.failing = {0}
+    for flags in ([], ["--json"]):
+        run, again = cli("converge", case, *flags, "--out", out), cli("show", out, *flags)
+        assert again.stdout == run.stdout
+        assert (again.exit_code, again.stderr) == (run.exit_code, run.stderr)
+    ds = load(out)
+    assert ds["load_capacity"].dims == ("grid",)
+    assert_allclose(ds["load_capacity"].values, [float("nan"), *LOADS[1:]], rtol=1e-15)
+    assert float(ds["load_capacity_limit"]) == 10.0
+    assert ds["load_capacity_error"].attrs["units"] == "N"
+    assert bool(ds["load_capacity_trusted"]) is True
+    assert bool(ds["min_film_trusted"]) is False
+
+
+def test_plot_is_drawn(cli, study: Study, case: str, tmp_path: Path) -> None:
+    figure = tmp_path / "study.png"
+    assert cli("converge", case, "--plot", str(figure)).exit_code == 0
+    assert figure.read_bytes().startswith(b"\x89PNG")
+
+
+# ---------------------------------------------------------------------------------------------- solve --error
+
+
+def test_solve_shows_error_bars_on_request(cli, study: Study, case: str) -> None:
+    lines = [line.split() for line in cli("solve", case, "--error").stdout.splitlines()]
+    assert ["load", "capacity", "100.00", "±", "0.25", "N"] in lines
+    assert ["smallest", "film", "5.00", "±", "0.20", "µm"] in lines
+    assert ["contact", "reactions", "12.50", "N"] in lines  # no bar is known
+    assert float(study.asked["own"].scalars["load_capacity"]) == 100.0
+    assert "±" not in cli("solve", case).stdout
+
+
+def test_solve_json_and_file_have_the_error_bars(cli, study: Study, case: str, tmp_path: Path) -> None:
+    out = str(tmp_path / "point.nc")
+    run = cli("solve", case, "--error", "--json", "--out", out)
+    assert json.loads(run.stdout)["error"] == {"load_capacity": 0.25, "min_film": 2e-7}
+    assert "error" not in json.loads(cli("solve", case, "--json").stdout)
+    assert load(out)["load_capacity"].attrs["grid_error"] == 0.25
+    for flags in ([], ["--json"]):
+        assert cli("show", out, *flags).stdout == cli("solve", case, "--error", *flags).stdout
+
+
+def test_without_a_second_grid_the_answer_is_given_without_bars(cli, study: Study, case: str) -> None:
+    study.bars = ConvergenceError("a grid study needs answers on two grids at least")
+    result = cli("solve", case, "--error", "--json")
+    assert result.exit_code == 3
+    assert result.stderr == "no error bars: a grid study needs answers on two grids at least\n"
+    answer = json.loads(result.stdout)
+    assert (answer["load_capacity"], answer["error"]) == (pytest.approx(100.0), {})
