@@ -87,7 +87,8 @@ def test_defaults() -> None:
 def test_grids_have_defaults_that_a_case_overrides() -> None:
     assert case("paper_n8").model.cells_per_pitch is None
     assert case("paper_n8").cells_per_pitch >= 16
-    assert case("plain_journal").cells_per_pitch > case("paper_n8").cells_per_pitch
+    assert case("paper_n8_spatial").cells_per_pitch < case("paper_n8").cells_per_pitch
+    assert case("plain_journal").axial_cells > case("paper_n8_spatial").axial_cells
     chosen = case("paper_n8_spatial", **{"model.cells_per_pitch": 24, "model.axial_cells": 10})
     assert (chosen.cells_per_pitch, chosen.axial_cells) == (24, 10)
 

@@ -1,0 +1,123 @@
+"""Every example is a case that solves; the scripts do what their first lines say."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import petalfoil
+from petalfoil.case import Case
+from petalfoil.results.store import load
+from tests.cases import EXAMPLES
+from tests.docs.texts import ROOT, text
+
+CASES = sorted(EXAMPLES.glob("*.toml"))
+SCRIPTS = sorted(EXAMPLES.glob("*.py"))
+
+# Load [N] and friction torque [N m] on a grid that takes no time, `docs/paper-values.md` and `--error` tell how far off;
+# displaced as the example says.
+SMALL = {
+    "paper_n6": (24, None, 0.477, 16.50e-3),
+    "paper_n8": (32, None, 7.965, 27.85e-3),
+    "paper_n10": (24, None, 6.60, 34.7e-3),
+    "paper_n8_spatial": (24, 12, 7.953, 27.36e-3),
+    "plain_journal": (64, 8, 79.4, 8.588e-3),
+    "rig": (24, 12, 0.0, 23.1e-3),
+}
+
+
+def test_every_example_is_tried() -> None:
+    assert {path.stem for path in CASES} == set(SMALL)
+
+
+@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
+def test_an_example_names_its_assumptions_and_writes_itself(path: Path) -> None:
+    case = Case.load(path)
+    assert Case.from_toml(case.to_toml()) == case
+    assert case.title
+    assert case.petals is None or "# assumption" in text(path)
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_an_example_solves(name: str) -> None:
+    cells, axial, load_capacity, torque = SMALL[name]
+    case = Case.load(EXAMPLES / f"{name}.toml").replace(**{"model.cells_per_pitch": cells, "model.axial_cells": axial})
+    point = petalfoil.solve(case)
+    assert bool(point["converged"])
+    assert bool(point["stable"])
+    assert float(point["residual"]) <= 1e-8
+    assert_allclose(float(point["load_capacity"]), load_capacity, rtol=5e-3, atol=1e-5)
+    assert_allclose(float(point["friction_torque"]), torque, rtol=5e-3)
+
+
+# ---------------------------------------------------------------------------------------------- scripts
+
+
+def module(path: Path) -> ModuleType:
+    """A script of the examples as a module."""
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    assert spec is not None
+    assert spec.loader is not None
+    found = importlib.util.module_from_spec(spec)
+    sys.modules[path.stem] = found  # dataclasses look their module up
+    spec.loader.exec_module(found)
+    return found
+
+
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.stem)
+def test_a_script_without_a_place_to_write_says_how_it_is_called(path: Path) -> None:
+    done = subprocess.run([sys.executable, str(path)], capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert done.stderr.startswith(f"usage: python examples/{path.name} ")
+    assert done.stdout == ""
+
+
+def test_the_demo_writes_tables_figures_and_data(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    demo = module(EXAMPLES / "demo.py")
+    small = [demo.Task(f"paper_n{n}", f"{n} petals", 64, "0 um : 280 um : 3", (280,), levels=3) for n in (6, 8, 10)]
+    space = demo.Task("paper_n8_spatial", "8 petals in space", 16, "0 um : 100 um : 2", (), levels=2)
+    monkeypatch.setattr(demo, "FLAT", small)
+    monkeypatch.setattr(demo, "SPATIAL", space)
+    demo.main(tmp_path)
+    printed = capsys.readouterr()
+    assert "24.85 ± " in printed.out  # 8 petals at 280 µm on 64 cells a pitch
+    assert "8 petals in space: done" in printed.err
+    written = {path.name for path in tmp_path.iterdir()}
+    assert {f"curve_{task.name}.nc" for task in (*small, space)} <= written
+    assert {
+        "figure6_7_pressure_and_film.png",
+        "figure8_load_characteristic.png",
+        "maps_paper_n8_spatial.png",
+    } <= written
+    curve = load(tmp_path / "curve_paper_n8.nc")
+    assert_allclose(curve["load_capacity"].values, [0.0, 11.6, 24.85], rtol=0.02, atol=1e-6)
+
+
+def test_the_paper_s_values_are_those_of_the_script() -> None:
+    values = module(EXAMPLES / "paper_values.py")
+    page = text(ROOT / "docs" / "paper-values.md")
+    assert page.startswith(values.HEAD)
+    study = values.run(values.Task(6, "flat", 280))
+    shown = [values.text(study[name], factor) for name, factor in values.RUNNING.items()]
+    assert f"| 6 | 280 | {' | '.join(shown)} |" in page
+
+
+def test_values_show_the_digits_that_their_bars_leave() -> None:
+    values = module(EXAMPLES / "paper_values.py")
+    trusted = values.Extrapolation(limit=17.9603e-6, order=2.1, error=0.0031e-6, trusted=True)
+    plain = values.Extrapolation(limit=8.0941, order=np.nan, error=0.42, trusted=False)
+    zero = values.Extrapolation(limit=3e-13, order=np.nan, error=2.5e-6, trusted=True)
+    assert values.text(trusted, 1e6) == "**17.9603 ± 0.0031**"
+    assert values.text(plain, 1.0) == "8.09 ± 0.42"
+    assert values.text(zero, 1.0) == "0"
+    assert json.dumps(values.grids("spatial")) == "[24, 48, 96]"

@@ -1,0 +1,84 @@
+"""What the README shows works: its case loads, its command prints what stands there, its Python runs."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from petalfoil.case import Case
+from petalfoil.cli.app import app
+from tests.docs.test_pages import anchors
+from tests.docs.texts import ROOT, text
+
+README = ROOT / "README.md"
+
+
+def blocks(language: str) -> list[str]:
+    """Fenced blocks of a language."""
+    return re.findall(rf"^```{language}\n(.*?)^```", text(README), re.MULTILINE | re.DOTALL)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the README's case."""
+    path = tmp_path_factory.mktemp("readme")
+    (case,) = blocks("toml")
+    (path / "case.toml").write_text(case, encoding="utf-8")
+    return path
+
+
+def test_the_case_is_the_paper_s() -> None:
+    (case,) = blocks("toml")
+    mine, paper = Case.from_toml(case), Case.load(ROOT / "examples" / "paper_n8.toml")
+    assert mine.bearing == paper.bearing
+    assert mine.petals == paper.petals
+    assert mine.gas.viscosity == paper.gas.viscosity
+
+
+def test_the_command_prints_what_stands_there(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (console,) = blocks("console")
+    call, *shown = console.splitlines()
+    program, *arguments = shlex.split(call.removeprefix("$ "))
+    monkeypatch.chdir(folder)
+    result = CliRunner().invoke(app, arguments, prog_name=program)
+    assert (result.exit_code, result.stderr) == (0, "")
+    printed = iter(result.stdout.splitlines())
+    for line in shown:
+        if line != "...":
+            assert line in printed  # an iterator: the lines stand in this order
+
+
+def test_the_python_prints_what_stands_there(folder: Path) -> None:
+    (code,), (shown,) = blocks("python"), blocks("text")
+    done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=True)
+    assert done.stdout == shown
+    assert (folder / "point.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_every_verb_is_named() -> None:
+    verbs = set(re.findall(r"^\| `petalfoil (\w+)` \|", text(README), re.MULTILINE))
+    assert verbs == {command.callback.__name__ for command in app.registered_commands if command.callback}
+
+
+def test_links_lead_somewhere() -> None:
+    for link in re.findall(r"\]\(([^)\s]+)\)", text(README)):
+        if "://" not in link:
+            file, _, anchor = link.partition("#")
+            assert (ROOT / file).exists(), link
+            assert not anchor or anchor in anchors(ROOT / file), link
+
+
+def test_the_targets_of_make_exist() -> None:
+    targets = set(re.findall(r"^([a-z-]+):", text(ROOT / "Makefile"), re.MULTILINE))
+    named = set(re.findall(r"\bmake ([a-z-]+)", text(README)))
+    assert {"demo", "test"} <= named <= targets
+
+
+def test_the_picture_is_small() -> None:
+    assert (ROOT / "docs" / "images" / "petal_bearing.png").stat().st_size < 300_000
