@@ -110,6 +110,11 @@ class ElasticProblem:
         return len(self.force)
 
     @property
+    def rank(self) -> Array | None:
+        """The solver orders the elimination itself."""
+        return None
+
+    @property
     def positive(self) -> slice:
         """No unknown is bound to stay positive."""
         return slice(0, 0)

@@ -27,5 +27,5 @@ def leading_eigenvalue(answer: Answer, work: Work) -> complex:
     stored = line.matrix(none, 1.0) - steady
     ties = tie(problem.G, answer.in_contact)
     first = int(ties.group[: problem.layout.n_wall].max(initial=-1)) + 1
-    pencil = Pencil(ties.reduce(steady), ties.reduce(stored.tocsc()), first)
+    pencil = Pencil(ties.reduce(steady), ties.reduce(stored.tocsc()), first, ties.rank(problem.rank))
     return rightmost(pencil, TIME_STEP, work.probe_solver)

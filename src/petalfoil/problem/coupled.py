@@ -177,6 +177,11 @@ class CoupledProblem:
         return self.layout.weight
 
     @property
+    def rank(self) -> Array:
+        """Place of each unknown in the elimination."""
+        return self.layout.pattern.rank
+
+    @property
     def positive(self) -> slice:
         """Unknowns that must stay positive: the pressures."""
         return slice(self.layout.n_wall, self.layout.n)

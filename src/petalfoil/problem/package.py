@@ -50,6 +50,11 @@ class PackageProblem:
         """No unknown is bound to stay positive."""
         return slice(0, 0)
 
+    @property
+    def rank(self) -> Array:
+        """Place of each unknown in the elimination: as in the coupled system."""
+        return self.coupled.rank[: self.layout.n_wall]
+
     @cached_property
     def pattern(self) -> Pattern:
         """Sparsity of `K + G^T diag G`."""

@@ -100,7 +100,8 @@ def active_set(
             if isinstance(state, Outcome):
                 return None, state
         try:
-            factor = solver.factor(state.ties.reduce(state.line.matrix(np.zeros(len(wanted)))))
+            matrix = state.ties.reduce(state.line.matrix(np.zeros(len(wanted))))
+            factor = solver.factor(matrix, state.ties.rank(problem.rank))
         except SingularMatrixError:
             return None, Outcome.SINGULAR
         state = evaluate(problem, newton_step(problem, state, factor, options), wanted)

@@ -42,6 +42,10 @@ class ConeProblem(Protocol):
         """Weights of the gaps, (m,): `lam / weight` is comparable between nodes."""
 
     @property
+    def rank(self) -> Array | None:
+        """Place of each unknown in the elimination, (n,); None to leave it to the solver."""
+
+    @property
     def positive(self) -> slice:
         """Unknowns that must stay positive."""
 

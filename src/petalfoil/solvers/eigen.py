@@ -34,6 +34,7 @@ class Pencil:
     J: sp.csc_array
     M: sp.csc_array
     first: int
+    rank: Array | None = None
 
 
 def rightmost(pencil: Pencil, step: float, solver: LinearSolver) -> complex:
@@ -45,7 +46,7 @@ def rightmost(pencil: Pencil, step: float, solver: LinearSolver) -> complex:
         A constrained state without tangent.
     """
     n, first = pencil.J.shape[0], pencil.first
-    factor = solver.factor(sp.csc_array(pencil.M + GAMMA * step * pencil.J))
+    factor = solver.factor(sp.csc_array(pencil.M + GAMMA * step * pencil.J), pencil.rank)
     count = n - first
 
     def advance(mass: Array) -> Array:

@@ -109,7 +109,7 @@ def interior_point(
         widest = float(np.max(np.abs(shift), initial=0.0))
         if watch(point, Step(point.barrier(problem.weight), residual, widest, pace.length, pace.rate)):
             return point, True
-        factor = solver.factor(line.matrix(point.lam / point.s, pace.rate))
+        factor = solver.factor(line.matrix(point.lam / point.s, pace.rate), problem.rank)
         newton = NewtonSystem(problem, point, line, factor, pace.rate)
         direction = choose(newton, residual, pace, options)
         length = newton.longest(direction, options)
@@ -129,7 +129,8 @@ def contact_set(problem: ConeProblem, point: ConePoint, solver: LinearSolver) ->
     """
     shift = point.s - problem.gaps(point.x)
     line = problem.linearize(point.x, shift)
-    newton = NewtonSystem(problem, point, line, solver.factor(line.matrix(point.lam / point.s)), 0.0)
+    factor = solver.factor(line.matrix(point.lam / point.s), problem.rank)
+    newton = NewtonSystem(problem, point, line, factor, 0.0)
     ahead = newton.direction(-point.lam * point.s)
     return keep_positive(point.x, ahead.x, problem.positive, 0.8), -ahead.s > 0.5 * point.s
 

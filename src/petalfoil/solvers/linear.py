@@ -11,6 +11,7 @@ import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Index = NDArray[np.intp]
 
 
 class SingularMatrixError(ArithmeticError):
@@ -27,17 +28,32 @@ class Counter:
 
 @dataclass(frozen=True)
 class Factor:
-    """`D_r M D_c = L U`, ready to solve with `M`."""
+    """`D_r M D_c`, its unknowns in the order of elimination, as `L U`: ready to solve with `M`."""
 
     lu: Any
     row: Array
     col: Array
+    order: Index | None
 
     def solve(self, rhs: Array) -> Array:
         """Solve `M x = rhs`, rhs of shape (n,) or (n, k)."""
         row, col = (self.row, self.col) if rhs.ndim == 1 else (self.row[:, None], self.col[:, None])
-        out: Array = col * self.lu.solve(row * rhs)
-        return out
+        if self.order is None:
+            out: Array = col * self.lu.solve(row * rhs)
+            return out
+        inner = self.lu.solve((row * rhs)[self.order])
+        spread = np.empty_like(inner)
+        spread[self.order] = inner
+        scaled: Array = col * spread
+        return scaled
+
+
+PIVOT = 1e-4
+"""A diagonal entry this large over the largest of its column is kept as pivot: patterns are symmetric and their order
+is for the diagonal. Stricter pivoting fills in twice as much late in an interior point and is not more accurate."""
+
+BACKWARD_ERROR = 1e-10
+"""Backward error past which a factorisation is repeated with full pivoting."""
 
 
 @dataclass
@@ -46,8 +62,15 @@ class LinearSolver:
 
     counter: Counter = field(default_factory=Counter)
 
-    def factor(self, matrix: sp.csc_array) -> Factor:
+    def factor(self, matrix: sp.csc_array, rank: Array | None = None) -> Factor:
         """Equilibrate and factorise `matrix` (n, n).
+
+        Parameters
+        ----------
+        matrix : (n, n) sparse
+            The matrix; the order is chosen for symmetric patterns.
+        rank : (n,) array, optional
+            Place of each unknown in the elimination, if it is known.
 
         Raises
         ------
@@ -59,11 +82,36 @@ class LinearSolver:
         if not np.all(np.isfinite(matrix.data)):
             raise SingularMatrixError("matrix with entries that are not finite")
         scaled, row, col = equilibrate(matrix)
+        order = None if rank is None else np.argsort(rank, kind="stable")
         try:
-            lu = spla.splu(scaled, permc_spec="COLAMD", options={"Equil": False})
+            factor = Factor(symmetric_lu(scaled, order), row, col, order)
+            if trusted(matrix, factor):
+                return factor
+        except RuntimeError:  # SuperLU met a zero pivot: without the diagonal it may still do
+            pass
+        try:
+            return Factor(spla.splu(scaled, permc_spec="COLAMD", options={"Equil": False}), row, col, None)
         except RuntimeError as failure:  # SuperLU says "Factor is exactly singular" this way
             raise SingularMatrixError(str(failure)) from failure
-        return Factor(lu, row, col)
+
+
+def symmetric_lu(scaled: sp.csc_array, order: Index | None) -> Any:
+    """Factorise with pivots on the diagonal where they are large enough, in the given order or minimum degree."""
+    options = {"Equil": False, "SymmetricMode": True}
+    if order is None:
+        return spla.splu(scaled, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=PIVOT, options=options)
+    ordered = sp.csc_array(scaled[order][:, order])
+    return spla.splu(ordered, permc_spec="NATURAL", diag_pivot_thresh=PIVOT, options=options)
+
+
+def trusted(matrix: sp.csc_array, factor: Factor) -> bool:
+    """The factorisation solves with a small backward error (one solve, a fiftieth of the work)."""
+    rhs = np.random.default_rng(0).standard_normal(matrix.shape[0]) / factor.row
+    x = factor.solve(rhs)
+    if not np.all(np.isfinite(x)):
+        return False
+    size = abs(matrix) @ np.abs(x) + np.abs(rhs)
+    return bool(np.max(np.abs(matrix @ x - rhs) / np.maximum(size, np.finfo(float).tiny), initial=0.0) < BACKWARD_ERROR)
 
 
 def equilibrate(matrix: sp.csc_array) -> tuple[sp.csc_array, Array, Array]:

@@ -60,7 +60,7 @@ def search(
     plain = line.matrix(stiffness)
     stiffness[closed & doubt] = float(np.median(np.abs(plain.diagonal())))
     try:
-        factor = solver.factor(ties.reduce(line.matrix(stiffness)))
+        factor = solver.factor(ties.reduce(line.matrix(stiffness)), ties.rank(problem.rank))
     except SingularMatrixError:
         return None
     base = factor.solve(-ties.gather(line.residual))

@@ -68,6 +68,15 @@ class Ties:
         """Move every unknown with its group; shape (n,)."""
         return np.append(free, 0.0)[self.group]
 
+    def rank(self, rank: Array | None) -> Array | None:
+        """Place of each free unknown in the elimination: that of the last of its group, (n_free,)."""
+        if rank is None:
+            return None
+        inside = self.group >= 0
+        last = np.full(self.n_free, -np.inf)
+        np.maximum.at(last, self.group[inside], rank[inside])
+        return last
+
     def reduce(self, matrix: sp.csc_array) -> sp.csc_array:
         """The matrix over the free unknowns: rows and columns of a group added up."""
         coo = matrix.tocoo()

@@ -49,6 +49,11 @@ class Spring:
         return np.ones(1)
 
     @property
+    def rank(self) -> Array | None:
+        """The solver orders the elimination itself."""
+        return None
+
+    @property
     def positive(self) -> slice:
         """x itself."""
         return slice(0, 1)
