@@ -71,8 +71,9 @@ def run(task: Task) -> Result:
 
 
 def error_bars(case: Case, e: int, levels: int) -> dict[str, float]:
-    """Grid errors of the figures at a displacement in µm; the own grid is the finest of three, or the coarser
-    of two: then the bar is three times the difference, and the difference.
+    """Error bars of the figures at a displacement in µm, on the case's own grid.
+
+    It is the finest of three. Of two it is the coarser one, and the bar is their difference and three times that again.
     """
     cells = case.cells_per_pitch
     coarsest = cells // 4 if levels == 3 else cells
@@ -135,7 +136,7 @@ def draw_family(results: list[Result], folder: Path) -> None:
 def table(result: Result) -> Table:
     """The points of a curve, with error bars where they were determined."""
     task, curve = result.task, result.curve
-    grid = f"{task.cells} cells a pitch" if curve.sizes["z"] == 1 else f"{task.cells} x {task.cells // 2} cells a pitch"
+    grid = f"{task.cells} cells a pitch" + ("" if curve.sizes["z"] == 1 else f", {task.cells // 2} along the axis")
     sheet = Table(title=f"{task.label}, {grid}", title_justify="left", title_style="bold")
     sheet.add_column("e\nµm", justify="right")
     for heading, _, _ in SHOWN.values():

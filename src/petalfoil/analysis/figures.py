@@ -74,7 +74,7 @@ def forces(case: Case, answer: Answer) -> Named:
         "force_x": float(force[0]),
         "force_y": float(force[1]),
         "load_capacity": float(np.hypot(*force)),
-        "attitude_angle": attitude_angle(force, np.array(case.operation.eccentricity)),
+        "attitude_angle": attitude_angle(force, answer.problem.displacement),
         "film_force_x": float(by_film[0]),
         "film_force_y": float(by_film[1]),
         "contact_force_x": float(by_contact[0]),

@@ -4,8 +4,8 @@ With errors `C h**p` and cells divided by `r`, three values give the order and t
 
     p = log(|f1 - f2| / |f2 - f3|) / log(r)          f = f3 + (f3 - f2) / (r**p - 1)
 
-The bar is the grid convergence index (Roache 1994) of the finest value, `1.25 |f - f3|`, where `p` is credible: close to the
-order of the discretisation. Contacts begin at nodes, so figures may jump by a cell as grids are refined, and two
+The bar is the grid convergence index (Roache 1994) of the finest value, `1.25 |f - f3|`, where `p` is credible: close
+to the order of the discretisation. Contacts begin at nodes, so figures may jump by a cell as grids are refined, and two
 differences may be small or large by accident. Then the bar is the largest that the differences allow.
 """
 

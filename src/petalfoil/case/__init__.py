@@ -5,7 +5,8 @@ In the order data flows:
 - `fields`: kinds of numbers (quantity, count) and their checks.
 - `problems`: all problems of a definition → one `DefinitionError`.
 - `definition`: the base of all definitions.
-- `sections`, `petals`: the tables of a case.
+- `gas_properties`: a gas by its name.
+- `sections`, `petals`, `gas`: the tables of a case.
 - `free_shape`: radius of a free petal.
 - `package`: geometry that follows, and whether the package can be assembled.
 - `toml`: files and texts.
@@ -16,9 +17,10 @@ All numbers are floats in SI units; texts such as ``"25 um"`` are read when a de
 
 from petalfoil.case.definitions import Case
 from petalfoil.case.free_shape import arc_radius, chordal_tilt
+from petalfoil.case.gas import Gas
 from petalfoil.case.package import Package, package_of
 from petalfoil.case.petals import Mount, Petals
-from petalfoil.case.sections import Bearing, Edges, Gas, Kind, Method, Model, Operation, Surface
+from petalfoil.case.sections import Bearing, Edges, Kind, Method, Model, Operation, Surface
 
 __all__ = [
     "Bearing",

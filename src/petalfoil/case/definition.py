@@ -27,3 +27,7 @@ class Definition(BaseModel):
     # hide the problems of all others. This mark, which pydantic puts on its own `__init__`, says that ours adds no
     # validation.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    def entries(self) -> dict[str, object]:
+        """Entries that make this definition again, by name."""
+        return {name: getattr(self, name) for name in type(self).model_fields}

@@ -11,10 +11,11 @@ from pydantic import Field, model_validator
 
 from petalfoil.case import toml
 from petalfoil.case.definition import Definition
+from petalfoil.case.gas import Gas
 from petalfoil.case.package import Package, bearing_problems, package_of, package_problems
 from petalfoil.case.petals import Petals
 from petalfoil.case.problems import Problem, joined
-from petalfoil.case.sections import Bearing, Gas, Kind, Model, Operation, Surface
+from petalfoil.case.sections import Bearing, Kind, Model, Operation, Surface
 from petalfoil.errors import DefinitionError, PackageError
 
 # Grids whose error in the load stays under 1 %: measured on the paper's packages (six to ten petals, displaced by 100
@@ -102,6 +103,11 @@ class Case(Definition):
         return self.room - layers - self.surface.film_floor
 
     @property
+    def slip_length(self) -> float:
+        """Mean free path at ambient pressure by which the film slips at its walls (F7); zero without slip [m]."""
+        return self.gas.mean_free_path if self.model.slip else 0.0
+
+    @property
     def cells_per_pitch(self) -> int:
         """Cells along a pitch (of a plain bearing: round the whole circle), the default filled in."""
         if self.model.cells_per_pitch is not None:
@@ -147,5 +153,5 @@ class Case(Definition):
 def _entries(section: object) -> dict[str, object]:
     """Entries of a section by name; none where there is no section yet."""
     if isinstance(section, Definition):
-        return {name: getattr(section, name) for name in type(section).model_fields}
+        return section.entries()
     return dict(section) if isinstance(section, Mapping) else {}

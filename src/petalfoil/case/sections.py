@@ -1,4 +1,4 @@
-"""The sections of a case but the petals: bearing, gas, surface, operation, model."""
+"""The sections of a case but petals and gas: bearing, surface, operation, model."""
 
 from __future__ import annotations
 
@@ -30,30 +30,6 @@ class Bearing(Definition):
     def clearance(self) -> float:
         """Room between bushing and a centred journal, ``R_B − R_j`` [m]."""
         return self.bushing_radius - self.journal_radius
-
-
-class Gas(Definition):
-    """Isothermal ideal gas. Temperature and gas constant only give side leakage its mass units."""
-
-    section: ClassVar[str] = "gas"
-
-    viscosity: Annotated[
-        float, Quantity(unit="Pa*s", meaning="dynamic viscosity", symbol="mu", above=0.0, at_most=10.0)
-    ]
-    ambient_pressure: Annotated[
-        float, Quantity(unit="Pa", meaning="absolute ambient pressure", symbol="p_a", above=0.0, at_most=1e9)
-    ]
-    temperature: Annotated[
-        float, Quantity(unit="K", meaning="gas temperature", symbol="T", above=0.0, at_most=5000.0)
-    ] = 293.15
-    gas_constant: Annotated[
-        float, Quantity(unit="J/(kg*K)", meaning="specific gas constant", symbol="R_g", above=0.0, at_most=1e5)
-    ] = 287.05
-
-    @property
-    def ambient_density(self) -> float:
-        """Density at ambient pressure, ``p_a / (R_g T)`` [kg/m³]."""
-        return self.ambient_pressure / (self.gas_constant * self.temperature)
 
 
 class Surface(Definition):
@@ -121,6 +97,7 @@ class Model(Definition):
     cells_per_pitch: Annotated[int, Count(meaning="cells along a pitch", at_least=4, at_most=4096)] | None = None
     axial_cells: Annotated[int, Count(meaning="cells over the whole length", at_least=2, at_most=512)] | None = None
     symmetry: StrictBool = True
+    slip: StrictBool = False
     method: Method = Method.NEWTON
 
     @field_validator("method")

@@ -53,14 +53,22 @@ def nothing_found(work: Work) -> ConvergenceError:
 def attempt(problem: CoupledProblem, barrier: float, work: Work) -> Answer | None:
     """Solve from the assembled package at one barrier; None if that leads nowhere."""
     way = f"interior point from the assembled package, barrier {barrier:g}"
-    if not len(problem.weight):
-        ambient = np.ones(problem.layout.n)
-        return finish(problem, ConePoint(ambient, np.zeros(0), np.zeros(0)), "Newton from ambient pressure", work)
+    if not problem.layout.n_wall:
+        return over_rigid_wall(problem, work)
     try:
         return finish(problem, assembled(problem, barrier, work), way, work)
     except SingularMatrixError as failure:
         work.note("film", outcome=str(failure))
         return None
+
+
+def over_rigid_wall(problem: CoupledProblem, work: Work) -> Answer | None:
+    """The film alone, from ambient pressure: nothing moves and nothing touches."""
+    untouched = np.zeros(len(problem.weight), dtype=bool)
+    options = ActiveOptions(max_steps=60)
+    closed, outcome = active_set(problem, np.ones(problem.layout.n), untouched, work.film_solver, options)
+    work.note("film", outcome=outcome.value)
+    return from_closed(problem, closed, "Newton from ambient pressure")
 
 
 def finish(

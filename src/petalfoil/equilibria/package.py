@@ -48,6 +48,9 @@ def free_start(package: PackageProblem) -> ConePoint:
 def assembled(problem: CoupledProblem, barrier: float, work: Work) -> ConePoint:
     """The assembled package on its central path at `barrier`, extended by ambient pressures: a start for the film."""
     package = unloaded(problem)
+    if not problem.layout.n_wall:
+        s = package.gaps(np.zeros(0))
+        return ConePoint(np.ones(problem.layout.n), s, barrier * package.weight / s)
     options = replace(CONVEX, least_barrier=barrier)
 
     def content(step: Step) -> bool:
@@ -62,8 +65,6 @@ def assembled(problem: CoupledProblem, barrier: float, work: Work) -> ConePoint:
 def at_rest(problem: CoupledProblem, work: Work) -> tuple[Array, NDArray[np.bool_]] | None:
     """Deflections of the assembled package (n_wall,) and its closed gaps (m,); None if not found."""
     package = unloaded(problem)
-    if not len(package.weight):
-        return np.zeros(0), np.zeros(0, dtype=bool)
     start = free_start(package)
     for goal in REST_GOALS:
         watch = work.watch("package", settled(goal))

@@ -98,7 +98,18 @@ def package_contacts(mesh: PackageMesh, free_radius: Array, sizes: dict[str, flo
     )
 
 
-def no_contacts(n_unknown: int) -> Contacts:
-    """A wall that nothing touches."""
-    empty, none = np.zeros(0), slice(0, 0)
-    return Contacts(sp.csr_array((0, n_unknown)), empty, np.zeros((0, 2)), empty, none, none, none)
+def bore_contacts(theta: Array, room: float, area: Array) -> Contacts:
+    """Gaps between the journal and a bore that does not move: only the journal's displacement closes them.
+
+    Parameters
+    ----------
+    theta : (m,) array
+        Angles of the film nodes [rad].
+    room : float
+        Clearance less the film floor [m].
+    area : (m,) array
+        Area of each node [m^2].
+    """
+    m, none = len(theta), slice(0, 0)
+    by_e = -np.stack([np.cos(theta), np.sin(theta)], axis=1)
+    return Contacts(sp.csr_array((m, 0)), np.full(m, room), by_e, area, slice(0, m), none, none)

@@ -90,6 +90,11 @@ COORDINATES: dict[str, Variable] = {
         "phi",
         role=Role.GEOMETRY,
     ),
+    "whirl_frequency": Variable(("whirl_frequency",), "rad s-1", "whirl frequency", "Omega", role=Role.GEOMETRY),
+    "row": Variable(("row",), "1", "direction of the force: 0 along x, 1 along y", "i", Kind.INT, Role.GEOMETRY),
+    "column": Variable(
+        ("column",), "1", "direction of the displacement: 0 along x, 1 along y", "j", Kind.INT, Role.GEOMETRY
+    ),
     "z": Variable(("z",), "m", "distance along the bearing axis", "z", role=Role.GEOMETRY),
 }
 
@@ -104,6 +109,8 @@ FIELDS: dict[str, Variable] = {
     "petal_contact_pressure": Variable(
         _PETAL, "Pa", "contact pressure between petal l and petal l+1, at the angle of petal l", "lambda_P"
     ),
+    "stiffness": Variable(("whirl_frequency", "row", "column"), "N m-1", "stiffness of the bearing", "K"),
+    "damping": Variable(("whirl_frequency", "row", "column"), "N s m-1", "damping of the bearing", "C"),
     "bending_stress": Variable(
         _PETAL, "Pa", "bending stress of the petal's metal along phi, assembly included", "sigma_phi"
     ),
@@ -113,6 +120,10 @@ SCALARS: dict[str, Variable] = {
     "speed": _given("rad s-1", "angular velocity of the journal", "omega"),
     "eccentricity_x": _given("m", "displacement of the journal's centre along x", "e_x"),
     "eccentricity_y": _given("m", "displacement of the journal's centre along y", "e_y"),
+    "load_x": _given("N", "load on the journal along x", "load_x"),
+    "load_y": _given("N", "load on the journal along y", "load_y"),
+    "share": _given("1", "contact share below which the journal floats", "s_f"),
+    "rotor_mass": _given("kg", "mass of a rigid rotor on this bearing", "m"),
     "force_x": _answer("N", "force of film and contact on the journal along x", "F_x"),
     "force_y": _answer("N", "force of film and contact on the journal along y", "F_y"),
     "load_capacity": _answer("N", "magnitude of the force on the journal", "|F|"),
@@ -137,6 +148,17 @@ SCALARS: dict[str, Variable] = {
     "power_loss": _answer("W", "friction torque times angular velocity", "M omega"),
     "side_leakage": _answer("kg s-1", "mass flow of gas that leaves at both ends", "m_dot"),
     "max_stress": _answer("Pa", "largest magnitude of the bending stress of the petals", "sigma_max"),
+    "critical_mass": _answer("kg", "smallest mass of a rigid rotor that whirls", "m_c"),
+    "whirl_ratio": _answer("1", "whirl frequency over speed at the critical mass", "gamma"),
+    "threshold_speed": _answer("rad s-1", "speed at which the rotor's mass begins to whirl", "omega_c"),
+    "liftoff_speed": _answer("rad s-1", "speed above which the journal floats, ascending", "omega_up"),
+    "touchdown_speed": _answer("rad s-1", "speed below which the journal touches, descending", "omega_down"),
+    "liftoff_by_floor": _answer(
+        "1", "logarithmic derivative of the lift-off speed by the film floor", "d ln omega_up/d ln h_min"
+    ),
+    "liftoff_by_share": _answer(
+        "1", "logarithmic derivative of the lift-off speed by the share", "d ln omega_up/d ln s_f"
+    ),
     "stable": _answer("", "the equilibrium of film and petals is stable at the fixed journal", "stable", Kind.BOOL),
     "growth_rate": _answer(
         "s-1", "real part of the leading eigenvalue of film and petals at the fixed journal", "Re s"
@@ -145,6 +167,8 @@ SCALARS: dict[str, Variable] = {
         "rad s-1", "imaginary part of the leading eigenvalue of film and petals at the fixed journal", "Im s"
     ),
     "residual": _run("1", "largest scaled residual of the coupled system", "res"),
+    "force_residual": _run("1", "force left over by film, contacts and load, over the load", "d_load"),
+    "carried_by": _run("", "what carries the load", "carried by", Kind.STR),
     "mass_balance": _run("1", "relative defect of the mass balance of the film", "d_mass"),
     "reaction_balance": _run("1", "relative defect of the balance of loads and reactions of the petals", "d_force"),
     "iterations": _run("1", "iterations of the coupled system", "N_it", Kind.INT),

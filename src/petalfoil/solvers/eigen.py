@@ -17,6 +17,7 @@ import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from petalfoil.solvers.linear import Factor, LinearSolver
+from petalfoil.solvers.ties import apart
 
 Array = NDArray[np.float64]
 
@@ -86,17 +87,9 @@ def survivor(operator: spla.LinearOperator, state: Array) -> tuple[Array, Array]
 def sdirk(pencil: Pencil, factor: Factor, mass: Array) -> Array:
     """State after one step (E2) from the stored mass `mass` (differential rows), (n,)."""
     start = np.concatenate([np.zeros(pencil.first, dtype=mass.dtype), mass])
-    stage = solve_any(factor, start)
+    stage = apart(factor.solve, start)
     rate = (pencil.M @ stage - start) / GAMMA
-    return solve_any(factor, start + (1.0 - GAMMA) * rate)
-
-
-def solve_any(factor: Factor, rhs: Array) -> Array:
-    """Solve a real or a complex right-hand side with a real factor."""
-    if np.iscomplexobj(rhs):
-        both = factor.solve(np.column_stack([rhs.real, rhs.imag]))
-        return both[:, 0] + 1j * both[:, 1]
-    return factor.solve(rhs)
+    return apart(factor.solve, start + (1.0 - GAMMA) * rate)
 
 
 def rayleigh(pencil: Pencil, u: Array) -> complex:

@@ -35,16 +35,16 @@ class Factor:
     col: Array
     order: Index | None
 
-    def solve(self, rhs: Array) -> Array:
+    def solve(self, rhs: NDArray[Any]) -> NDArray[Any]:
         """Solve `M x = rhs`, rhs of shape (n,) or (n, k)."""
         row, col = (self.row, self.col) if rhs.ndim == 1 else (self.row[:, None], self.col[:, None])
         if self.order is None:
-            out: Array = col * self.lu.solve(row * rhs)
+            out: NDArray[Any] = col * self.lu.solve(row * rhs)
             return out
         inner = self.lu.solve((row * rhs)[self.order])
         spread = np.empty_like(inner)
         spread[self.order] = inner
-        scaled: Array = col * spread
+        scaled: NDArray[Any] = col * spread
         return scaled
 
 

@@ -7,8 +7,10 @@ multiplier stands in it. Their reactions follow afterwards from the equations th
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -54,17 +56,18 @@ class Ties:
         out: Array = -(self.G.T @ self._normal.solve(gaps)) if len(gaps) else np.zeros(len(self.group))
         return out
 
-    def reactions(self, residual: Array) -> Array:
+    def reactions(self, residual: NDArray[Any]) -> NDArray[Any]:
         """Reactions `lam` (k,) with `G^T lam = residual` on the tied equations (T2)."""
-        out: Array = self._normal.solve(self.G @ residual) if self.G.shape[0] else np.zeros(0)
-        return out
+        if not self.G.shape[0]:
+            return np.zeros(0)
+        return apart(self._normal.solve, self.G @ residual)
 
-    def gather(self, full: Array) -> Array:
+    def gather(self, full: NDArray[Any]) -> NDArray[Any]:
         """Add up the equations of unknowns that move together; shape (n_free,)."""
         inside = self.group >= 0
-        return add_up(self.group[inside], full[inside], self.n_free)
+        return apart(lambda part: add_up(self.group[inside], part, self.n_free), full[inside])
 
-    def spread(self, free: Array) -> Array:
+    def spread(self, free: NDArray[Any]) -> NDArray[Any]:
         """Move every unknown with its group; shape (n,)."""
         return np.append(free, 0.0)[self.group]
 
@@ -84,6 +87,13 @@ class Ties:
         inside = (rows >= 0) & (cols >= 0)
         shape = (self.n_free, self.n_free)
         return sp.coo_array((coo.data[inside], (rows[inside], cols[inside])), shape=shape).tocsc()
+
+
+def apart(linear: Callable[[Array], Array], value: NDArray[Any]) -> NDArray[Any]:
+    """Apply a real linear map to a real or a complex vector."""
+    if np.iscomplexobj(value):
+        return linear(np.ascontiguousarray(value.real)) + 1j * linear(np.ascontiguousarray(value.imag))
+    return linear(value)
 
 
 def tie(G: sp.csr_array, closed: NDArray[np.bool_]) -> Ties:

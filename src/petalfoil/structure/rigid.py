@@ -7,7 +7,7 @@ import scipy.sparse as sp
 
 from petalfoil.case import Case
 from petalfoil.mesh.strips import whole_circle
-from petalfoil.physics.contact import no_contacts
+from petalfoil.physics.contact import bore_contacts
 from petalfoil.structure.axis import axial_grid
 from petalfoil.structure.wall import Wall, no_elasticity
 
@@ -17,6 +17,8 @@ def build(case: Case) -> Wall:
     axial = axial_grid(case)
     film = whole_circle(case.cells_per_pitch, axial)
     clearance = case.bearing.clearance
+    theta = np.broadcast_to(film.theta[:, :, None], film.shape)
+    area = np.broadcast_to(case.bearing.journal_radius * film.arc_weight[:, None] * axial.weight, film.shape)
     return Wall(
         name="rigid",
         film=film,
@@ -24,7 +26,7 @@ def build(case: Case) -> Wall:
         film_unknown=np.full(film.shape, -1),
         load_area=np.zeros(film.shape),
         rest_film=np.full(film.shape, clearance),
-        contacts=no_contacts(0),
+        contacts=bore_contacts(theta.ravel(), clearance - case.surface.film_floor, area.ravel()),
         node_area=case.bearing.journal_radius * float(np.diff(film.phi)[0]) * float(axial.weight.max()),
         free_motions=sp.csr_array((0, 0)),
         support=sp.csr_array((0, 0)),

@@ -1,0 +1,78 @@
+"""The operating point: where the journal sits under a load (model, question 3)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.analysis.equilibrium import Named, about, positioned
+from petalfoil.analysis.figures import effort, forces, record_of
+from petalfoil.analysis.session import Clock, Progress, one_thread, telling_work
+from petalfoil.case import Case
+from petalfoil.equilibria.balancing import Balance, balance_cold
+from petalfoil.equilibria.stability import leading_eigenvalue
+from petalfoil.equilibria.work import Work
+from petalfoil.errors import UsageError
+from petalfoil.problem.build import build_problem
+from petalfoil.results.record import Record
+
+Array = NDArray[np.float64]
+
+FLOATS = 0.01
+"""Share of the contacts below which a journal is said to float."""
+
+
+def run(
+    case: Case,
+    load: tuple[float, float] | None = None,
+    *,
+    speed: float | None = None,
+    progress: Progress | None = None,
+) -> Record:
+    """Find the position of the journal under `load` [N], by default the case's.
+
+    A load that the film does not carry alone is an answer too: the record says which share the contacts bear.
+
+    Raises
+    ------
+    UsageError
+        No load is given, or it is zero.
+    ConvergenceError
+        No position was found.
+    """
+    case, wanted = positioned(case, speed, (0.0, 0.0)), loaded(case, load)
+    clock, work = Clock(), telling_work(progress, "balance")
+    with one_thread():
+        problem = build_problem(case)
+        found = balance_cold(problem, np.array(wanted) / problem.layout.scales.force, work)
+        rate = leading_eigenvalue(found.answer, work)
+    extra: Named = {**about(rate, case, (1, found.answer.way)), **effort(work), "wall_time": clock.seconds}
+    return balance_record("balance", case, found, {**extra, **given_load(wanted)}, work)
+
+
+def loaded(case: Case, load: tuple[float, float] | None) -> tuple[float, float]:
+    """The load to balance [N]."""
+    wanted = case.operation.load if load is None else load
+    if wanted is None:
+        raise UsageError("no load to balance: give one, or set operation.load in the case")
+    if not np.hypot(*wanted) > 0.0:
+        raise UsageError("a load of zero leaves the journal where it is: give one that is not zero")
+    return wanted
+
+
+def given_load(load: tuple[float, float]) -> Named:
+    """The load as figures."""
+    return {"load_x": load[0], "load_y": load[1]}
+
+
+def balance_record(analysis: str, case: Case, found: Balance, extra: Named, work: Work) -> Record:
+    """The record of a balance, at the position found."""
+    share = float(forces(case, found.answer)["contact_share"])
+    e = found.answer.problem.displacement * found.answer.problem.layout.scales.length
+    own: Named = {
+        "eccentricity_x": float(e[0]),
+        "eccentricity_y": float(e[1]),
+        "force_residual": found.force_residual,
+        "carried_by": "film" if share < FLOATS else f"touching: contact carries {100.0 * share:.0f} %",
+    }
+    return record_of(analysis, case, found.answer, {**extra, **own}, work)

@@ -1,0 +1,150 @@
+"""Lift-off: the speed above which the journal no longer touches, for a given load (model, question 4).
+
+Upward from a speed at which it touches, and downward from one at which it floats: where equilibria are not unique the
+two need not be the same.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from petalfoil.analysis.equilibrium import Named
+from petalfoil.analysis.figures import effort, given
+from petalfoil.analysis.session import Clock, Progress, one_thread, telling_work
+from petalfoil.analysis.speeds import SpeedLine
+from petalfoil.case import Case
+from petalfoil.equilibria.balancing import Balance
+from petalfoil.equilibria.work import Work
+from petalfoil.errors import ConvergenceError, UsageError
+from petalfoil.results.record import Record
+
+SHARE = 0.01
+"""Share of the contacts below which the journal floats."""
+
+PRECISION = 1e-3
+"""Relative width of the bracket of a speed."""
+
+FACTOR = 1.25
+"""Factor between speeds while a bracket is looked for."""
+
+SLOWEST, FASTEST = 1.0, 3e4
+"""Speeds between which lift-off is looked for [rad/s]."""
+
+SENSITIVITY = 0.1
+"""Relative changes of film floor, and factor-of-two changes of the share, whose effect is reported."""
+
+
+def iterate(
+    case: Case,
+    loads: Sequence[float],
+    *,
+    share: float = SHARE,
+    progress: Progress | None = None,
+) -> Iterator[Record]:
+    """Yield lift-off and touch-down speed for each load [N], along -y.
+
+    Raises
+    ------
+    UsageError
+        A plain bearing (its surfaces touch at rest only in one line: there is no package to lift off from), a load
+        or share out of range.
+    """
+    if case.petals is None:
+        raise UsageError("lift-off needs a case with [petals]")
+    if not 0.0 < share < 1.0:
+        raise UsageError("the contact share must lie between 0 and 1")
+    if any(not load > 0.0 for load in loads):
+        raise UsageError("loads must be positive; they act along -y")
+    return _records(case, list(loads), share, progress)
+
+
+def _records(case: Case, loads: list[float], share: float, progress: Progress | None) -> Iterator[Record]:
+    for number, load in enumerate(loads):
+        clock, work = Clock(), telling_work(None, "liftoff")
+        if progress is not None:
+            progress(number / len(loads), f"liftoff: {load:g} N")
+        try:
+            with one_thread():
+                up, down = crossings(case, load, share, work)
+                effects = sensitivity(case, load, (share, up), work)
+            own: Named = {"liftoff_speed": up, "touchdown_speed": down, **effects, "converged": True}
+            status = "converged" if math.isfinite(up) else f"does not lift off below {FASTEST:g} rad/s"
+        except ConvergenceError as failure:
+            own, status = {"converged": False}, f"not converged: {failure}"
+        scalars: Named = {**given(case), "load_x": 0.0, "load_y": -load, "share": share, **own}
+        scalars.update({**effort(work), "status": status, "residual": math.nan, "wall_time": clock.seconds})
+        yield Record(analysis="liftoff", scalars=scalars, case_toml=case.to_toml(), title=case.title)
+
+
+@dataclass(frozen=True)
+class Bracket:
+    """Two speeds [rad/s] on either side of the share, and the balance at the first."""
+
+    near: float
+    far: float
+    known: Balance
+
+
+def crossings(case: Case, load: float, share: float, work: Work) -> tuple[float, float]:
+    """Lift-off speed and touch-down speed [rad/s]; infinite where the journal never floats, zero where it always does.
+
+    Raises
+    ------
+    ConvergenceError
+        A balance on the way was not found.
+    """
+    start = min(max(case.operation.speed, 10.0 * SLOWEST), FASTEST)
+    line = SpeedLine(case, (0.0, -load), work)
+    touching = line.share(start) > share
+    first = search(line, start, share, upward=touching)
+    if first is None:
+        return (math.inf, math.inf) if touching else (0.0, 0.0)
+    found = bisect(line, first, share)
+    beyond = found * FACTOR**2 if touching else found / FACTOR**2
+    line.at(beyond)
+    back = search(line, beyond, share, upward=not touching)
+    other = bisect(line, back, share) if back is not None else found
+    return (found, other) if touching else (other, found)
+
+
+def search(line: SpeedLine, start: float, share: float, *, upward: bool) -> Bracket | None:
+    """Walk from `start` until the journal floats (upward) or touches (downward); None past the last speed."""
+    speed, factor = start, FACTOR if upward else 1.0 / FACTOR
+    while SLOWEST <= speed * factor <= FASTEST * FACTOR:
+        before = line.known
+        ahead = speed * factor
+        if (line.share(ahead) <= share) == upward and before is not None:
+            return Bracket(speed, ahead, before)
+        speed = ahead
+    return None
+
+
+def bisect(line: SpeedLine, bracket: Bracket, share: float) -> float:
+    """The speed at which the share is crossed, each look from the side that it came from."""
+    near, far, known = bracket.near, bracket.far, bracket.known
+    upward = far > near
+    while abs(far - near) > PRECISION * near:
+        middle = math.sqrt(near * far)
+        line.known = known
+        crossed = (line.share(middle) <= share) == upward
+        if crossed:
+            far = middle
+        else:
+            near = middle
+            known = line.known
+    return math.sqrt(near * far)
+
+
+def sensitivity(case: Case, load: float, at: tuple[float, float], work: Work) -> Named:
+    """Change of the lift-off speed with film floor and share: logarithmic derivatives [1]; nan without lift-off."""
+    share, up = at
+    if not math.isfinite(up) or up == 0.0:
+        return {"liftoff_by_floor": math.nan, "liftoff_by_share": math.nan}
+    near = case.replace(**{"operation.speed": up})
+    h_min = case.surface.film_floor
+    thick = near.replace(**{"surface.film_floor": h_min * (1.0 + SENSITIVITY)})
+    by_floor = math.log(crossings(thick, load, share, work)[0] / up) / math.log(1.0 + SENSITIVITY)
+    by_share = math.log(crossings(near, load, 2.0 * share, work)[0] / up) / math.log(2.0)
+    return {"liftoff_by_floor": by_floor, "liftoff_by_share": by_share}

@@ -1,0 +1,68 @@
+"""Run-up and coast-down under a load: torque, contact, film and position over speed (the paper's Figures 10 and 11)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from petalfoil.analysis.balance import balance_record, given_load
+from petalfoil.analysis.equilibrium import Named
+from petalfoil.analysis.figures import effort, failed_record
+from petalfoil.analysis.session import Clock, Progress, one_thread, telling_work
+from petalfoil.analysis.speeds import SpeedLine
+from petalfoil.case import Case
+from petalfoil.errors import ConvergenceError, UsageError
+from petalfoil.results.record import Record
+
+POINTS = 25
+"""Speeds of a run-up, rest included."""
+
+SLOW = 0.02
+"""First speed of a run-up over its last; they grow by a constant factor from there."""
+
+
+def iterate(
+    case: Case,
+    load: tuple[float, float],
+    top: float,
+    *,
+    points: int = POINTS,
+    progress: Progress | None = None,
+) -> Iterator[tuple[str, Record]]:
+    """Yield ("up", record) from rest to `top` [rad/s], then ("down", record) back, each followed from the one before.
+
+    Raises
+    ------
+    UsageError
+        The top speed or the number of points is out of range.
+    """
+    if not top > 0.0:
+        raise UsageError("the top speed of a run-up must be above zero")
+    if points < 3:
+        raise UsageError("a run-up needs at least 3 points")
+    speeds = np.concatenate([[0.0], np.geomspace(SLOW * top, top, points - 1)])
+    way = [("up", float(v)) for v in speeds] + [("down", float(v)) for v in speeds[-2::-1]]
+    return _records(case, load, way, progress)
+
+
+def _records(
+    case: Case, load: tuple[float, float], way: list[tuple[str, float]], progress: Progress | None
+) -> Iterator[tuple[str, Record]]:
+    line: SpeedLine | None = None
+    for number, (leg, speed) in enumerate(way):
+        clock, work = Clock(), telling_work(None, "runup")
+        if progress is not None:
+            progress(number / len(way), f"runup: {leg}")
+        here = case.replace(**{"operation.speed": speed, "operation.eccentricity": (0.0, 0.0)})
+        line = line or SpeedLine(here, load, work)
+        line.work = work
+        try:
+            with one_thread():
+                found = line.at(speed)
+        except ConvergenceError as failure:
+            line.known = None
+            yield leg, failed_record("runup", here, f"not converged: {failure}", work)
+            continue
+        extra: Named = {**given_load(load), **effort(work), "branch": found.answer.way, "wall_time": clock.seconds}
+        yield leg, balance_record("runup", here, found, extra, work)

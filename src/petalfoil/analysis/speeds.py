@@ -1,0 +1,62 @@
+"""A bearing under a load followed over speed: each balance from the one before."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.analysis.figures import forces
+from petalfoil.case import Case
+from petalfoil.equilibria.balancing import Balance, balance_cold, rebalance
+from petalfoil.equilibria.work import Work
+from petalfoil.problem.build import build_problem
+from petalfoil.problem.coupled import CoupledProblem
+
+Array = NDArray[np.float64]
+
+
+@dataclass
+class SpeedLine:
+    """Balances of one load at changing speeds, each on the branch of the one before.
+
+    Attributes
+    ----------
+    case : Case
+        The bearing.
+    load : (x, y)
+        Load on the journal [N].
+    work : Work
+        Counts of all balances.
+    """
+
+    case: Case
+    load: tuple[float, float]
+    work: Work
+    known: Balance | None = None
+    base: CoupledProblem = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.base = build_problem(self.case.replace(**{"operation.eccentricity": (0.0, 0.0)}))
+
+    def at(self, speed: float) -> Balance:
+        """The balance at `speed` [rad/s], followed from the last one.
+
+        Raises
+        ------
+        ConvergenceError
+            None was found.
+        """
+        scales, R_j = self.base.layout.scales, self.case.bearing.journal_radius
+        number = scales.bearing_number(self.case.gas.viscosity, speed, R_j)
+        problem, load = self.base.at(bearing_number=number), np.array(self.load) / scales.force
+        if self.known is None:
+            self.known = balance_cold(problem, load, self.work)
+        else:
+            self.known = rebalance(self.known, problem, load, self.work)
+        return self.known
+
+    def share(self, speed: float) -> float:
+        """Share of the contacts at `speed`."""
+        return float(forces(self.case, self.at(speed).answer)["contact_share"])

@@ -1,0 +1,217 @@
+"""The journal's position under a load: film, petals, contacts and journal in one Newton.
+
+From nothing through the interior point, with the position among its unknowns; from a neighbour, and to finish, on the
+contact set with the position bordered: one factorisation a step serves the state and both directions of displacement.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.equilibria.answer import Answer, State, from_closed, total_residual
+from petalfoil.equilibria.cold import GOALS, content, nothing_found
+from petalfoil.equilibria.package import assembled
+from petalfoil.equilibria.response import Response
+from petalfoil.equilibria.warm import RESTART_BARRIER, keep_open, predict
+from petalfoil.equilibria.work import Work
+from petalfoil.problem.balance import BalanceProblem, FilmForce
+from petalfoil.problem.coupled import CoupledProblem
+from petalfoil.solvers.active_set import ActiveOptions, Closed, Outcome, evaluate, revise, searched
+from petalfoil.solvers.active_set import State as SetState
+from petalfoil.solvers.cone import ConePoint
+from petalfoil.solvers.interior_point import InteriorOptions, contact_set, interior_point
+from petalfoil.solvers.linear import SingularMatrixError
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+BARRIERS = (3.0, 30.0, 0.3)
+"""Barriers at which film and load join the assembled package."""
+
+FORCE_TOLERANCE = 1e-9
+"""Largest force residual of a balance, over the load."""
+
+
+@dataclass(frozen=True)
+class Balance:
+    """An equilibrium under a load.
+
+    Attributes
+    ----------
+    answer : Answer
+        The state, at the journal's position.
+    force_residual : float
+        Force left over, over the load [1].
+    """
+
+    answer: Answer
+    force_residual: float
+
+
+def journal_force(problem: CoupledProblem, P: Array, lam: Array) -> Array:
+    """Force of film and contacts on the journal over the unit of force, (2,) [1]."""
+    force: Array = FilmForce.of(problem).at(P) + problem.layout.wall.contacts.by_e.T @ lam
+    return force
+
+
+def balance_cold(problem: CoupledProblem, load: Array, work: Work) -> Balance:
+    """Solve from nothing at the load `load` (2,) over the unit of force.
+
+    Raises
+    ------
+    ConvergenceError
+        No position was found.
+    """
+    for barrier in BARRIERS:
+        try:
+            found = attempt(problem, load, barrier, work)
+        except SingularMatrixError as failure:
+            work.note("balance", outcome=str(failure))
+            continue
+        if found is not None:
+            return found
+    raise nothing_found(work)
+
+
+def attempt(problem: CoupledProblem, load: Array, barrier: float, work: Work) -> Balance | None:
+    """One cold start; None if it leads nowhere."""
+    start = assembled(problem, barrier, work)
+    return through_interior(
+        problem, ConePoint(np.append(start.x, problem.displacement), start.s, start.lam), load, work
+    )
+
+
+def through_interior(problem: CoupledProblem, start: ConePoint, load: Array, work: Work) -> Balance | None:
+    """The interior point with the position among its unknowns, then Newton on the contact set; None if it fails."""
+    whole, point = BalanceProblem(problem, load), start
+    for goal in GOALS:
+        options = InteriorOptions(least_barrier=0.1 * goal)
+        point, found = interior_point(whole, point, work.film_solver, options, work.watch("balance", content(goal)))
+        if not found:
+            return None
+        z, closed = contact_set(whole, point, work.film_solver)
+        balance = newton(problem.at(displacement=z[-2:]), (z[:-2], closed), load, work)
+        if balance is not None:
+            return balance
+    return squeezed(whole, point)
+
+
+def rebalance(known: Balance, problem: CoupledProblem, load: Array, work: Work) -> Balance:
+    """The balance of `problem` (at another speed) or of another load, from a neighbour that is known.
+
+    Raises
+    ------
+    ConvergenceError
+        Nothing was found, not even from nothing.
+    """
+    here = problem.at(displacement=known.answer.problem.displacement)
+    x = keep_open(known.answer.x, predict(known.answer, here), here.positive)
+    found = newton(here, (x, known.answer.in_contact), load, work, WARM)
+    if found is None:
+        s = np.maximum(here.gaps(x), np.sqrt(RESTART_BARRIER))
+        lam = np.maximum(known.answer.lam, RESTART_BARRIER * here.weight / s)
+        try:
+            found = through_interior(here, ConePoint(np.append(x, here.displacement), s, lam), load, work)
+        except SingularMatrixError as failure:
+            work.note("balance", outcome=str(failure))
+    return found or balance_cold(problem.at(displacement=np.zeros(2)), load, work)
+
+
+WARM = ActiveOptions(max_steps=8)
+"""A contact set that leads on from a neighbour does so in a few steps."""
+
+
+def squeezed(whole: BalanceProblem, point: ConePoint) -> Balance | None:
+    """The interior point's own answer: a package pressed solid, whose reactions no contact set determines."""
+    problem, x = whole.at(point.x), point.x[:-2]
+    state = State(x, np.zeros(problem.layout.n_wall), point.lam)
+    residual = total_residual(problem, state)
+    if residual > 1e-8:
+        return None
+    way = "interior point; petals are pressed solid between journal and bushing"
+    answer = Answer(problem, state, residual, way)
+    return Balance(answer, force_residual(answer, whole.load))
+
+
+def force_residual(answer: Answer, load: Array) -> float:
+    """Force left over, over the load [1]."""
+    force = journal_force(answer.problem, answer.x[answer.problem.positive], answer.lam)
+    return float(np.hypot(*(force + load)) / max(float(np.hypot(*load)), 1e-3))
+
+
+def newton(
+    problem: CoupledProblem, start: tuple[Array, Mask], load: Array, work: Work, options: ActiveOptions | None = None
+) -> Balance | None:
+    """Newton from unknowns and closed gaps `start`, with the position of `problem` as its start; None if it fails."""
+    numbers = options or ActiveOptions()
+    x, closed = start
+    doubt, swaps = np.zeros(len(closed), dtype=bool), 0
+    state = evaluate(problem, x, closed)
+    for step in range(numbers.max_steps + 1):
+        if isinstance(state, Outcome):
+            work.note("contacts", outcome=state.value)
+            return None
+        wanted = revise(problem, state, numbers) if step else state.closed
+        unchanged = bool(np.array_equal(wanted, state.closed))
+        left = np.hypot(*(journal_force(problem, state.x[problem.positive], state.lam) + load))
+        work.note("contacts", residual=state.residual, force=float(left), touching=int(state.closed.sum()))
+        if step and unchanged and state.residual <= numbers.tolerance and left <= FORCE_TOLERANCE * np.hypot(*load):
+            return finished(problem, state, load, work)
+        doubt, swaps = doubt | (wanted != state.closed), swaps + (not unchanged)
+        if not unchanged:
+            found = searched(problem, state, doubt, work.film_solver) if swaps > numbers.patience else None
+            state = evaluate(problem, state.x, wanted) if found is None else found
+            if isinstance(state, Outcome):
+                return None
+        moved = bordered_step(problem, state, load, work)
+        if moved is None:
+            return None
+        problem, x = moved
+        state = evaluate(problem, x, state.closed)
+    return None
+
+
+def bordered_step(
+    problem: CoupledProblem, state: SetState, load: Array, work: Work
+) -> tuple[CoupledProblem, Array] | None:
+    """One Newton step of state and position: block elimination with one factorisation and three solves."""
+    none = np.zeros(len(state.closed))
+    try:
+        factor = work.film_solver.factor(state.ties.reduce(state.line.matrix(none)), state.ties.rank(problem.rank))
+    except SingularMatrixError:
+        return None
+    response = Response(problem, state.line, state.ties, factor, state.closed, 0.0)  # type: ignore[arg-type]
+    film, by_e = FilmForce.of(problem), problem.layout.wall.contacts.by_e[state.closed]
+    settle = state.ties.spread(factor.solve(-state.ties.gather(state.line.residual)))
+    lam = state.ties.reactions(state.line.residual + state.line.matrix(none) @ settle)
+    left = film.at(state.x[problem.positive] + settle[problem.positive]) + by_e.T @ lam + load
+    units = [response.unit(k) for k in (0, 1)]
+    gradient = np.column_stack([film.by_P @ dx[problem.positive] + by_e.T @ dlam for dx, dlam in units])
+    de = np.linalg.solve(gradient, -left)
+    change = settle + units[0][0] * de[0] + units[1][0] * de[1]
+    share = reach(problem, state.x, change, de)
+    return problem.at(displacement=problem.displacement + share * de), state.x + share * change
+
+
+def reach(problem: CoupledProblem, x: Array, change: Array, de: Array) -> float:
+    """Share of a step that keeps pressures positive and moves the journal by at most ten reference films."""
+    kept = problem.positive
+    falling = change[kept] < 0.0
+    pressures = 0.8 * np.min(x[kept][falling] / -change[kept][falling], initial=np.inf)
+    return float(min(1.0, pressures, MOST_FILMS / max(float(np.hypot(*de)), 1e-300)))
+
+
+MOST_FILMS = 10.0
+"""Longest move of the journal in a step, in reference films (100 um for petals, ten clearances for a plain bore)."""
+
+
+def finished(problem: CoupledProblem, state: SetState, load: Array, work: Work) -> Balance | None:
+    """Refine the state at its position; the position stays."""
+    none = np.zeros(len(state.closed))
+    factor = work.film_solver.factor(state.ties.reduce(state.line.matrix(none)), state.ties.rank(problem.rank))
+    closed = Closed(state.x, state.lam, state.closed, state.residual, state.ties, factor)
+    answer = from_closed(problem, closed, "balanced with the load")
+    return None if answer is None else Balance(answer, force_residual(answer, load))
