@@ -33,6 +33,8 @@ BISECTIONS = 40
 
 KNOWN = f"{', '.join(COMMON)} and the fluids of CoolProp, such as R134a"
 
+NUMBERS = "numbers (gas.viscosity, gas.gas_constant) in place of the name"
+
 
 def fluid_of(name: str) -> str:
     """CoolProp's name of a gas whose viscosity it knows."""
@@ -41,10 +43,7 @@ def fluid_of(name: str) -> str:
         hint = nearest(name, [*COMMON, *_fluids()])
         raise refuse(VALUE_PROBLEM, f"{shown(name)} is not a known gas; known: {KNOWN}.{hint}", KNOWN)
     if not _has_viscosity(fluid):
-        allowed = "numbers: viscosity and gas_constant"
-        raise refuse(
-            VALUE_PROBLEM, f"CoolProp knows {fluid} but not its viscosity; allowed in its place: {allowed}", allowed
-        )
+        raise refuse(VALUE_PROBLEM, f"CoolProp knows {fluid} but not its viscosity; allowed: {NUMBERS}", NUMBERS)
     return fluid
 
 
@@ -77,9 +76,8 @@ def viscosity(name: str, T: float, p: float) -> float:
         state.update(_library().PT_INPUTS, p, T)
         return float(state.viscosity())
     except ValueError:  # its correlation has holes: the state of a reference fluid is not found
-        allowed = "numbers: viscosity and gas_constant"
-        text = f"CoolProp finds none for {name} at {_K(T)} and {_Pa(p)}; allowed in place of the name: {allowed}"
-        raise refuse(VALUE_PROBLEM, text, allowed) from None
+        text = f"CoolProp finds none for {name} at {_K(T)} and {_Pa(p)}; allowed: {NUMBERS}"
+        raise refuse(VALUE_PROBLEM, text, NUMBERS) from None
 
 
 def gas_constant(name: str) -> float:
@@ -95,7 +93,7 @@ def gas_constant(name: str) -> float:
 def _library() -> ModuleType:
     from CoolProp import CoolProp
 
-    return CoolProp  # type: ignore[no-any-return]
+    return CoolProp
 
 
 @cache
@@ -110,7 +108,8 @@ def _by_alias(name: str) -> str:
         fluid = str(_library().get_fluid_param_string(name, "name"))
     except ValueError:
         return ""
-    return fluid if fluid.lower() in _fluids() else ""
+    aliases = _library().get_fluid_param_string(fluid, "aliases").split(",")
+    return fluid if name in aliases else ""  # CoolProp also takes mixtures and names of models in front
 
 
 @cache
@@ -191,7 +190,7 @@ def _edge(departure: Callable[[float], float], good: float, bad: float) -> float
 
 
 def _K(temperature: float) -> str:
-    return format_quantity(temperature, "K")
+    return format_quantity(temperature, "K", digits=5)
 
 
 def _Pa(pressure: float) -> str:

@@ -39,10 +39,13 @@ class FilmBalance:
         Strips and pressure unknowns.
     radius : float
         Journal radius, the unit of axial length [m].
+    knudsen : float
+        Knudsen number on the reference film at ambient pressure (F7); zero without slip [1].
     """
 
     mesh: FilmMesh
     radius: float
+    knudsen: float = 0.0
 
     @cached_property
     def dphi(self) -> Array:
@@ -77,8 +80,8 @@ class FilmBalance:
 
         On a half model the axial flow counts both halves (`axial.copies`), as the cells' widths do.
         """
-        along = circumferential_flux(P, H, Lam, self.dphi)
-        across = axial_flux(P, H, self.dZ)
+        along = circumferential_flux(P, H, Lam, self.dphi, self.knudsen)
+        across = axial_flux(P, H, self.dZ, self.knudsen)
         width_phi = self.mesh.arc_weight[:, None] * self.mesh.axial.copies
         return Flux(*(part * self.width_Z for part in along)), Flux(*(part * width_phi for part in across))
 

@@ -26,10 +26,13 @@ def contact_force(theta: Array, reaction: Array) -> Array:
     return -np.array([np.sum(reaction * np.cos(theta)), np.sum(reaction * np.sin(theta))])
 
 
-def viscous_torque(mesh: FilmMesh, radius: float, state: tuple[Array, Array], shear: tuple[float, float]) -> float:
+def viscous_torque(
+    mesh: FilmMesh, radius: float, state: tuple[Array, Array], shear: tuple[float, float], slip: float = 0.0
+) -> float:
     """Torque of the film's shear on the journal (J4) [N m].
 
-    `R_j sum (mu U / h + (h/2) dp/dx) dA`: the first at nodes, the second on faces.
+    `R_j sum (mu U / (h + 2 lambda) + (h/2) dp/dx) dA`: the first at nodes, the second on faces. Slip at both walls
+    widens the film for the shear by the mean free path `lambda` at each, and leaves the pressure's share as it is.
 
     Parameters
     ----------
@@ -37,9 +40,11 @@ def viscous_torque(mesh: FilmMesh, radius: float, state: tuple[Array, Array], sh
         Pressure [Pa] and film thickness [m].
     shear : (mu, U)
         Viscosity [Pa s] and surface speed [m/s].
+    slip : float
+        Mean free path times pressure, the same everywhere; zero without slip [m Pa].
     """
     (p, h), (mu, U) = state, shear
-    couette = np.sum(mu * U / h * node_area(mesh, radius))
+    couette = np.sum(mu * U / (h + 2.0 * slip / p) * node_area(mesh, radius))
     mean_h = 0.5 * (h[:, :-1] + h[:, 1:])
     poiseuille = np.sum(0.5 * mean_h * np.diff(p, axis=1) * mesh.axial.weight)
     return float(radius * (couette + poiseuille))

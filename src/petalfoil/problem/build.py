@@ -16,8 +16,9 @@ def build_problem(case: Case) -> CoupledProblem:
     wall = build_wall(case)
     scales = scales_of(case, wall)
     radius, speed = case.bearing.journal_radius, case.operation.speed
+    knudsen = case.slip_length / scales.length
     return CoupledProblem(
-        layout=Layout(wall, FilmBalance(wall.film, radius), scales),
+        layout=Layout(wall, FilmBalance(wall.film, radius, knudsen), scales),
         bearing_number=scales.bearing_number(case.gas.viscosity, speed, radius),
         displacement=np.array(case.operation.eccentricity) / scales.length,
     )

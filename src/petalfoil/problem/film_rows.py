@@ -25,7 +25,7 @@ class FilmRows:
     @cached_property
     def content(self) -> GasContent | None:
         """The condition that stands in place of the first balance; None where the film has ends."""
-        content = GasContent(self.balance.mesh, self.balance.area)
+        content = GasContent(self.balance.mesh, self.balance.area, self.balance.knudsen)
         return content if content.needed else None
 
     @cached_property
