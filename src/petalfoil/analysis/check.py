@@ -53,10 +53,21 @@ def run(case: Case) -> Record:
 
 
 def bearing_figures(case: Case) -> Named:
-    """Room and bearing number on the clearance."""
+    """Room, bearing number on the clearance, and what decides whether slip matters.
+
+    Without a run the smallest film is the room of a plain bearing, and at the least the film floor of a package.
+    """
     scales = Scales(case.bearing.clearance, case.gas.ambient_pressure, 1.0)
     number = scales.bearing_number(case.gas.viscosity, case.operation.speed, case.bearing.journal_radius)
-    return {"room": case.room, "room_left": case.room_left, "compressibility_number": number}
+    thinnest = case.room if case.petals is None else case.surface.film_floor
+    return {
+        "room": case.room,
+        "room_left": case.room_left,
+        "compressibility_number": number,
+        "viscosity": case.gas.viscosity,
+        "mean_free_path": case.gas.mean_free_path,
+        "knudsen_number": case.gas.mean_free_path / thinnest,
+    }
 
 
 def package_figures(case: Case) -> Named:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.analysis.checks import mass_balance, reaction_balance, side_leakage
+from petalfoil.analysis.extremes import highest, lowest
 from petalfoil.analysis.fields import all_fields, coordinates
 from petalfoil.case import Case
 from petalfoil.equilibria.answer import Answer
@@ -89,17 +90,20 @@ def film_figures(case: Case, answer: Answer, fields: dict[str, Array]) -> Named:
     p, h = fields["pressure"], fields["film_thickness"]
     film, R_j = answer.problem.layout.wall.film, case.bearing.journal_radius
     z, omega, mu = film.axial.whole_z, case.operation.speed, case.gas.viscosity
-    thin, high = np.unravel_index(h.argmin(), h.shape), np.unravel_index(p.argmax(), p.shape)
+    thin, high = lowest(h, film.phi), highest(p, film.phi)
+    closed = min(case.surface.film_floor, float(h.min()))  # where the journal touches, the film is its floor
     gridded = tuple(part[..., : len(film.axial.z)] for part in (p, h))
-    torque = viscous_torque(film, R_j, (gridded[0], gridded[1]), (mu, omega * R_j))
+    slip = case.slip_length * case.gas.ambient_pressure
+    torque = viscous_torque(film, R_j, (gridded[0], gridded[1]), (mu, omega * R_j), slip)
     reactions = answer.lam[answer.problem.layout.wall.contacts.journal].sum() * answer.problem.layout.scales.force
     torque += case.surface.friction_coefficient * R_j * float(reactions)
     return {
-        "min_film": float(h[thin]),
-        "min_film_angle": float(np.mod(film.theta[thin[0], thin[1]], 2.0 * np.pi)),
-        "min_film_z": float(z[thin[2]]),
-        "max_pressure": float(p[high]),
-        "max_pressure_angle": float(np.mod(film.theta[high[0], high[1]], 2.0 * np.pi)),
+        "min_film": max(thin.value, closed),
+        "min_film_angle": float(np.mod(film.theta[thin.strip, 0] - film.phi[0] + thin.phi, 2.0 * np.pi)),
+        "min_film_z": float(z[thin.axial]),
+        "knudsen_number": case.gas.mean_free_path / max(thin.value, closed),
+        "max_pressure": high.value,
+        "max_pressure_angle": float(np.mod(film.theta[high.strip, 0] - film.phi[0] + high.phi, 2.0 * np.pi)),
         "friction_torque": torque,
         "power_loss": torque * omega,
         "side_leakage": leakage(case, answer),

@@ -141,6 +141,7 @@ SCALARS: dict[str, Variable] = {
     "min_film": _answer("m", "smallest film thickness", "min h"),
     "min_film_angle": _answer("rad", "bushing angle of the smallest film thickness", "theta(min h)"),
     "min_film_z": _answer("m", "axial place of the smallest film thickness", "z(min h)"),
+    "knudsen_number": _answer("1", "mean free path at ambient pressure over the smallest film", "Kn"),
     "max_pressure": _answer("Pa", "largest absolute pressure of the film", "p_max"),
     "max_pressure_angle": _answer("rad", "bushing angle of the largest pressure", "theta(p_max)"),
     "friction_torque": _answer("N m", "friction torque on the journal, film and contact", "M"),
@@ -201,6 +202,8 @@ SCALARS: dict[str, Variable] = {
     "room": _geometry("m", "narrowest radial room between journal and bushing", "c"),
     "room_left": _geometry("m", "room less the package at its thickest and the film floor", "c_left"),
     "compressibility_number": _geometry("1", "compressibility number on the radial clearance", "Lambda"),
+    "viscosity": _geometry("Pa s", "dynamic viscosity of the gas", "mu"),
+    "mean_free_path": _geometry("m", "mean free path of the gas at ambient pressure", "lambda_a"),
     "bending_stiffness": _geometry("N m", "bending stiffness of a petal per length", "D"),
     "root_tilt": _geometry("rad", "turn of the free petal at its root, inward from the bore's tangent", "psi"),
     "first_contact_angle": _geometry(
