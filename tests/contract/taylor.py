@@ -45,8 +45,15 @@ BEARINGS: dict[str, tuple[str, str, str, bool]] = {
     "stepped petals, flat": ("paper_n8", "flat", "continuous", True),
     "stepped petals, half": ("paper_n8", "spatial", "continuous", True),
     "stepped petals, whole": ("paper_n8", "spatial", "continuous", False),
+    "slipping plain, flat": ("plain_journal", "flat", "ambient", True),
+    "slipping plain, half": ("plain_journal", "spatial", "ambient", True),
+    "slipping petals, half": ("paper_n8", "spatial", "ambient", True),
+    "slipping stepped petals, flat": ("paper_n8", "flat", "continuous", True),
 }
-"""Example, kind, edges, symmetry."""
+"""Example, kind, edges, symmetry; the slipping ones in a gas so thin that slip is a good part of the flow."""
+
+THIN = {"model.slip": True, "gas.ambient_pressure": 2e3}
+"""The mean free path is 3.4 um: Knudsen numbers of 0.1 to 0.3 on the reference films."""
 
 
 def bearing(name: str) -> Case:
@@ -58,6 +65,7 @@ def bearing(name: str) -> Case:
         "model.symmetry": symmetry,
         "model.cells_per_pitch": 6 if example.startswith("paper") else 16,
         "model.axial_cells": 4,
+        **(THIN if name.startswith("slipping") else {}),
     }
     return case(example, **changes)
 

@@ -9,7 +9,7 @@ import sys
 import pytest
 
 BUDGET = 1.0  # [s] of CPU
-HEAVY = ("xarray", "matplotlib", "pandas", "dask", "pint", "netCDF4")
+HEAVY = ("CoolProp", "xarray", "matplotlib", "pandas", "dask", "pint", "netCDF4")
 
 IMPORT = "import petalfoil"
 HELP = """

@@ -18,6 +18,7 @@ from petalfoil.case import Case
 from petalfoil.errors import DefinitionError, PackageError, PetalfoilError, UnitError
 from tests.cases import DELETE, EXAMPLES, put, tables
 
+BAR = 1e5
 PLAIN, PETALS, SPATIAL = "plain_journal", "paper_n8", "paper_n8_spatial"
 
 # name: (example, path, value, error, parts of the message)
@@ -88,6 +89,34 @@ MALFORMED: dict[str, tuple[str, str, Any, type[DefinitionError], tuple[str, ...]
     "no mount": (PETALS, "petals.mount", DELETE, DefinitionError, ("petals.mount: is missing", "'hinged' or 'rigid'")),
     "no speed": (PETALS, "operation.speed", DELETE, DefinitionError, ("operation.speed: is missing", "rad/s")),
     "no kind": (PETALS, "model.kind", DELETE, DefinitionError, ("model.kind: is missing", "'flat' or 'spatial'")),
+    # gases (those of the examples are given by numbers)
+    "no viscosity": (PETALS, "gas.viscosity", DELETE, DefinitionError, ("gas.viscosity: is missing", "gas.name")),
+    "a name beside numbers": (PETALS, "gas.name", "air", DefinitionError, ("gas.viscosity: '18.5 uPa*s'", "not both")),
+    "name and gas constant": (
+        PETALS, "gas", {"name": "air", "ambient_pressure": BAR, "gas_constant": 287}, DefinitionError, ("not both",),
+    ),
+    "ari": (PETALS, "gas", {"name": "ari", "ambient_pressure": BAR}, DefinitionError, ("known: air, helium", "'air'?")),
+    "name is 1": (PETALS, "gas", {"name": 1, "ambient_pressure": BAR}, DefinitionError, ("gas.name: 1", "a text")),
+    "a gas without viscosity": (
+        PETALS, "gas", {"name": "xenon", "ambient_pressure": BAR}, DefinitionError, ("gas.name", "gas.viscosity"),
+    ),
+    "a mixture": (PETALS, "gas", {"name": "N2&O2", "ambient_pressure": BAR}, DefinitionError, ("not a known gas",)),
+    "a model before a name": (
+        PETALS, "gas", {"name": "HEOS::N2", "ambient_pressure": BAR}, DefinitionError, ("not a known gas",),
+    ),
+    "air too hot": (
+        PETALS, "gas", {"name": "air", "ambient_pressure": BAR, "temperature": 3000}, DefinitionError,
+        ("gas.temperature: 3000 K", "59.75 K to 2000 K"),
+    ),
+    "cold steam": (
+        PETALS, "gas", {"name": "steam", "ambient_pressure": BAR}, DefinitionError,
+        ("gas.ambient_pressure", "condenses at 2.339 kPa", "more than 372.76 K"),
+    ),
+    "a gas that is not ideal": (
+        PETALS, "gas", {"name": "R134a", "ambient_pressure": BAR}, DefinitionError,
+        ("gas.ambient_pressure", "2.2 % off the ideal-gas law", "less than 92.8"),
+    ),
+    "slip by a word": (PETALS, "model.slip", "yes", DefinitionError, ("model.slip", "true or false")),
     # measured free shapes
     "two rows": (PETALS, "petals.free_shape", [[0, 0.0259], [2, 0.0259]], DefinitionError, ("free_shape", "3 rows")),
     "rows of three": (PETALS, "petals.free_shape", [[0, 1, 2]] * 3, DefinitionError, ("free_shape", "[angle, radius]")),
@@ -227,7 +256,7 @@ SCALARS = st.one_of(
     st.integers(),
     st.floats(),
     st.text(max_size=20),
-    st.sampled_from(["25 mm", "1 um", "-3 deg", "chordal", "rigid", "flat", "8000 rad/s", "1e400 m", "20 degC"]),
+    st.sampled_from(["air", "25 mm", "1 um", "-3 deg", "chordal", "rigid", "flat", "8000 rad/s", "1e400 m", "20 degC"]),
     st.dates(),
     st.binary(max_size=4),
 )
@@ -238,7 +267,15 @@ JUNK = st.recursive(
 )
 PATHS = st.sampled_from(
     [f"{section}.{key}" for section, table in tables(PETALS).items() if isinstance(table, dict) for key in table]
-    + ["petals.free_shape", "operation.load", "model.symmetry", "model.cells_per_pitch", "model.axial_cells"]
+    + [
+        "petals.free_shape",
+        "operation.load",
+        "gas.name",
+        "model.slip",
+        "model.symmetry",
+        "model.cells_per_pitch",
+        "model.axial_cells",
+    ]
     + ["title", "bearing", "petals", "gas", "surface", "operation", "model", "petals.x", "x"]
 )
 

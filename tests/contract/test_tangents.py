@@ -71,11 +71,16 @@ SIDES = {"P0": (0, 0), "P1": (0, 1), "H0": (1, 0), "H1": (1, 1)}
 """Which array, and which side of the face."""
 
 
+SLIPS = [0.0, 0.05, 0.5]
+"""Knudsen numbers: without slip, where its first order is trusted, far beyond."""
+
+
+@pytest.mark.parametrize("Kn", SLIPS)
 @pytest.mark.parametrize("Lam", [0.0, 1e-3, 1.0, 30.0, 1e3, 1e5])
 @pytest.mark.parametrize("by", SIDES)
-def test_circumferential_flux(by: str, Lam: float) -> None:
+def test_circumferential_flux(by: str, Lam: float, Kn: float) -> None:
     """On cells of 0.1 rad: Peclet numbers of the cell from 0 to some thousands."""
-    check_side(by, Lam, 0.1, faces(40, 1))
+    check_side(by, Lam, 0.1, faces(40, 1), Kn)
 
 
 @pytest.mark.parametrize("by", SIDES)
@@ -89,21 +94,22 @@ def test_circumferential_flux_across_the_switch_of_the_fit(by: str) -> None:
     check_side(by, SWITCH / float(np.median(x)), dphi, (P[..., near], H[..., near]))
 
 
-def check_side(by: str, Lam: float, dphi: float, state: tuple[Array, Array]) -> None:
+def check_side(by: str, Lam: float, dphi: float, state: tuple[Array, Array], Kn: float = 0.0) -> None:
     which, side = SIDES[by]
     direction = np.random.default_rng(3).uniform(-1.0, 1.0, state[0].shape[2])
 
     def flux(t: float) -> Flux:
         moved = [state[0].copy(), state[1].copy()]
         moved[which][0, side] += t * direction
-        return circumferential_flux(moved[0], moved[1], Lam, np.array([[dphi]]))
+        return circumferential_flux(moved[0], moved[1], Lam, np.array([[dphi]]), Kn)
 
     derivative = getattr(flux(0.0), f"by_{by}")
     assert_tangent(lambda t: flux(t).value, derivative * direction, largest=2.0**-6)
 
 
+@pytest.mark.parametrize("Kn", SLIPS)
 @pytest.mark.parametrize("by", SIDES)
-def test_axial_flux(by: str) -> None:
+def test_axial_flux(by: str, Kn: float) -> None:
     which, side = SIDES[by]
     rng = np.random.default_rng(4)
     state = [rng.uniform(0.5, 2.0, (1, 40, 2)) for _ in range(2)]
@@ -112,7 +118,7 @@ def test_axial_flux(by: str) -> None:
     def flux(t: float) -> Flux:
         moved = [field.copy() for field in state]
         moved[which][0, :, side] += t * direction
-        return axial_flux(moved[0], moved[1], np.array([0.2]))
+        return axial_flux(moved[0], moved[1], np.array([0.2]), Kn)
 
     assert_tangent(lambda t: flux(t).value, getattr(flux(0.0), f"by_{by}") * direction[:, None])
 
@@ -140,7 +146,7 @@ def applied(entries: Entries, values: Array, n: int, direction: Array) -> Array:
 def film(name: str, seed: int) -> tuple[FilmBalance, Array, Array, np.random.Generator]:
     """(balance, pressure unknowns, H, rng) of one of the bearings' films."""
     problem, rng = bearing(name), np.random.default_rng(seed)
-    balance = FilmBalance(build_wall(problem).film, problem.bearing.journal_radius)
+    balance = FilmBalance(build_wall(problem).film, problem.bearing.journal_radius, problem.slip_length / 1e-5)
     mesh = balance.mesh
     return balance, rng.uniform(0.5, 2.0, mesh.n_unknown), rng.uniform(0.5, 2.0, mesh.shape), rng
 

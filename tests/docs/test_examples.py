@@ -80,6 +80,7 @@ def test_a_script_without_a_place_to_write_says_how_it_is_called(path: Path) -> 
     assert done.stdout == ""
 
 
+@pytest.mark.slow
 def test_the_demo_writes_tables_figures_and_data(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -54,6 +54,7 @@ def test_the_command_prints_what_stands_there(folder: Path, monkeypatch: pytest.
             assert line in printed  # an iterator: the lines stand in this order
 
 
+@pytest.mark.slow
 def test_the_python_prints_what_stands_there(folder: Path) -> None:
     (code,), (shown,) = blocks("python"), blocks("text")
     done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=True)

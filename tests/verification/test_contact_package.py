@@ -202,6 +202,7 @@ def test_as_the_product_assembles_it() -> None:
 # ------------------------------------------------------------------------------------------ counts
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_from_nothing_in_twenty_steps_on_the_finest_grid(name: str) -> None:
     problem = package(example(name, 256, **{"operation.eccentricity": (0.0, -100e-6)}))

@@ -36,7 +36,7 @@ GRIDS: tuple[Grid, ...] = ((64, 32), (128, 64), (256, 128))
 
 DOWN = np.array([0.0, -1.0])
 FIRST_ORDER = [row for row in table("a2_journal_first_order.csv") if row["L/D"] != "inf"]
-USUAL = ("0.1", "2", "10", "20")
+USUAL = ("0.1", "10")
 LONG = [row for row in table("a2_journal_first_order.csv") if row["L/D"] == "inf"]
 
 
@@ -75,13 +75,17 @@ def check_small_displacement(row: Row) -> None:
     assert_allclose(attitude, float(row["attitude_deg"]), rtol=0.0, atol=0.06)
 
 
-@pytest.mark.parametrize("row", [row for row in FIRST_ORDER if row["Lam"] in USUAL], ids=name)
+@pytest.mark.parametrize("row", [row for row in FIRST_ORDER if row["Lam"] in USUAL and row["L/D"] == "1.0"], ids=name)
 def test_small_displacement(row: Row) -> None:
     check_small_displacement(row)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("row", [row for row in FIRST_ORDER if row["Lam"] in ("0.5", "1", "5")], ids=name)
+@pytest.mark.parametrize(
+    "row",
+    [row for row in FIRST_ORDER if float(row["Lam"]) <= 20.0 and not (row["Lam"] in USUAL and row["L/D"] == "1.0")],
+    ids=name,
+)
 def test_small_displacement_at_other_speeds(row: Row) -> None:
     check_small_displacement(row)
 

@@ -1,6 +1,6 @@
 """A gas by its name: viscosity and gas constant from CoolProp, refused where they do not hold.
 
-CoolProp is loaded when a name is used, which takes two seconds. Its failures are `ValueError`.
+CoolProp is loaded when a name is used, which takes most of a second.
 """
 
 from __future__ import annotations
@@ -27,6 +27,9 @@ COMMON = {
 
 IDEAL = 0.02
 """Largest `|Z - 1|` of a gas that is taken for ideal: what it costs in the film is of the same size."""
+
+FAILURES = (ValueError, RuntimeError)
+"""What CoolProp raises, by version, when it finds no answer."""
 
 BISECTIONS = 40
 """Halvings of a range that is told to a user: far below its four digits."""
@@ -75,7 +78,7 @@ def viscosity(name: str, T: float, p: float) -> float:
     try:
         state.update(_library().PT_INPUTS, p, T)
         return float(state.viscosity())
-    except ValueError:  # its correlation has holes: the state of a reference fluid is not found
+    except FAILURES:  # its correlation has holes: the state of a reference fluid is not found
         text = f"CoolProp finds none for {name} at {_K(T)} and {_Pa(p)}; allowed: {NUMBERS}"
         raise refuse(VALUE_PROBLEM, text, NUMBERS) from None
 
@@ -106,7 +109,7 @@ def _by_alias(name: str) -> str:
     """The fluid that CoolProp calls `name` too, such as N2 or R744; nothing if none."""
     try:
         fluid = str(_library().get_fluid_param_string(name, "name"))
-    except ValueError:
+    except FAILURES:
         return ""
     aliases = _library().get_fluid_param_string(fluid, "aliases").split(",")
     return fluid if name in aliases else ""  # CoolProp also takes mixtures and names of models in front
@@ -119,7 +122,7 @@ def _has_viscosity(fluid: str) -> bool:
     state.update(_library().DmolarT_INPUTS, 1e-3, 0.9 * state.Tmax())
     try:
         state.viscosity()
-    except ValueError:
+    except FAILURES:
         return False
     return True
 

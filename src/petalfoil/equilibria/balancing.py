@@ -6,7 +6,7 @@ contact set with the position bordered: one factorisation a step serves the stat
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ from petalfoil.equilibria.response import Response
 from petalfoil.equilibria.warm import RESTART_BARRIER, keep_open, predict
 from petalfoil.equilibria.work import Work
 from petalfoil.problem.balance import BalanceProblem, FilmForce
-from petalfoil.problem.coupled import CoupledProblem
+from petalfoil.problem.coupled import RESIDUAL_TOLERANCE, CoupledProblem
 from petalfoil.solvers.active_set import ActiveOptions, Closed, Outcome, evaluate, revise, searched
 from petalfoil.solvers.active_set import State as SetState
 from petalfoil.solvers.cone import ConePoint
@@ -96,7 +96,7 @@ def through_interior(problem: CoupledProblem, start: ConePoint, load: Array, wor
         balance = newton(problem.at(displacement=z[-2:]), (z[:-2], closed), load, work)
         if balance is not None:
             return balance
-    return squeezed(whole, point)
+    return squeezed(whole, point, work)
 
 
 def rebalance(known: Balance, problem: CoupledProblem, load: Array, work: Work) -> Balance:
@@ -124,16 +124,30 @@ WARM = ActiveOptions(max_steps=8)
 """A contact set that leads on from a neighbour does so in a few steps."""
 
 
-def squeezed(whole: BalanceProblem, point: ConePoint) -> Balance | None:
-    """The interior point's own answer: a package pressed solid, whose reactions no contact set determines."""
-    problem, x = whole.at(point.x), point.x[:-2]
-    state = State(x, np.zeros(problem.layout.n_wall), point.lam)
-    residual = total_residual(problem, state)
-    if residual > 1e-8:
-        return None
-    way = "interior point; petals are pressed solid between journal and bushing"
-    answer = Answer(problem, state, residual, way)
-    return Balance(answer, force_residual(answer, whole.load))
+def squeezed(whole: BalanceProblem, point: ConePoint, work: Work) -> Balance | None:
+    """The interior point's own answer: a package pressed solid, whose reactions no contact set determines.
+
+    It is followed until gap or reaction of every pair has vanished.
+    """
+    for goal in SOLID_GOALS:
+        options = InteriorOptions(least_barrier=0.1 * goal)
+        point, found = interior_point(whole, point, work.film_solver, options, work.watch("balance", content(goal)))
+        problem = whole.at(point.x)
+        state = State(point.x[:-2], np.zeros(problem.layout.n_wall), point.lam)
+        residual = total_residual(problem, state)
+        if not found:
+            return None
+        if residual <= RESIDUAL_TOLERANCE:
+            answer = Answer(problem, state, residual, SOLID)
+            return Balance(answer, force_residual(answer, whole.load))
+    return None
+
+
+SOLID_GOALS = (1e-12, 1e-14, 1e-16)
+"""Barriers at which a package pressed solid is looked at: pairs off the path need two decades more than its mean."""
+
+SOLID = "interior point; petals are pressed solid between journal and bushing"
+"""How such an answer was reached."""
 
 
 def force_residual(answer: Answer, load: Array) -> float:
@@ -183,15 +197,13 @@ def bordered_step(
         factor = work.film_solver.factor(state.ties.reduce(state.line.matrix(none)), state.ties.rank(problem.rank))
     except SingularMatrixError:
         return None
-    response = Response(problem, state.line, state.ties, factor, state.closed, 0.0)  # type: ignore[arg-type]
+    response = Response(problem, problem.linearize(state.x), state.ties, factor, state.closed, 0.0)
     film, by_e = FilmForce.of(problem), problem.layout.wall.contacts.by_e[state.closed]
     settle = state.ties.spread(factor.solve(-state.ties.gather(state.line.residual)))
     lam = state.ties.reactions(state.line.residual + state.line.matrix(none) @ settle)
     left = film.at(state.x[problem.positive] + settle[problem.positive]) + by_e.T @ lam + load
-    units = [response.unit(k) for k in (0, 1)]
-    gradient = np.column_stack([film.by_P @ dx[problem.positive] + by_e.T @ dlam for dx, dlam in units])
-    de = np.linalg.solve(gradient, -left)
-    change = settle + units[0][0] * de[0] + units[1][0] * de[1]
+    follow, de = made_up(response, left)
+    change = settle + follow
     share = reach(problem, state.x, change, de)
     return problem.at(displacement=problem.displacement + share * de), state.x + share * change
 
@@ -209,9 +221,37 @@ MOST_FILMS = 10.0
 
 
 def finished(problem: CoupledProblem, state: SetState, load: Array, work: Work) -> Balance | None:
-    """Refine the state at its position; the position stays."""
+    """Refine the state; the position follows where the refined film pushes otherwise. One factorisation."""
     none = np.zeros(len(state.closed))
     factor = work.film_solver.factor(state.ties.reduce(state.line.matrix(none)), state.ties.rank(problem.rank))
     closed = Closed(state.x, state.lam, state.closed, state.residual, state.ties, factor)
-    answer = from_closed(problem, closed, "balanced with the load")
-    return None if answer is None else Balance(answer, force_residual(answer, load))
+    response = Response(problem, problem.linearize(state.x), state.ties, factor, state.closed, 0.0)
+    best: Balance | None = None
+    for _ in range(CORRECTIONS):
+        answer = from_closed(problem, closed, "balanced with the load")
+        if answer is None:
+            return best
+        left = force_residual(answer, load)
+        if best is None or left < best.force_residual:
+            best = Balance(answer, left)
+        if left <= FORCE_TOLERANCE:
+            return best
+        force = journal_force(problem, answer.x[problem.positive], answer.lam)
+        change, de = made_up(response, force + load)
+        problem = problem.at(displacement=problem.displacement + de)
+        closed = replace(closed, x=answer.x + change, lam=answer.lam)
+    return best
+
+
+CORRECTIONS = 3
+"""Refinements of a balance: the second is for loads that are small beside what pushes on the journal all round."""
+
+
+def made_up(response: Response, left: Array) -> tuple[Array, Array]:
+    """Changes of the unknowns (n,) and of the position (2,) that make up for a force `left` (2,) on the journal."""
+    by_e, kept = response.problem.layout.wall.contacts.by_e[response.closed], response.problem.positive
+    film = FilmForce.of(response.problem)
+    units = [response.unit(k) for k in (0, 1)]
+    gradient = np.column_stack([film.by_P @ dx[kept] + by_e.T @ dlam for dx, dlam in units])
+    de = np.linalg.solve(gradient, -left)
+    return units[0][0] * de[0] + units[1][0] * de[1], de

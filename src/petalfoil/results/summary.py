@@ -45,7 +45,7 @@ _SHOWN: dict[str, _Show] = {
     "min_film": _Show("smallest film", "µm", 1e6),
     "min_film_angle": _Show("  at angle", "deg", _DEG),
     "min_film_z": _Show("  at z", "mm", 1e3),
-    "knudsen_number": _Show("Knudsen number"),
+    "knudsen_number": _Show("Knudsen number", "%", 100.0),
     "max_pressure": _Show("largest pressure", "kPa", 1e-3),
     "max_pressure_angle": _Show("  at angle", "deg", _DEG),
     "friction_torque": _Show("friction torque", "mN·m", 1e3),
