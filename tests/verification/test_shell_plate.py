@@ -62,7 +62,8 @@ def test_without_lateral_contraction_it_is_the_strip(row: dict[str, str], grid: 
     phi = GRIDS[grid](1.0, cells)
     plate, strip = plate_shell(phi, spatial_axis(b, 16, half=True), kappa, 0.0), strip_shell(phi, kappa)
     W, line = bend(plate, uniform_load(plate)), bend(strip, uniform_load(strip))
-    assert_allclose(W, np.broadcast_to(line, W.shape), rtol=1e-9)
+    rounding = np.finfo(float).eps * len(phi) ** 4  # what the condition of bending leaves of the last digit
+    assert_allclose(W, np.broadcast_to(line, W.shape), rtol=rounding)
     exact = np.array([float(row[name]) for name in QUANTITIES])
     assert_allclose(plate_answer(row, grid, cells), exact, rtol=2e-3)
 

@@ -106,8 +106,8 @@ class Run:
         return ConvergenceError(
             f"the classic method used up its {what} steps",
             history=self.rows,
-            advice="its film steps grow as the square of the cells along a pitch, its package steps as the fourth power: "
-            'take a coarser grid, or method = "newton", which solves the same equations',
+            advice="its film steps grow as the square of the cells along a pitch, its package steps as the fourth "
+            'power: take a coarser grid, or method = "newton", which solves the same equations',
         )
 
 

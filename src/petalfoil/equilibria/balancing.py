@@ -65,6 +65,14 @@ def balance_cold(problem: CoupledProblem, load: Array, work: Work) -> Balance:
     ConvergenceError
         No position was found.
     """
+    found = from_nothing(problem, load, work) or loaded_gradually(problem, load, work)
+    if found is None:
+        raise nothing_found(work)
+    return found
+
+
+def from_nothing(problem: CoupledProblem, load: Array, work: Work) -> Balance | None:
+    """Cold starts, each barrier in turn; None if none leads to a balance."""
     for barrier in BARRIERS:
         try:
             found = attempt(problem, load, barrier, work)
@@ -73,7 +81,23 @@ def balance_cold(problem: CoupledProblem, load: Array, work: Work) -> Balance:
             continue
         if found is not None:
             return found
-    raise nothing_found(work)
+    return None
+
+
+def loaded_gradually(problem: CoupledProblem, load: Array, work: Work) -> Balance | None:
+    """Balance a share of the load, then more and more of it; None if that leads nowhere."""
+    for share in SHARES:
+        known = from_nothing(problem, share * load, work)
+        while known is not None and share < 1.0:
+            share = min(1.0, 2.0 * share)
+            known = from_neighbour(known, problem, share * load, work)
+        if known is not None:
+            return known
+    return None
+
+
+SHARES = (0.25, 0.0625, 0.015625)
+"""Shares of a load from which all of it is reached: for loads tens of times the capacity of the film."""
 
 
 def attempt(problem: CoupledProblem, load: Array, barrier: float, work: Work) -> Balance | None:
@@ -107,17 +131,24 @@ def rebalance(known: Balance, problem: CoupledProblem, load: Array, work: Work) 
     ConvergenceError
         Nothing was found, not even from nothing.
     """
+    found = from_neighbour(known, problem, load, work)
+    return found or balance_cold(problem.at(displacement=np.zeros(2)), load, work)
+
+
+def from_neighbour(known: Balance, problem: CoupledProblem, load: Array, work: Work) -> Balance | None:
+    """By the tangent and the contact set of `known`, else by the interior point from there; None if neither leads."""
     here = problem.at(displacement=known.answer.problem.displacement)
     x = keep_open(known.answer.x, predict(known.answer, here), here.positive)
     found = newton(here, (x, known.answer.in_contact), load, work, WARM)
-    if found is None:
-        s = np.maximum(here.gaps(x), np.sqrt(RESTART_BARRIER))
-        lam = np.maximum(known.answer.lam, RESTART_BARRIER * here.weight / s)
-        try:
-            found = through_interior(here, ConePoint(np.append(x, here.displacement), s, lam), load, work)
-        except SingularMatrixError as failure:
-            work.note("balance", outcome=str(failure))
-    return found or balance_cold(problem.at(displacement=np.zeros(2)), load, work)
+    if found is not None:
+        return found
+    s = np.maximum(here.gaps(x), np.sqrt(RESTART_BARRIER))
+    lam = np.maximum(known.answer.lam, RESTART_BARRIER * here.weight / s)
+    try:
+        return through_interior(here, ConePoint(np.append(x, here.displacement), s, lam), load, work)
+    except SingularMatrixError as failure:
+        work.note("balance", outcome=str(failure))
+        return None
 
 
 WARM = ActiveOptions(max_steps=8)
@@ -253,5 +284,5 @@ def made_up(response: Response, left: Array) -> tuple[Array, Array]:
     film = FilmForce.of(response.problem)
     units = [response.unit(k) for k in (0, 1)]
     gradient = np.column_stack([film.by_P @ dx[kept] + by_e.T @ dlam for dx, dlam in units])
-    de = np.linalg.solve(gradient, -left)
+    de: Array = np.linalg.solve(gradient, -left)
     return units[0][0] * de[0] + units[1][0] * de[1], de
