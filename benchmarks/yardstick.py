@@ -10,6 +10,9 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
 
+TOLERANCE = 1e-8
+"""Largest residual over the flows of its cell."""
+
 
 def solve(around: int, along: int, length: float, Lam: float, eps: float) -> tuple[float, float, float, int]:
     """Load along and across the line of centres over `p_a L D`, scaled residual, and Newton steps.
@@ -44,7 +47,7 @@ def solve(around: int, along: int, length: float, Lam: float, eps: float) -> tup
         residual = outflow @ flow
         size = abs(outflow) @ (0.5 * mean_cube * (P[a] ** 2 + P[b] ** 2) + carried * (P[a] * H[a] + P[b] * H[b]))
         worst = float(np.max(np.abs(residual) / size))
-        if worst <= 1e-8:
+        if worst <= TOLERANCE:
             break
         by_a, by_b = mean_cube * P[a] + carried * H[a], -mean_cube * P[b] + carried * H[b]
         change = spsolve((outflow @ (by_a[:, None] * at_a + by_b[:, None] * at_b)).tocsc(), -residual)

@@ -98,15 +98,25 @@ def crossings(case: Case, load: float, share: float, work: Work) -> tuple[float,
     start = min(max(case.operation.speed, 10.0 * SLOWEST), FASTEST)
     line = SpeedLine(case, (0.0, -load), work)
     touching = line.share(start) > share
-    first = search(line, start, share, upward=touching)
-    if first is None:
+    found = crossing(line, start, share, upward=touching)
+    if found is None:
         return (math.inf, math.inf) if touching else (0.0, 0.0)
-    found = bisect(line, first, share)
     beyond = found * FACTOR**2 if touching else found / FACTOR**2
     line.at(beyond)
-    back = search(line, beyond, share, upward=not touching)
-    other = bisect(line, back, share) if back is not None else found
+    other = crossing(line, beyond, share, upward=not touching) or found
     return (found, other) if touching else (other, found)
+
+
+def crossing(line: SpeedLine, start: float, share: float, *, upward: bool) -> float | None:
+    """The first speed from `start`, where `line` stands, at which the share is crossed; None if it never is.
+
+    Raises
+    ------
+    ConvergenceError
+        A balance on the way was not found.
+    """
+    bracket = search(line, start, share, upward=upward)
+    return None if bracket is None else bisect(line, bracket, share)
 
 
 def search(line: SpeedLine, start: float, share: float, *, upward: bool) -> Bracket | None:

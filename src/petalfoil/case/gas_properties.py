@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from importlib import import_module
 from types import ModuleType
 from typing import Any
 
@@ -63,7 +64,8 @@ def check_pressure(name: str, T: float, p: float) -> None:
     state = _state(fluid_of(name))
     dew = _dew_pressure(state, T)
     if p >= dew:
-        found = f"{name} at {_K(T)} condenses at {_Pa(dew)}, below {_Pa(p)}"
+        ends = "condenses at" if T < state.T_critical() else "is known up to"
+        found = f"{name} at {_K(T)} {ends} {_Pa(dew)}, below {_Pa(p)}"
     elif _departure(state, T, p) > IDEAL:
         found = f"{name} at {_K(T)} and {_Pa(p)} is {100.0 * _departure(state, T, p):.2g} % off the ideal-gas law"
     else:
@@ -94,9 +96,7 @@ def gas_constant(name: str) -> float:
 
 @cache
 def _library() -> ModuleType:
-    from CoolProp import CoolProp
-
-    return CoolProp
+    return import_module("CoolProp.CoolProp")
 
 
 @cache

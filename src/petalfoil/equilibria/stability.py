@@ -13,7 +13,7 @@ from petalfoil.equilibria.work import Work
 from petalfoil.solvers.eigen import Pencil, rightmost
 from petalfoil.solvers.ties import tie
 
-TIME_STEP = 0.1
+TIME_STEP = 0.5
 """Radians of rotation a step of the eigenvalue's time map: resolves disturbances up to a few times the speed."""
 
 

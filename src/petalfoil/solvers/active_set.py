@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from petalfoil.solvers.cone import ConeProblem, Linearized
 from petalfoil.solvers.linear import Factor, LinearSolver, SingularMatrixError
-from petalfoil.solvers.set_search import near, search
+from petalfoil.solvers.set_search import most_doubts, near, search
 from petalfoil.solvers.ties import Ties, tie
 
 Array = NDArray[np.float64]
@@ -112,6 +112,8 @@ def searched(problem: ConeProblem, state: State, doubt: Mask, solver: LinearSolv
     """The state after a step that looks for the set among the gaps in doubt and their neighbours; None if none fits."""
     matrix = state.line.matrix(np.zeros(len(doubt)))
     wide = near(problem, doubt, matrix)
+    if np.count_nonzero(wide) > most_doubts(problem):
+        wide = doubt
     found = search(problem, (state.x, state.gaps, state.closed, state.line), wide, solver)
     return None if found is None else evaluate(problem, *found)
 

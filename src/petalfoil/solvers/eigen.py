@@ -64,10 +64,10 @@ def rightmost(pencil: Pencil, step: float, solver: LinearSolver) -> complex:
 
 
 def leading(operator: spla.LinearOperator, count: int) -> tuple[Array, Array]:
-    """A few eigenvalues of largest magnitude; where they crowd, the state that many steps leave over."""
+    """The eigenvalue of largest magnitude; where several crowd, the state that many steps leave over."""
     start = np.random.default_rng(0).standard_normal(count)
     try:
-        return spla.eigs(operator, k=4, which="LM", v0=start, ncv=min(40, count - 1), tol=1e-3, maxiter=20)  # type: ignore[no-any-return]
+        return spla.eigs(operator, k=1, which="LM", v0=start, ncv=min(20, count - 1), tol=1e-2, maxiter=4)  # type: ignore[no-any-return]
     except spla.ArpackNoConvergence as failure:
         if len(failure.eigenvalues):
             return failure.eigenvalues, failure.eigenvectors

@@ -20,8 +20,12 @@ from petalfoil.solvers.ties import Ties, tie
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-MOST_DOUBTS = 600
-"""More gaps in doubt than this are no small problem."""
+SOLVES = 1_200_000
+"""Gaps in doubt times unknowns that are still a small problem: each asks for a solve, and a factorisation is worth some
+tens of those."""
+
+LEAST_MOST = 60
+"""Gaps in doubt that are always few enough."""
 
 ROUNDS = 4
 """Times that gaps which the step would close are added to those in doubt."""
@@ -32,6 +36,11 @@ def near(problem: ConeProblem, mask: Mask, matrix: sp.csc_array) -> Mask:
     touched = abs(problem.G).T @ mask.astype(float)
     coupled = abs(matrix) @ (touched > 0.0).astype(float)
     return np.asarray(abs(problem.G) @ (coupled > 0.0).astype(float) > 0.0)
+
+
+def most_doubts(problem: ConeProblem) -> int:
+    """Gaps that may be in doubt in a search, so that it costs no more than a few factorisations."""
+    return max(LEAST_MOST, SOLVES // max(1, problem.G.shape[1]))
 
 
 def search(
@@ -52,6 +61,9 @@ def search(
         The next iterate and its closed gaps.
     """
     _, _, closed, line = at
+    most = most_doubts(problem)
+    if np.count_nonzero(doubt) > most:
+        return None
     firm = closed & ~doubt
     ties = tie(problem.G, firm)
     if not ties.determinate:
@@ -66,7 +78,7 @@ def search(
     base = factor.solve(-ties.gather(line.residual))
     for _ in range(ROUNDS):
         doubts = np.flatnonzero(doubt)
-        if len(doubts) > MOST_DOUBTS:
+        if len(doubts) > most:
             return None
         rows = reduced_rows(problem.G, doubts, ties)
         ways = factor.solve(rows.T.toarray())

@@ -1,0 +1,120 @@
+"""How time and memory of a warm point grow with the unknowns; each size in a process of its own.
+
+    python benchmarks/growth.py CELLS AXIAL point     one size as a JSON object; `factor` instead of `point`: without
+                                                      the points, for a size at which they take too long
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import statistics
+import subprocess
+import sys
+import time
+from itertools import pairwise
+from pathlib import Path
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy as np
+from measure import Row, Value, at_most
+from spatial_point import FARTHEST, Grid
+
+from petalfoil.analysis import load_curve
+from petalfoil.analysis.session import one_thread
+from petalfoil.problem.build import build_problem
+from petalfoil.solvers.linear import LinearSolver
+
+SIZES = (Grid(10, 6), Grid(18, 12), Grid(34, 22), Grid(58, 38))
+"""About 1000, 3000, 10 000 and 30 000 unknowns: a short curve on each."""
+LARGEST = Grid(106, 72)
+"""About 100 000: a curve takes minutes, one factorisation does not."""
+STEP = 0.05
+"""Displacement from point to point over the farthest."""
+
+Found = dict[str, float]
+
+
+def rows(sizes: tuple[Grid, ...], largest: Grid | None) -> list[Row]:
+    """Fitted exponents of time and memory."""
+    found = [alone(grid, "point") for grid in sizes]
+    remark = ""
+    if largest is not None:
+        last, far = found[-1], alone(largest, "factor")
+        far["point"] = far["factorisation"] * last["point"] / last["factorisation"]
+        found.append(far)
+        remark = "largest size: one factorisation measured, times what a point costs over one at the size before"
+    n = np.array([size["unknowns"] for size in found])
+    steps = [f"{before['unknowns']:.0f} to {after['unknowns']:.0f}" for before, after in pairwise(found)]
+    out = []
+    for name, says, key in (("time", "time per warm point", "point"), ("memory", "memory of its process", "megabytes")):
+        values = np.array([size[key] for size in found])
+        local = np.diff(np.log(values)) / np.diff(np.log(n))
+        details: dict[str, Value] = {f"{key} at {size:.0f}": float(value) for size, value in zip(n, values, strict=True)}
+        details |= {f"exponent {step}": float(value) for step, value in zip(steps, local, strict=True)}
+        slope = float(np.polyfit(np.log(n), np.log(values), 1)[0])
+        says = f"growth: exponent of the {says}, {n[0]:.0f} to {n[-1]:.0f} unknowns"
+        if name == "time":
+            out.append(at_most("growth_time", says, slope, 1.35, details=details, remark=remark))
+        else:
+            peak = f"peak {values[-1]:.0f} MB at {n[-1]:.0f} unknowns"
+            out.append(Row("growth_memory", says, slope, details=details, remark=f"{peak}; Python and imports not counted"))
+    return out
+
+
+def alone(grid: Grid, kind: str) -> Found:
+    """Measure one size in a process of its own."""
+    call = [sys.executable, str(Path(__file__)), str(grid.pitch), str(grid.axial), kind]
+    done = subprocess.run(call, capture_output=True, text=True, check=True)
+    found: Found = json.loads(done.stdout)
+    return found
+
+
+# ---------------------------------------------------------------------------------------------- in that process
+
+
+def measured(grid: Grid, kind: str) -> Found:
+    """Time of an assembly with factorisation, of a point if asked for [s]; peak memory beyond that of the imports."""
+    before = peak()
+    found = {"unknowns": float(build_problem(grid.case()).layout.n), "factorisation": factorisation(grid)}
+    if kind == "point":
+        found["point"] = point(grid)
+    return found | {"megabytes": peak() - before}
+
+
+def peak() -> float:
+    """Most memory that the process has held [MB]."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+
+
+def factorisation(grid: Grid) -> float:
+    """One assembly and factorisation of the coupled tangent [s]; the free shape, its gaps held open."""
+    problem = build_problem(grid.case(0.5 * FARTHEST))
+    x = np.ones(problem.layout.n)
+    x[: problem.layout.n_wall] = 0.0
+    shift = 1.0 - np.minimum(problem.gaps(x), 0.0)
+    rank = problem.rank  # found once for a bearing
+    with one_thread():
+        start = time.process_time()
+        LinearSolver().factor(problem.linearize(x, shift).matrix(problem.weight), rank)
+        return time.process_time() - start
+
+
+def point(grid: Grid) -> float:
+    """Median time of the warm points of a short curve [s]."""
+    curve = load_curve.iterate(grid.case(), FARTHEST * (0.5 + STEP * np.arange(4)))
+    next(curve)  # the cold one
+    seconds = []
+    for _ in range(3):
+        start = time.process_time()
+        record = next(curve)
+        seconds.append(time.process_time() - start)
+        if not record.converged:
+            raise RuntimeError(f"a point of the benchmark did not converge: {record.scalars['status']}")
+    return statistics.median(seconds)
+
+
+if __name__ == "__main__":
+    sys.stdout.write(json.dumps(measured(Grid(int(sys.argv[1]), int(sys.argv[2])), sys.argv[3])))

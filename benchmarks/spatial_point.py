@@ -1,0 +1,142 @@
+"""A warm point of a spatial load characteristic: how many factorisations, and what else it costs."""
+
+from __future__ import annotations
+
+import statistics
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+from measure import Row, Value, at_least, at_most, in_turn
+from watching import APART, Watch, watched
+
+from petalfoil.analysis import load_curve
+from petalfoil.analysis.session import one_thread
+from petalfoil.case import Case
+from petalfoil.equilibria.answer import Answer
+from petalfoil.equilibria.cold import solve_cold
+from petalfoil.equilibria.track import advance
+from petalfoil.equilibria.work import Work
+from petalfoil.problem.build import build_problem
+from petalfoil.solvers.linear import LinearSolver
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+FARTHEST = 200e-6  # [m]
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Cells a pitch and along the axis."""
+
+    pitch: int = 24
+    axial: int = 16
+
+    def case(self, e: float = 0.0) -> Case:
+        """The paper's bearing with 8 petals in space, displaced downward by `e` [m]."""
+        changes = {"model.cells_per_pitch": self.pitch, "model.axial_cells": self.axial}
+        return Case.load(EXAMPLES / "paper_n8_spatial.toml").replace(
+            **changes, **{"operation.eccentricity": (0.0, -e)}
+        )
+
+
+def rows(grid: Grid, points: int, repeats: int) -> list[Row]:
+    """All rows about a warm point."""
+    return [*cost(grid, points), *factorisation(grid, repeats)]
+
+
+# ---------------------------------------------------------------------------------------------- cost of a point
+
+
+def warm_points(grid: Grid, points: int) -> list[tuple[Watch, float]]:
+    """What was seen of each warm point of a curve, and its time [s]."""
+    seen = []
+    curve = load_curve.iterate(grid.case(), np.linspace(0.0, FARTHEST, points + 1))
+    next(curve)  # the cold one
+    for _ in range(points):
+        with watched() as watch:
+            record = next(curve)
+            seconds = watch.seconds
+        if not record.converged:
+            raise RuntimeError(f"a point of the benchmark did not converge: {record.scalars['status']}")
+        seen.append((watch, seconds))
+    return seen
+
+
+def cost(grid: Grid, points: int) -> list[Row]:
+    """Counts and shares of the time."""
+    seen = warm_points(grid, points)
+    total = sum(seconds for _, seconds in seen)
+    share = {name: sum(watch.shares[name].seconds for watch, _ in seen) / total for name in seen[0][0].shares}
+    counts = [watch.shares["factorisation"].calls for watch, _ in seen]
+    solves = [watch.shares["solves"].calls for watch, _ in seen]
+    details: dict[str, Value] = {
+        "unknowns": build_problem(grid.case()).layout.n,
+        "points": points,
+        "seconds_per_point": total / points,
+        "least": min(counts),
+        "most": max(counts),
+        "solves_median": float(statistics.median(solves)),
+    }
+    count, point = float(statistics.median(counts)), "warm spatial point"
+    rest = 1.0 - sum(share[name] for name in APART)
+    return [
+        at_most("warm_count", f"{point}: factorisations, median of a curve", count, 6, details=details),
+        at_most("warm_total", f"{point}: time over that of its factorisations", 1.0 / share["factorisation"], 1.25),
+        Row("warm_factorisation", f"{point}: share of the factorisations", share["factorisation"]),
+        Row("warm_assembly", f"{point}: share of the assembly", share["assembly"]),
+        Row("warm_solves", f"{point}: share of the solves with the factors", share["solves"]),
+        Row("warm_rest", f"{point}: share of the rest", rest),
+        Row("warm_stability", f"{point}: share of its stability, contained in the above", share["stability"]),
+        Row("warm_search", f"{point}: share of the search for contacts, contained too", share["contact_search"]),
+    ]
+
+
+# ---------------------------------------------------------------------------------------------- one factorisation
+
+
+def answer(grid: Grid) -> Answer:
+    """A point of the curve with contacts closed, its tangent at hand."""
+    problem = build_problem(grid.case(0.5 * FARTHEST))
+    known = solve_cold(problem, Work())
+    found, _ = advance(known, problem.at(displacement=1.02 * problem.displacement), Work())
+    if found.closed is None:
+        raise RuntimeError("the point of the benchmark has no contact set")
+    return found
+
+
+def saddle(found: Answer) -> sp.csc_array:
+    """The original unknowns in natural order: the tangent, bordered by the closed gaps with their multipliers."""
+    closed = found.in_contact
+    J, G = found.problem.linearize(found.x).matrix(np.zeros(len(closed))), found.problem.G[closed]
+    return sp.csc_array(sp.block_array([[J, -G.T], [G, None]], format="csc"))
+
+
+def factorisation(grid: Grid, repeats: int) -> list[Row]:
+    """One factorisation as petalfoil does it, against SciPy's default."""
+    with one_thread():
+        found = answer(grid)
+        if found.closed is None:
+            raise RuntimeError("the point of the benchmark has no contact set")
+        ties, rank, bordered = found.closed.ties, found.problem.rank, saddle(found)
+        tangent = found.problem.linearize(found.x).matrix(np.zeros(len(found.lam)))
+        reduced, place = ties.reduce(tangent), ties.rank(rank)
+        best = in_turn(
+            {
+                "own": lambda: LinearSolver().factor(reduced, place),
+                "own_with_ties": lambda: LinearSolver().factor(ties.reduce(tangent), ties.rank(rank)),
+                "original": lambda: spla.splu(bordered, permc_spec="COLAMD"),
+                "reduced": lambda: spla.splu(reduced, permc_spec="COLAMD"),
+            },
+            repeats,
+        )
+    details = {f"seconds_{name}": value for name, value in best.items()}
+    details |= {"unknowns": reduced.shape[0], "unknowns_original": bordered.shape[0]}
+    says = "one factorisation: splu with COLAMD on the {}, over petalfoil's"
+    whole = best["original"] / best["own"]
+    return [
+        at_least("factor_original", says.format("original unknowns with multipliers"), whole, 3.0, details=details),
+        Row("factor_ties", "the same, with merging the tied unknowns counted", best["original"] / best["own_with_ties"]),
+        Row("factor_reduced", says.format("reduced matrix"), best["reduced"] / best["own"]),
+    ]

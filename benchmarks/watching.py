@@ -1,0 +1,85 @@
+"""Where the time of a run goes: factorisations, assembly, solves, the rest. The code watched knows nothing of it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+from petalfoil.analysis import load_curve
+from petalfoil.problem.coupled import Linearization
+from petalfoil.problem.package import PackageLinearization
+from petalfoil.solvers import active_set
+from petalfoil.solvers.linear import Factor, LinearSolver
+from petalfoil.solvers.ties import Ties
+
+Place = tuple[Any, str]
+
+PLACES: dict[str, tuple[Place, ...]] = {
+    "factorisation": ((LinearSolver, "factor"),),
+    "assembly": ((Linearization, "matrix"), (PackageLinearization, "matrix"), (Ties, "reduce")),
+    "solves": ((Factor, "solve"),),
+    "stability": ((load_curve, "leading_eigenvalue"),),
+    "contact_search": ((active_set, "search"),),
+}
+"""Functions by what their time is called. The last two contain some of the first three."""
+
+
+APART = ("factorisation", "assembly", "solves")
+"""Those that do not overlap: a solve inside a factorisation, which tries it, counts there."""
+
+
+@dataclass
+class Share:
+    """Calls of some functions and what they took."""
+
+    calls: int = 0
+    seconds: float = 0.0
+
+
+@dataclass
+class Watch:
+    """Processor time since it was made, and the shares of it."""
+
+    shares: dict[str, Share] = field(default_factory=lambda: {name: Share() for name in PLACES})
+    start: float = field(default_factory=time.process_time)
+    busy: bool = False
+
+    @property
+    def seconds(self) -> float:
+        """All of the time [s]."""
+        return time.process_time() - self.start
+
+    def wrapped(self, name: str, call: Callable[..., Any]) -> Callable[..., Any]:
+        """`call`, counted and timed under `name`."""
+        share, apart = self.shares[name], name in APART
+
+        def timed(*args: Any, **kwargs: Any) -> Any:
+            if apart and self.busy:
+                return call(*args, **kwargs)
+            self.busy, start = self.busy or apart, time.process_time()
+            try:
+                return call(*args, **kwargs)
+            finally:
+                self.busy = self.busy and not apart
+                share.calls += 1
+                share.seconds += time.process_time() - start
+
+        return timed
+
+
+@contextmanager
+def watched() -> Iterator[Watch]:
+    """Watch what the block does."""
+    watch = Watch()
+    places = [(name, *place) for name, found in PLACES.items() for place in found]
+    before = [getattr(owner, function) for _, owner, function in places]
+    for (name, owner, function), call in zip(places, before, strict=True):
+        setattr(owner, function, watch.wrapped(name, call))
+    try:
+        yield watch
+    finally:
+        for (_, owner, function), call in zip(places, before, strict=True):
+            setattr(owner, function, call)

@@ -1,0 +1,310 @@
+"""The paper's test rig: which dimensions, among those that the paper does not give, explain its Table 1?
+
+    python examples/rig_study.py FOLDER
+
+For every count and mount of the petals, packages are drawn at random, the film floor and the friction coefficient are
+set to what experiments 1 to 3 ask for, and the best package is refined; the best ones are computed again on a fine
+grid, with the fourth experiment as a prediction. Flat model; about ten minutes on two cores. Everything found is
+written to FOLDER at once, and a run that was interrupted goes on from there.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from multiprocessing import Pool
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from scipy.optimize import minimize
+from scipy.stats import qmc
+
+from petalfoil import Case
+from petalfoil.analysis import balance, liftoff
+from petalfoil.analysis.session import one_thread
+from petalfoil.analysis.speeds import SpeedLine
+from petalfoil.equilibria.work import Work
+from petalfoil.errors import ConvergenceError, DefinitionError
+
+HERE = Path(__file__).parent
+
+# Table 1. The journal rests in the bearing or the bearing on the journal: the same load in the bearing's frame.
+LOADS = (46.4, 55.6, 64.8, 104.6)  # [N]
+MOMENTS = (1.19, 1.10, 1.10, 3.79)  # largest friction moment [N m]
+SPEEDS = (8800.0, 8300.0, 8600.0, 11000.0)  # lowest ascent speed [rpm]
+FITTED = 3  # the fourth bearing failed; it is predicted
+SCATTER_MOMENT, SCATTER_SPEED = 0.05, 0.03  # standard deviations of experiments 1 to 3 about their means
+
+COUNTS, MOUNTS = range(5, 13), ("hinged", "rigid")
+RANGES = {  # of the unknown dimensions
+    "room": (5e-6, 900e-6),  # above the layers of the package, R_B - R_j less layers * delta [m]; even in its logarithm
+    "overlap": (1.1, 2.95),  # petals over every point of the bore; sets the petals' length
+    "coating": (12e-6, 20e-6),  # as stated [m]
+    "turn": (0.0, 1.0),  # of the roots against the load [pitches]
+    "tilt": (0.0, 1.2),  # of a rigid root, over the chordal one; a hinged root turns freely
+}
+FLOORS = (0.2e-6, 6e-6)  # roughness of ground journal and sprayed coating [m]
+FRICTIONS = (0.05, 0.5)  # solid lubricants to polymers
+
+SHARE = liftoff.SHARE
+SEARCH_CELLS, FINAL_CELLS = 32, 96  # along a pitch
+DRAWN, REFINED, KEPT = 40, 14, 8  # packages drawn and refined for each count and mount; computed again in the end
+HOPELESS = 12.0  # misfit of the moments alone, three of two standard deviations each
+TOO_FAST = 3.0  # times the measured speed; no floor in the range makes up for more
+LEVEL = 0.01  # of the mean of the lift-off speeds, which the floor is to meet
+
+out, err = Console(markup=False, highlight=False), Console(stderr=True, markup=False, highlight=False)
+
+
+@dataclass(frozen=True)
+class Package:
+    """The unknown dimensions; `RANGES` says what they are."""
+
+    count: int
+    mount: str
+    room: float
+    overlap: float
+    coating: float
+    turn: float
+    tilt: float = 1.0
+
+    def case(self, floor: float, cells: int) -> Case:
+        """The rig with this package and film floor [m], flat."""
+        rig = Case.load(HERE / "rig.toml")
+        R_B, delta = rig.bearing.bushing_radius, 0.15e-3 + self.coating
+        pitch, r_m = 2.0 * math.pi / self.count, R_B - delta / 2.0
+        clearance = (math.floor(self.overlap) + 1) * delta + self.room
+        length = self.overlap * pitch * r_m
+        bent = rig.replace(
+            **{
+                "bearing.journal_radius": R_B - clearance,
+                "petals.count": self.count,
+                "petals.mount": self.mount,
+                "petals.arc_length": length,
+                "petals.coating": self.coating,
+                "petals.root_tilt": "chordal",
+                "petals.first_root": self.turn * pitch,
+                "surface.film_floor": floor,
+                "model.kind": "flat",
+                "model.cells_per_pitch": cells,
+                "model.axial_cells": None,
+            }
+        )
+        if self.mount == "hinged":
+            return bent
+        return bent.replace(**{"petals.root_tilt": self.tilt * chordal(rig, r_m, length)})
+
+
+def chordal(rig: Case, r_m: float, length: float) -> float:
+    """Root tilt for which the free edge of the free petal lies on the bore [rad], to first order in its angle."""
+    assert rig.petals is not None
+    return 0.5 * length * (1.0 / r_m - 1.0 / rig.petals.bend_radius)
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What the model says of a package. Misfits are sums of squares over the scatter of the experiments."""
+
+    package: Package
+    floor: float  # [m]
+    friction: float
+    moments: tuple[float, ...] = ()  # [N m]
+    speeds: tuple[float, ...] = ()  # [rpm]
+    misfit: float = math.inf
+    note: str = ""
+
+    @property
+    def line(self) -> str:
+        """As a line of a store."""
+        return json.dumps(asdict(self))
+
+    @classmethod
+    def read(cls, line: str) -> Finding:
+        """From a line of a store."""
+        entries = json.loads(line)
+        entries.update(package=Package(**entries["package"]), moments=tuple(entries["moments"]))
+        return cls(**{**entries, "speeds": tuple(entries["speeds"])})
+
+
+# ------------------------------------------------------------------------------------------- one package
+
+
+def reactions(case: Case, loads: Sequence[float]) -> list[float]:
+    """Sum of the contact reactions on the journal at rest under each load [N]."""
+    still = [balance.run(case, (0.0, -load), speed=0.0) for load in loads]
+    return [float(record.scalars["contact_total"]) for record in still]
+
+
+def lift_off(case: Case, load: float, near: float) -> float:
+    """Lift-off speed [rpm], looked for from the speed `near`; nan if it is far above."""
+    omega = near * math.pi / 30.0
+    with one_thread():
+        line = SpeedLine(case, (0.0, -load), Work())
+        touching, known = line.share(omega) > SHARE, line.known
+        if touching and line.share(TOO_FAST * omega) > SHARE:
+            return math.nan
+        line.known = known
+        found = liftoff.crossing(line, omega, SHARE, upward=touching)
+    return math.nan if found is None else found * 30.0 / math.pi
+
+
+def misfit(found: Sequence[float], measured: Sequence[float], scatter: float) -> float:
+    """Sum of squares of the relative differences of experiments 1 to 3 over their scatter."""
+    left = np.log(np.array(found[:FITTED]) / np.array(measured[:FITTED])) / scatter
+    return float(left @ left)
+
+
+def judge(package: Package, floor: float, cells: int, known: int = FITTED) -> Finding:
+    """The moments and lift-off speeds of the first `known` experiments, floor and friction set to the fitted ones."""
+    loads = LOADS[:known]
+    try:
+        case = package.case(floor, cells)
+        arms = case.bearing.journal_radius * np.array(reactions(case, loads))
+        friction = float(np.clip(np.exp(np.mean(np.log(MOMENTS[:FITTED] / arms[:FITTED]))), *FRICTIONS))
+        moments = tuple((friction * arms).tolist())
+        first = Finding(package, floor, friction, moments)
+        of_moments = misfit(moments, MOMENTS, SCATTER_MOMENT)
+        if of_moments > HOPELESS:
+            return replace(first, note="moments")
+        floor, speeds = levelled(package, floor, cells, loads)
+    except DefinitionError as refused:
+        return Finding(package, floor, math.nan, note=str(refused))
+    except ConvergenceError as failure:
+        return Finding(package, floor, math.nan, note=f"not converged: {failure}")
+    if not np.all(np.isfinite(speeds[:FITTED])):
+        return replace(first, floor=floor, note="no lift-off near the measured speeds")
+    return replace(
+        first, floor=floor, speeds=tuple(speeds), misfit=of_moments + misfit(speeds, SPEEDS, SCATTER_SPEED)
+    )
+
+
+def levelled(package: Package, floor: float, cells: int, loads: Sequence[float]) -> tuple[float, list[float]]:
+    """The film floor [m] at which the lift-off speeds of experiments 1 to 3 have the measured mean, and the speeds."""
+    slope, before = 0.7, (math.nan, math.nan)  # of lift-off speed over floor, in logarithms, to begin with
+    speeds: list[float] = []
+    for _ in range(6):
+        case, speeds = package.case(floor, cells), []
+        for load, measured in zip(loads[:FITTED], SPEEDS[:FITTED], strict=False):
+            speeds.append(lift_off(case, load, measured))
+            if not math.isfinite(speeds[-1]):
+                return floor, speeds
+        above = float(np.mean(np.log(np.array(speeds) / SPEEDS[:FITTED])))
+        if math.isfinite(before[0]):
+            slope = float(np.clip((above - before[1]) / (math.log(floor) - before[0] or 1.0), 0.3, 2.0))
+        if abs(above) < LEVEL:
+            break
+        before, wanted = (math.log(floor), above), float(np.clip(floor * math.exp(-above / slope), *FLOORS))
+        if wanted == floor:
+            break
+        floor = wanted
+    speeds += [lift_off(case, load, near) for load, near in zip(loads[FITTED:], SPEEDS[FITTED:], strict=False)]
+    return case.surface.film_floor, speeds
+
+
+# ------------------------------------------------------------------------------------------- the search
+
+
+class Store:
+    """Findings by package, in a file of one line each: a run that was interrupted goes on from there."""
+
+    def __init__(self, path: Path, cells: int, known: int = FITTED) -> None:
+        self.path, self.cells, self.known = path, cells, known
+        lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+        self.findings = {finding.package: finding for finding in map(Finding.read, lines)}
+
+    def judge(self, package: Package, floor: float) -> Finding:
+        """The finding of a package, computed if it is new."""
+        if package not in self.findings:
+            found = judge(package, floor, self.cells, self.known)
+            with self.path.open("a", encoding="utf-8") as file:
+                file.write(found.line + "\n")
+            self.findings[package] = found
+        return self.findings[package]
+
+    @property
+    def best(self) -> Finding:
+        """The finding of the smallest misfit."""
+        return min(self.findings.values(), key=lambda finding: finding.misfit)
+
+
+def drawn(count: int, mount: str) -> Iterator[Package]:
+    """Packages spread evenly over the ranges."""
+    names = [name for name in RANGES if name != "tilt" or mount == "rigid"]
+    for point in qmc.LatinHypercube(len(names), seed=count).random(DRAWN):
+        values = {name: low + u * (high - low) for u, name in zip(point, names, strict=True) for low, high in [RANGES[name]]}
+        low, high = RANGES["room"]
+        values["room"] = low * (high / low) ** point[names.index("room")]
+        yield Package(count, mount, **{name: float(f"{value:.4g}") for name, value in values.items()})
+
+
+def search(combination: tuple[int, str], folder: Path) -> Finding:
+    """The best package of a count and a mount: drawn, then refined."""
+    store = Store(folder / f"search_{combination[0]}_{combination[1]}.jsonl", SEARCH_CELLS)
+    for package in drawn(*combination):
+        store.judge(package, 1e-6)
+    start = store.best
+    if not math.isfinite(start.misfit):
+        return start
+    names = ["overlap", "room"] + ["tilt"] * (combination[1] == "rigid")
+
+    def value(steps: np.ndarray) -> float:
+        moved = {
+            name: float(f"{getattr(start.package, name) * math.exp(step):.5g}")
+            for name, step in zip(names, steps, strict=True)
+        }
+        inside = all(RANGES[name][0] <= moved[name] <= RANGES[name][1] for name in names)
+        return min(store.judge(replace(start.package, **moved), start.floor).misfit, 1e3) if inside else 1e3
+
+    simplex = np.vstack([np.zeros(len(names)), np.diag([0.04, 0.15, 0.1][: len(names)])])
+    minimize(value, simplex[0], method="Nelder-Mead", options={"maxfev": REFINED, "initial_simplex": simplex})
+    return store.best
+
+
+def again(finding: Finding, folder: Path) -> Finding:
+    """A package on the fine grid, all four experiments."""
+    name = f"final_{finding.package.count}_{finding.package.mount}.jsonl"
+    return Store(folder / name, FINAL_CELLS, len(LOADS)).judge(finding.package, finding.floor)
+
+
+def main(folder: Path) -> None:
+    """Search, refine, compute again; tables to standard output."""
+    folder.mkdir(parents=True, exist_ok=True)
+    combinations = [(count, mount) for count in COUNTS for mount in MOUNTS]
+    with Pool(2) as pool:
+        found = []
+        for finding in pool.imap_unordered(partial(search, folder=folder), combinations):
+            found.append(finding)
+            err.print(f"{len(found)} of {len(combinations)}: {finding.package.count} petals, {finding.package.mount}: misfit {finding.misfit:.3g}")
+        best = sorted((f for f in found if math.isfinite(f.misfit)), key=lambda f: f.misfit)[:KEPT]
+        final = sorted(pool.imap(partial(again, folder=folder), best), key=lambda f: f.misfit)
+    text = table(final)
+    (folder / "sets.md").write_text(text, encoding="utf-8")
+    out.print(text, soft_wrap=True)
+
+
+def table(findings: Sequence[Finding]) -> str:
+    """The sets that explain the experiments best, in Markdown."""
+    heads = "petals mount R_j,mm l_p,mm overlap coating,µm tilt turn floor,µm friction misfit moments,N·m lift-off,rpm".split()
+    lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
+    for found in findings:
+        p, case = found.package, found.package.case(found.floor, FINAL_CELLS)
+        assert case.petals is not None
+        cells = [
+            str(p.count), p.mount, f"{case.bearing.journal_radius * 1e3:.3f}", f"{case.petals.arc_length * 1e3:.1f}",
+            f"{p.overlap:.2f}", f"{p.coating * 1e6:.0f}", f"{p.tilt:.2f}", f"{p.turn:.2f}", f"{found.floor * 1e6:.2f}",
+            f"{found.friction:.3f}", f"{found.misfit:.1f}", " ".join(f"{m:.2f}" for m in found.moments),
+            " ".join(f"{s:.0f}" for s in found.speeds),
+        ]  # fmt: skip
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit("usage: python examples/rig_study.py FOLDER")
+    main(Path(sys.argv[1]))
