@@ -92,8 +92,9 @@ def test_a_curve_reports_its_jump() -> None:
     fold = jumps[0]
     rates = np.array([float(record.scalars["growth_rate"]) for record in records])
     torque = np.array([float(record.scalars["friction_torque"]) for record in records])
-    assert np.all(np.diff(rates[fold - 8 : fold]) > 0.0)
-    assert -rates[fold - 1] < 0.25 * -rates[fold - 8]
+    squares = np.diff(rates[fold - 8 : fold] ** 2)  # at a fold the eigenvalue goes as the root of the distance
+    assert_allclose(squares, squares.mean(), rtol=0.06)
+    assert rates[fold - 1] ** 2 < 0.6 * -squares.mean()  # and is less than a step from zero
     assert torque[fold] > 3.0 * torque[fold - 1]
     assert np.max(np.abs(np.diff(torque[fold - 8 : fold]))) < 0.02 * torque[fold - 1]
     assert all(record.scalars["residual"] <= 1e-8 for record in records)  # type: ignore[operator]
