@@ -13,14 +13,14 @@ import statistics
 import subprocess
 import sys
 import time
-from itertools import pairwise
 from pathlib import Path
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 from measure import Row, Value, at_most
-from spatial_point import FARTHEST, Grid
+from numpy.typing import NDArray
+from spatial_point import FARTHEST, STEP, Grid
 
 from petalfoil.analysis import load_curve
 from petalfoil.analysis.session import one_thread
@@ -31,9 +31,10 @@ SIZES = (Grid(10, 6), Grid(18, 12), Grid(34, 22), Grid(58, 38))
 """About 1000, 3000, 10 000 and 30 000 unknowns: a short curve on each."""
 LARGEST = Grid(106, 72)
 """About 100 000: a curve takes minutes, one factorisation does not."""
-STEP = 0.05
-"""Displacement from point to point over the farthest."""
+MEGABYTES = 1.0
+"""Less than this is lost in what the imports took."""
 
+Array = NDArray[np.float64]
 Found = dict[str, float]
 
 
@@ -47,21 +48,23 @@ def rows(sizes: tuple[Grid, ...], largest: Grid | None) -> list[Row]:
         found.append(far)
         remark = "largest size: one factorisation measured, times what a point costs over one at the size before"
     n = np.array([size["unknowns"] for size in found])
-    steps = [f"{before['unknowns']:.0f} to {after['unknowns']:.0f}" for before, after in pairwise(found)]
-    out = []
-    for name, says, key in (("time", "time per warm point", "point"), ("memory", "memory of its process", "megabytes")):
-        values = np.array([size[key] for size in found])
-        local = np.diff(np.log(values)) / np.diff(np.log(n))
-        details: dict[str, Value] = {f"{key} at {size:.0f}": float(value) for size, value in zip(n, values, strict=True)}
-        details |= {f"exponent {step}": float(value) for step, value in zip(steps, local, strict=True)}
-        slope = float(np.polyfit(np.log(n), np.log(values), 1)[0])
-        says = f"growth: exponent of the {says}, {n[0]:.0f} to {n[-1]:.0f} unknowns"
-        if name == "time":
-            out.append(at_most("growth_time", says, slope, 1.35, details=details, remark=remark))
-        else:
-            peak = f"peak {values[-1]:.0f} MB at {n[-1]:.0f} unknowns"
-            out.append(Row("growth_memory", says, slope, details=details, remark=f"{peak}; Python and imports not counted"))
-    return out
+    time_slope, time_details = fitted(n, np.array([size["point"] for size in found]), "seconds")
+    held = np.array([max(size["megabytes"], MEGABYTES) for size in found])
+    memory_slope, memory_details = fitted(n, held, "megabytes")
+    says = f"growth: exponent of the {{}}, {n[0]:.0f} to {n[-1]:.0f} unknowns"
+    peak = f"peak {held[-1]:.0f} MB at {n[-1]:.0f} unknowns, Python and imports not counted"
+    return [
+        at_most("growth_time", says.format("time per warm point"), time_slope, 1.35, details=time_details, remark=remark),
+        Row("growth_memory", says.format("memory"), memory_slope, details=memory_details, remark=peak),
+    ]
+
+
+def fitted(n: Array, values: Array, unit: str) -> tuple[float, dict[str, Value]]:
+    """Exponent of the growth of `values` with `n`, and what it is made of."""
+    local = np.diff(np.log(values)) / np.diff(np.log(n))
+    details: dict[str, Value] = {f"{unit} at {size:.0f}": float(value) for size, value in zip(n, values, strict=True)}
+    details |= {f"exponent to {size:.0f}": float(slope) for size, slope in zip(n[1:], local, strict=True)}
+    return float(np.polyfit(np.log(n), np.log(values), 1)[0]), details
 
 
 def alone(grid: Grid, kind: str) -> Found:
@@ -104,7 +107,7 @@ def factorisation(grid: Grid) -> float:
 
 def point(grid: Grid) -> float:
     """Median time of the warm points of a short curve [s]."""
-    curve = load_curve.iterate(grid.case(), FARTHEST * (0.5 + STEP * np.arange(4)))
+    curve = load_curve.iterate(grid.case(), 0.5 * FARTHEST + STEP * np.arange(4))
     next(curve)  # the cold one
     seconds = []
     for _ in range(3):

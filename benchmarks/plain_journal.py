@@ -117,7 +117,7 @@ def solution(exact: Exact, grid: Grid) -> tuple[float, float]:
 
 def by_yardstick(exact: Exact, grid: Grid) -> tuple[float, float]:
     """Load along and across the line of centres over `p_a L D`, by the yardstick."""
-    along, across, residual, _ = yardstick.solve(*grid, 2.0, exact.Lam, exact.eps)
-    if residual > yardstick.TOLERANCE:
-        raise RuntimeError(f"the yardstick stopped at a residual of {residual:g}")
-    return along, across
+    film = yardstick.solve(*grid, 2.0, exact.Lam, exact.eps)
+    if film.residual > yardstick.TOLERANCE:
+        raise RuntimeError(f"the yardstick stopped at a residual of {film.residual:g}")
+    return film.along, film.across

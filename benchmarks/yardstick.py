@@ -6,6 +6,8 @@ half the length by symmetry; Newton with the exact sparse Jacobian and `spsolve`
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
@@ -14,8 +16,18 @@ TOLERANCE = 1e-8
 """Largest residual over the flows of its cell."""
 
 
-def solve(around: int, along: int, length: float, Lam: float, eps: float) -> tuple[float, float, float, int]:
-    """Load along and across the line of centres over `p_a L D`, scaled residual, and Newton steps.
+class Film(NamedTuple):
+    """Load along and across the line of centres over `p_a L D`, largest `p / p_a`, scaled residual, Newton steps."""
+
+    along: float
+    across: float
+    peak: float
+    residual: float
+    steps: int
+
+
+def solve(around: int, along: int, length: float, Lam: float, eps: float) -> Film:
+    """Solve for the pressures from ambient ones.
 
     `around` by `along` cells over the circle and the whole length `L / R_j = length`; film `1 + eps cos(theta)`.
     """
@@ -57,4 +69,4 @@ def solve(around: int, along: int, length: float, Lam: float, eps: float) -> tup
     weight = 2.0 * width * dphi / (2.0 * length)  # both halves, over L D / R_j^2
     weight[0] *= 0.5
     push = (P.reshape(node.shape) - 1.0) @ weight
-    return float(-push @ np.cos(theta)), float(push @ np.sin(theta)), worst, step
+    return Film(float(-push @ np.cos(theta)), float(push @ np.sin(theta)), float(P.max()), worst, step)

@@ -13,13 +13,14 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from multiprocessing import Pool
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.console import Console
 from scipy.optimize import minimize
 from scipy.stats import qmc
@@ -28,8 +29,11 @@ from petalfoil import Case
 from petalfoil.analysis import balance, liftoff
 from petalfoil.analysis.session import one_thread
 from petalfoil.analysis.speeds import SpeedLine
+from petalfoil.case.package import MAX_ARC_ANGLE
 from petalfoil.equilibria.work import Work
 from petalfoil.errors import ConvergenceError, DefinitionError
+
+Array = NDArray[np.float64]
 
 HERE = Path(__file__).parent
 
@@ -48,14 +52,19 @@ RANGES = {  # of the unknown dimensions
     "turn": (0.0, 1.0),  # of the roots against the load [pitches]
     "tilt": (0.0, 1.2),  # of a rigid root, over the chordal one; a hinged root turns freely
 }
-FLOORS = (0.2e-6, 6e-6)  # roughness of ground journal and sprayed coating [m]
-FRICTIONS = (0.05, 0.5)  # solid lubricants to polymers
+FLOORS = (0.3e-6, 5e-6)  # roughness of ground journal and sprayed coating together [m]
+FRICTIONS = (0.05, 0.5)  # solid lubricants to bare metal
 
 SHARE = liftoff.SHARE
-SEARCH_CELLS, FINAL_CELLS = 32, 96  # along a pitch
-DRAWN, REFINED, KEPT = 40, 14, 8  # packages drawn and refined for each count and mount; computed again in the end
-HOPELESS = 12.0  # misfit of the moments alone, three of two standard deviations each
+SEARCH_CELLS, FINAL_CELLS = 48, 96  # along a pitch
+DRAWN, REFINED, KEPT = 32, 12, 8  # packages drawn for each pair; steps of each refinement; pairs refined and kept
+FIRST_FLOOR = 0.8e-6  # [m]
+HOPELESS_MOMENTS, HOPELESS_SPEEDS = (
+    12.0,
+    60.0,
+)  # misfits, levels aside, of two and more deviations each: no more is done
 TOO_FAST = 3.0  # times the measured speed; no floor in the range makes up for more
+OUTSIDE = 1e3  # misfit of a package out of range
 LEVEL = 0.01  # of the mean of the lift-off speeds, which the floor is to meet
 
 out, err = Console(markup=False, highlight=False), Console(stderr=True, markup=False, highlight=False)
@@ -169,8 +178,8 @@ def judge(package: Package, floor: float, cells: int, known: int = FITTED) -> Fi
         moments = tuple((friction * arms).tolist())
         first = Finding(package, floor, friction, moments)
         of_moments = misfit(moments, MOMENTS, SCATTER_MOMENT)
-        if of_moments > HOPELESS:
-            return replace(first, note="moments")
+        if of_moments > HOPELESS_MOMENTS:
+            return replace(first, note="moments grow with the load")
         floor, speeds = levelled(package, floor, cells, loads)
     except DefinitionError as refused:
         return Finding(package, floor, math.nan, note=str(refused))
@@ -178,9 +187,8 @@ def judge(package: Package, floor: float, cells: int, known: int = FITTED) -> Fi
         return Finding(package, floor, math.nan, note=f"not converged: {failure}")
     if not np.all(np.isfinite(speeds[:FITTED])):
         return replace(first, floor=floor, note="no lift-off near the measured speeds")
-    return replace(
-        first, floor=floor, speeds=tuple(speeds), misfit=of_moments + misfit(speeds, SPEEDS, SCATTER_SPEED)
-    )
+    whole = of_moments + misfit(speeds, SPEEDS, SCATTER_SPEED)
+    return replace(first, floor=floor, speeds=tuple(speeds), misfit=whole)
 
 
 def levelled(package: Package, floor: float, cells: int, loads: Sequence[float]) -> tuple[float, list[float]]:
@@ -194,6 +202,8 @@ def levelled(package: Package, floor: float, cells: int, loads: Sequence[float])
             if not math.isfinite(speeds[-1]):
                 return floor, speeds
         above = float(np.mean(np.log(np.array(speeds) / SPEEDS[:FITTED])))
+        if misfit(np.array(speeds) * math.exp(-above), SPEEDS, SCATTER_SPEED) > HOPELESS_SPEEDS:
+            break
         if math.isfinite(before[0]):
             slope = float(np.clip((above - before[1]) / (math.log(floor) - before[0] or 1.0), 0.3, 2.0))
         if abs(above) < LEVEL:
@@ -234,57 +244,73 @@ class Store:
 
 def drawn(count: int, mount: str) -> Iterator[Package]:
     """Packages spread evenly over the ranges."""
-    names = [name for name in RANGES if name != "tilt" or mount == "rigid"]
-    for point in qmc.LatinHypercube(len(names), seed=count).random(DRAWN):
-        values = {name: low + u * (high - low) for u, name in zip(point, names, strict=True) for low, high in [RANGES[name]]}
-        low, high = RANGES["room"]
-        values["room"] = low * (high / low) ** point[names.index("room")]
+    ranges = ranges_of(count, mount)
+    for point in qmc.LatinHypercube(len(ranges), seed=count).random(DRAWN):
+        values = {name: low + u * (high - low) for u, (name, (low, high)) in zip(point, ranges.items(), strict=True)}
+        low, high = ranges["room"]
+        values["room"] = low * (high / low) ** point[0]
         yield Package(count, mount, **{name: float(f"{value:.4g}") for name, value in values.items()})
 
 
-def search(combination: tuple[int, str], folder: Path) -> Finding:
-    """The best package of a count and a mount: drawn, then refined."""
-    store = Store(folder / f"search_{combination[0]}_{combination[1]}.jsonl", SEARCH_CELLS)
-    for package in drawn(*combination):
-        store.judge(package, 1e-6)
-    start = store.best
-    if not math.isfinite(start.misfit):
-        return start
-    names = ["overlap", "room"] + ["tilt"] * (combination[1] == "rigid")
+def ranges_of(count: int, mount: str) -> dict[str, tuple[float, float]]:
+    """`RANGES`, with no petal longer than a circular free shape may be, and without the tilt of a hinged root."""
+    ranges = {name: limits for name, limits in RANGES.items() if name != "tilt" or mount == "rigid"}
+    low, high = ranges["overlap"]
+    return {**ranges, "overlap": (low, min(high, 0.999 * MAX_ARC_ANGLE * count / (2.0 * math.pi)))}
 
-    def value(steps: np.ndarray) -> float:
-        moved = {
-            name: float(f"{getattr(start.package, name) * math.exp(step):.5g}")
-            for name, step in zip(names, steps, strict=True)
-        }
-        inside = all(RANGES[name][0] <= moved[name] <= RANGES[name][1] for name in names)
-        return min(store.judge(replace(start.package, **moved), start.floor).misfit, 1e3) if inside else 1e3
 
-    simplex = np.vstack([np.zeros(len(names)), np.diag([0.04, 0.15, 0.1][: len(names)])])
-    minimize(value, simplex[0], method="Nelder-Mead", options={"maxfev": REFINED, "initial_simplex": simplex})
+def draw(pair: tuple[int, str], folder: Path) -> Finding:
+    """The best of the packages drawn for a count and a mount."""
+    store = searched(*pair, folder)
+    for package in drawn(*pair):
+        store.judge(package, FIRST_FLOOR)
     return store.best
 
 
-def again(finding: Finding, folder: Path) -> Finding:
-    """A package on the fine grid, all four experiments."""
-    name = f"final_{finding.package.count}_{finding.package.mount}.jsonl"
-    return Store(folder / name, FINAL_CELLS, len(LOADS)).judge(finding.package, finding.floor)
+def searched(count: int, mount: str, folder: Path) -> Store:
+    """The store of the search for a count and a mount."""
+    return Store(folder / f"search_{count}_{mount}.jsonl", SEARCH_CELLS)
+
+
+def refine(start: Finding, folder: Path) -> Finding:
+    """The best package near one that is known, computed again on the fine grid with all four experiments."""
+    package, store = start.package, searched(start.package.count, start.package.mount, folder)
+    ranges, names = ranges_of(package.count, package.mount), ["overlap", "room"] + ["tilt"] * (package.mount == "rigid")
+
+    def value(steps: Array) -> float:
+        moved = {name: getattr(package, name) * math.exp(step) for name, step in zip(names, steps, strict=True)}
+        if any(not ranges[name][0] <= moved[name] <= ranges[name][1] for name in names):
+            return OUTSIDE
+        near = replace(package, **{name: float(f"{x:.5g}") for name, x in moved.items()})
+        return min(store.judge(near, start.floor).misfit, OUTSIDE)
+
+    simplex = np.vstack([np.zeros(len(names)), np.diag([0.04, 0.15, 0.1][: len(names)])])
+    minimize(value, simplex[0], method="Nelder-Mead", options={"maxfev": REFINED, "initial_simplex": simplex})
+    best, name = store.best, f"final_{package.count}_{package.mount}.jsonl"
+    return Store(folder / name, FINAL_CELLS, len(LOADS)).judge(best.package, best.floor)
 
 
 def main(folder: Path) -> None:
-    """Search, refine, compute again; tables to standard output."""
+    """Draw, refine, compute again; a table to standard output and to FOLDER."""
     folder.mkdir(parents=True, exist_ok=True)
-    combinations = [(count, mount) for count in COUNTS for mount in MOUNTS]
+    pairs = [(count, mount) for count in COUNTS for mount in MOUNTS]
     with Pool(2) as pool:
-        found = []
-        for finding in pool.imap_unordered(partial(search, folder=folder), combinations):
-            found.append(finding)
-            err.print(f"{len(found)} of {len(combinations)}: {finding.package.count} petals, {finding.package.mount}: misfit {finding.misfit:.3g}")
-        best = sorted((f for f in found if math.isfinite(f.misfit)), key=lambda f: f.misfit)[:KEPT]
-        final = sorted(pool.imap(partial(again, folder=folder), best), key=lambda f: f.misfit)
-    text = table(final)
+        found = told(pool.imap_unordered(partial(draw, folder=folder), pairs), len(pairs))
+        start = sorted((f for f in found if math.isfinite(f.misfit)), key=lambda f: f.misfit)[:KEPT]
+        final = told(pool.imap_unordered(partial(refine, folder=folder), start), len(start))
+    text = table(sorted(final, key=lambda f: f.misfit))
     (folder / "sets.md").write_text(text, encoding="utf-8")
     out.print(text, soft_wrap=True)
+
+
+def told(findings: Iterable[Finding], count: int) -> list[Finding]:
+    """Collect findings, each told as it comes."""
+    found = []
+    for finding in findings:
+        found.append(finding)
+        p = finding.package
+        err.print(f"{len(found)} of {count}: {p.count} petals, {p.mount}: misfit {finding.misfit:.3g}")
+    return found
 
 
 def table(findings: Sequence[Finding]) -> str:

@@ -8,11 +8,13 @@ from numpy.typing import NDArray
 from petalfoil.analysis.equilibrium import Named, about, positioned
 from petalfoil.analysis.figures import effort, forces, record_of
 from petalfoil.analysis.session import Clock, Progress, one_thread, telling_work
+from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
-from petalfoil.equilibria.balancing import Balance, balance_cold
+from petalfoil.equilibria.balancing import balance_cold
+from petalfoil.equilibria.loaded import Balance
 from petalfoil.equilibria.stability import leading_eigenvalue
 from petalfoil.equilibria.work import Work
-from petalfoil.errors import UsageError
+from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.problem.build import build_problem
 from petalfoil.results.record import Record
 
@@ -43,11 +45,33 @@ def run(
     case, wanted = positioned(case, speed, (0.0, 0.0)), loaded(case, load)
     clock, work = Clock(), telling_work(progress, "balance")
     with one_thread():
-        problem = build_problem(case)
-        found = balance_cold(problem, np.array(wanted) / problem.layout.scales.force, work)
-        rate = leading_eigenvalue(found.answer, work)
-    extra: Named = {**about(rate, case, (1, found.answer.way)), **effort(work), "wall_time": clock.seconds}
+        found, known = settled(case, wanted, work)
+    extra: Named = {**known, **effort(work), "wall_time": clock.seconds}
     return balance_record("balance", case, found, {**extra, **given_load(wanted)}, work)
+
+
+def settled(case: Case, load: tuple[float, float], work: Work) -> tuple[Balance, Named]:
+    """The balance to report and what is known of its stability: if unstable, the one that the climb from rest finds.
+
+    Raises
+    ------
+    ConvergenceError
+        No position was found.
+    """
+    problem = build_problem(case)
+    found = balance_cold(problem, np.array(load) / problem.layout.scales.force, work)
+    rate, way = leading_eigenvalue(found.answer, work), found.answer.way
+    if not rate.real > 0.0:
+        return found, about(rate, case, (1, way))
+    try:
+        risen = SpeedLine(case, load, work).climb(case.operation.speed)
+    except ConvergenceError as failure:
+        work.note("climb", outcome=str(failure))
+        return found, about(rate, case, (1, way))
+    other = leading_eigenvalue(risen.answer, work)
+    if other.real > 0.0:
+        return found, about(rate, case, (1, way))
+    return risen, about(other, case, (2, "followed from rest under the load; another balance is unstable"))
 
 
 def loaded(case: Case, load: tuple[float, float] | None) -> tuple[float, float]:

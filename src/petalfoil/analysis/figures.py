@@ -37,9 +37,10 @@ def record_of(analysis: str, case: Case, answer: Answer, extra: Named, work: Wor
     )
 
 
-def failed_record(analysis: str, case: Case, status: str, work: Work) -> Record:
-    """The record of a point without an answer."""
-    scalars = {**given(case), **effort(work), "converged": False, "status": status, "residual": float("nan")}
+def failed_record(analysis: str, case: Case, status: str, work: Work, extra: Named | None = None) -> Record:
+    """The record of a point without an answer; `extra` is what else was given."""
+    asked = {**given(case), **(extra or {})}
+    scalars = {**asked, **effort(work), "converged": False, "status": status, "residual": float("nan")}
     return Record(
         analysis=analysis, scalars=scalars, case_toml=case.to_toml(), title=case.title, history=list(work.history)
     )

@@ -1,7 +1,8 @@
 """Lift-off: the speed above which the journal no longer touches, for a given load (model, question 4).
 
-Upward from a speed at which it touches, and downward from one at which it floats: where equilibria are not unique the
-two need not be the same.
+The journal floats where contacts carry less than a share of what pushes on it (J3). Lift-off is that crossing met
+upward, from a speed at which it touches; touch-down is the crossing met downward, from one at which it floats. Where
+equilibria are not unique the two need not be the same.
 """
 
 from __future__ import annotations
@@ -12,10 +13,10 @@ from dataclasses import dataclass
 
 from petalfoil.analysis.equilibrium import Named
 from petalfoil.analysis.figures import effort, given
-from petalfoil.analysis.session import Clock, Progress, one_thread, telling_work
+from petalfoil.analysis.session import Clock, Progress, one_thread, part, telling_work
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
-from petalfoil.equilibria.balancing import Balance
+from petalfoil.equilibria.loaded import Balance
 from petalfoil.equilibria.work import Work
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.record import Record
@@ -29,11 +30,14 @@ PRECISION = 1e-3
 FACTOR = 1.25
 """Factor between speeds while a bracket is looked for."""
 
-SLOWEST, FASTEST = 1.0, 3e4
-"""Speeds between which lift-off is looked for [rad/s]."""
+SLOWEST = 1.0
+"""Speed below which no touch-down is looked for [rad/s]."""
+
+FASTEST_SURFACE = 500.0
+"""Surface speed of the journal above which no lift-off is looked for [m/s]: that of a shaft near bursting."""
 
 SENSITIVITY = 0.1
-"""Relative changes of film floor, and factor-of-two changes of the share, whose effect is reported."""
+"""Relative change of the film floor whose effect is reported; the share is halved."""
 
 
 def iterate(
@@ -55,27 +59,38 @@ def iterate(
         raise UsageError("lift-off needs a case with [petals]")
     if not 0.0 < share < 1.0:
         raise UsageError("the contact share must lie between 0 and 1")
-    if any(not load > 0.0 for load in loads):
+    if not loads or any(not load > 0.0 for load in loads):
         raise UsageError("loads must be positive; they act along -y")
     return _records(case, list(loads), share, progress)
 
 
 def _records(case: Case, loads: list[float], share: float, progress: Progress | None) -> Iterator[Record]:
     for number, load in enumerate(loads):
-        clock, work = Clock(), telling_work(None, "liftoff")
-        if progress is not None:
-            progress(number / len(loads), f"liftoff: {load:g} N")
+        clock, work = Clock(), telling_work(part(progress, number, len(loads)), f"liftoff {load:g} N")
         try:
             with one_thread():
                 up, down = crossings(case, load, share, work)
                 effects = sensitivity(case, load, (share, up), work)
             own: Named = {"liftoff_speed": up, "touchdown_speed": down, **effects, "converged": True}
-            status = "converged" if math.isfinite(up) else f"does not lift off below {FASTEST:g} rad/s"
+            status = in_words(case, up)
         except ConvergenceError as failure:
             own, status = {"converged": False}, f"not converged: {failure}"
         scalars: Named = {**given(case), "load_x": 0.0, "load_y": -load, "share": share, **own}
-        scalars.update({**effort(work), "status": status, "residual": math.nan, "wall_time": clock.seconds})
+        scalars.update({**effort(work), "status": status, "wall_time": clock.seconds})
+        del scalars["speed"], scalars["eccentricity_x"], scalars["eccentricity_y"]
         yield Record(analysis="liftoff", scalars=scalars, case_toml=case.to_toml(), title=case.title)
+
+
+def in_words(case: Case, up: float) -> str:
+    """How the search ended."""
+    if math.isinf(up):
+        return f"does not lift off below {fastest(case) * 30.0 / math.pi:.0f} rpm"
+    return "converged" if up > 0.0 else "floats at any speed"
+
+
+def fastest(case: Case) -> float:
+    """Speed above which no lift-off is looked for [rad/s]."""
+    return FASTEST_SURFACE / case.bearing.journal_radius
 
 
 @dataclass(frozen=True)
@@ -95,7 +110,7 @@ def crossings(case: Case, load: float, share: float, work: Work) -> tuple[float,
     ConvergenceError
         A balance on the way was not found.
     """
-    start = min(max(case.operation.speed, 10.0 * SLOWEST), FASTEST)
+    start = min(max(case.operation.speed, 10.0 * SLOWEST), fastest(case))
     line = SpeedLine(case, (0.0, -load), work)
     touching = line.share(start) > share
     found = crossing(line, start, share, upward=touching)
@@ -122,7 +137,7 @@ def crossing(line: SpeedLine, start: float, share: float, *, upward: bool) -> fl
 def search(line: SpeedLine, start: float, share: float, *, upward: bool) -> Bracket | None:
     """Walk from `start` until the journal floats (upward) or touches (downward); None past the last speed."""
     speed, factor = start, FACTOR if upward else 1.0 / FACTOR
-    while SLOWEST <= speed * factor <= FASTEST * FACTOR:
+    while SLOWEST <= speed * factor <= fastest(line.case) * FACTOR:
         before = line.known
         ahead = speed * factor
         if (line.share(ahead) <= share) == upward and before is not None:
@@ -135,7 +150,7 @@ def bisect(line: SpeedLine, bracket: Bracket, share: float) -> float:
     """The speed at which the share is crossed, each look from the side that it came from."""
     near, far, known = bracket.near, bracket.far, bracket.known
     upward = far > near
-    while abs(far - near) > PRECISION * near:
+    while abs(far - near) > PRECISION * min(near, far):
         middle = math.sqrt(near * far)
         line.known = known
         crossed = (line.share(middle) <= share) == upward
@@ -148,13 +163,32 @@ def bisect(line: SpeedLine, bracket: Bracket, share: float) -> float:
 
 
 def sensitivity(case: Case, load: float, at: tuple[float, float], work: Work) -> Named:
-    """Change of the lift-off speed with film floor and share: logarithmic derivatives [1]; nan without lift-off."""
+    """Change of the lift-off speed with film floor and share: logarithmic derivatives [1]; nan where not found."""
     share, up = at
-    if not math.isfinite(up) or up == 0.0:
-        return {"liftoff_by_floor": math.nan, "liftoff_by_share": math.nan}
-    near = case.replace(**{"operation.speed": up})
     h_min = case.surface.film_floor
-    thick = near.replace(**{"surface.film_floor": h_min * (1.0 + SENSITIVITY)})
-    by_floor = math.log(crossings(thick, load, share, work)[0] / up) / math.log(1.0 + SENSITIVITY)
-    by_share = math.log(crossings(near, load, 2.0 * share, work)[0] / up) / math.log(2.0)
-    return {"liftoff_by_floor": by_floor, "liftoff_by_share": by_share}
+    thick = case.replace(**{"surface.film_floor": h_min * (1.0 + SENSITIVITY)})
+    return {
+        "liftoff_by_floor": slope(up, rising(thick, load, share, up, work), 1.0 + SENSITIVITY),
+        "liftoff_by_share": slope(up, rising(case, load, 0.5 * share, up, work), 0.5),
+    }
+
+
+def slope(before: float, after: float | None, factor: float) -> float:
+    """Logarithmic derivative of a speed by what was changed by `factor` [1]; nan where it was not found."""
+    if after is None or not 0.0 < before < math.inf:
+        return math.nan
+    return math.log(after / before) / math.log(factor)
+
+
+def rising(case: Case, load: float, share: float, near: float, work: Work) -> float | None:
+    """Lift-off speed of a bearing like the one that lifts off at `near` [rad/s]; None if it is not found."""
+    if not 0.0 < near < math.inf:
+        return None
+    line, start = SpeedLine(case, (0.0, -load), work), near / FACTOR
+    try:
+        while line.share(start) <= share and start > SLOWEST:
+            start /= FACTOR
+        return crossing(line, start, share, upward=True)
+    except ConvergenceError as failure:
+        work.note("sensitivity", outcome=str(failure))
+        return None

@@ -13,7 +13,7 @@ import numpy as np
 
 from petalfoil.analysis.equilibrium import Named, about, chosen, positioned
 from petalfoil.analysis.figures import effort, failed_record, record_of
-from petalfoil.analysis.session import Clock, Progress, one_thread, telling_work
+from petalfoil.analysis.session import Clock, Progress, one_thread, part, telling_work
 from petalfoil.case import Case
 from petalfoil.equilibria.answer import Answer
 from petalfoil.equilibria.stability import leading_eigenvalue
@@ -54,7 +54,7 @@ def _records(cases: list[Case], progress: Progress | None) -> Iterator[Record]:
     known: Answer | None = None
     base = build_problem(cases[0])
     for number, case in enumerate(cases):
-        clock, work = Clock(), telling_work(_part(progress, number, len(cases)), "curve")
+        clock, work = Clock(), telling_work(part(progress, number, len(cases)), "curve")
         problem = base.at(displacement=np.array(case.operation.eccentricity) / base.layout.scales.length)
         try:
             with one_thread():
@@ -73,14 +73,3 @@ def _point(case: Case, problem: CoupledProblem, known: Answer | None, work: Work
     answer, jump = advance(known, problem, work)
     rate = leading_eigenvalue(answer, work)
     return answer, {**about(rate, case, (2 if jump else 1, answer.way)), "jump": jump}
-
-
-def _part(progress: Progress | None, number: int, count: int) -> Progress | None:
-    """Progress of one point as a part of the whole."""
-    if progress is None:
-        return None
-
-    def tell(share: float, text: str) -> None:
-        progress((number + share) / count, text)
-
-    return tell

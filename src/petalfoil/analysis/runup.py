@@ -9,7 +9,7 @@ import numpy as np
 from petalfoil.analysis.balance import balance_record, given_load
 from petalfoil.analysis.equilibrium import Named
 from petalfoil.analysis.figures import effort, failed_record
-from petalfoil.analysis.session import Clock, Progress, one_thread, telling_work
+from petalfoil.analysis.session import Clock, Progress, one_thread, part, telling_work
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
 from petalfoil.errors import ConvergenceError, UsageError
@@ -35,8 +35,10 @@ def iterate(
     Raises
     ------
     UsageError
-        The top speed or the number of points is out of range.
+        A plain bearing, or the top speed or the number of points is out of range.
     """
+    if case.petals is None:
+        raise UsageError("a run-up needs a case with [petals]: a plain bearing at rest touches in a single line")
     if not top > 0.0:
         raise UsageError("the top speed of a run-up must be above zero")
     if points < 3:
@@ -51,9 +53,7 @@ def _records(
 ) -> Iterator[tuple[str, Record]]:
     line: SpeedLine | None = None
     for number, (leg, speed) in enumerate(way):
-        clock, work = Clock(), telling_work(None, "runup")
-        if progress is not None:
-            progress(number / len(way), f"runup: {leg}")
+        clock, work = Clock(), telling_work(part(progress, number, len(way)), f"runup {leg}")
         here = case.replace(**{"operation.speed": speed, "operation.eccentricity": (0.0, 0.0)})
         line = line or SpeedLine(here, load, work)
         line.work = work
@@ -62,7 +62,9 @@ def _records(
                 found = line.at(speed)
         except ConvergenceError as failure:
             line.known = None
-            yield leg, failed_record("runup", here, f"not converged: {failure}", work)
+            lost: Named = {**given_load(load), "leg": leg}
+            yield leg, failed_record("runup", here, f"not converged: {failure}", work, lost)
             continue
-        extra: Named = {**given_load(load), **effort(work), "branch": found.answer.way, "wall_time": clock.seconds}
+        extra: Named = {**given_load(load), "leg": leg, **effort(work), "branch": found.answer.way}
+        extra["wall_time"] = clock.seconds
         yield leg, balance_record("runup", here, found, extra, work)

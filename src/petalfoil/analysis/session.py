@@ -37,6 +37,17 @@ class Clock:
         return time.perf_counter() - self.start
 
 
+def part(progress: Progress | None, number: int, count: int) -> Progress | None:
+    """Progress of point `number` of `count` as a part of the whole."""
+    if progress is None:
+        return None
+
+    def tell(share: float, text: str) -> None:
+        progress((number + share) / count, text)
+
+    return tell
+
+
 def telling_work(progress: Progress | None, text: str) -> Work:
     """Work that tells `progress` of its steps; the share approaches 1 as steps go on."""
     work = Work()

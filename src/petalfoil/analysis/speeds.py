@@ -9,12 +9,16 @@ from numpy.typing import NDArray
 
 from petalfoil.analysis.figures import forces
 from petalfoil.case import Case
-from petalfoil.equilibria.balancing import Balance, balance_cold, rebalance
+from petalfoil.equilibria.balancing import balance_cold, rebalance
+from petalfoil.equilibria.loaded import Balance
 from petalfoil.equilibria.work import Work
 from petalfoil.problem.build import build_problem
 from petalfoil.problem.coupled import CoupledProblem
 
 Array = NDArray[np.float64]
+
+CLIMB = (0.0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0)
+"""Parts of a speed through which it is climbed to from rest."""
 
 
 @dataclass
@@ -56,6 +60,19 @@ class SpeedLine:
         else:
             self.known = rebalance(self.known, problem, load, self.work)
         return self.known
+
+    def climb(self, speed: float) -> Balance:
+        """The balance at `speed` on the branch that the loaded package takes from rest.
+
+        Raises
+        ------
+        ConvergenceError
+            It was lost on the way.
+        """
+        self.known = None
+        for part in CLIMB:
+            found = self.at(part * speed)
+        return found
 
     def share(self, speed: float) -> float:
         """Share of the contacts at `speed`."""

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from scipy.optimize import brentq
 
 from petalfoil.analysis.balance import given_load, loaded
-from petalfoil.analysis.coefficients import operating_point
-from petalfoil.analysis.equilibrium import Named, positioned
-from petalfoil.analysis.figures import effort, forces, given
-from petalfoil.analysis.session import Clock, Progress, one_thread, telling_work
+from petalfoil.analysis.coefficients import Load, at_position, elastic, operating_point
+from petalfoil.analysis.equilibrium import Named, about, positioned
+from petalfoil.analysis.figures import effort, failed_record, given
+from petalfoil.analysis.session import Clock, Progress, one_thread, part, telling_work
+from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.analysis.whirl import Whirl, neutral_whirl
 from petalfoil.case import Case
 from petalfoil.equilibria.answer import Answer
+from petalfoil.equilibria.stability import leading_eigenvalue
 from petalfoil.equilibria.work import Work
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.record import Record
@@ -28,11 +31,14 @@ RANGE, FACTOR = 16.0, 1.3
 PRECISION = 1e-3
 """Relative precision of the threshold speed."""
 
+Threshold = tuple[float, str]
+"""Threshold speed [rad/s], nan where there is none, and how the search ended."""
+
 
 def run(
     case: Case,
     *,
-    load: tuple[float, float] | None = None,
+    load: Load | None = None,
     mass: float | None = None,
     speed: float | None = None,
     progress: Progress | None = None,
@@ -46,23 +52,65 @@ def run(
     UsageError
         A shaft at rest, or a mass that is not positive.
     ConvergenceError
-        The operating point was not found.
+        The operating point was not found, or it is pressed solid.
     """
     clock, work = Clock(), telling_work(progress, "stability")
-    case = positioned(case, speed, None)
-    if not case.operation.speed > 0.0:
-        raise UsageError("stability needs a turning shaft: give a speed above zero")
+    case = turning(positioned(case, speed, None))
     if mass is not None and not mass > 0.0:
         raise UsageError("the mass of the rotor must be positive")
     with one_thread():
-        answer, about = operating_point(case, load, work)
+        answer, known = operating_point(case, load, work)
+        elastic(answer, work)
         whirl = neutral_whirl(answer, case.operation.speed, work)
         rotor = rotor_mass(case, load, mass)
-        threshold = math.nan if math.isnan(rotor) else threshold_speed(case, load, (rotor, whirl), work)
-    return record(case, answer, whirl, {**about, "rotor_mass": rotor, "threshold_speed": threshold}, (work, clock))
+        threshold, ended = threshold_speed(case, load, (rotor, whirl), work)
+    own: Named = {**known, "rotor_mass": rotor, "threshold_speed": threshold}
+    return record(case, answer, whirl, own, (work, clock, ended))
 
 
-def rotor_mass(case: Case, load: tuple[float, float] | None, mass: float | None) -> float:
+def iterate(
+    case: Case, speeds: Sequence[float], loads: Sequence[Load], *, progress: Progress | None = None
+) -> Iterator[Record]:
+    """Yield the smallest mass that whirls for each load [N] at each speed [rad/s], load by load, speeds in order.
+
+    Raises
+    ------
+    UsageError
+        A speed is not positive, or a load is zero.
+    """
+    cases = [turning(positioned(case, speed, (0.0, 0.0))) for speed in speeds]
+    return _records(cases, [loaded(case, load) for load in loads], progress)
+
+
+def _records(cases: list[Case], loads: list[Load], progress: Progress | None) -> Iterator[Record]:
+    for row, load in enumerate(loads):
+        line: SpeedLine | None = None
+        for column, case in enumerate(cases):
+            here = part(progress, row * len(cases) + column, len(loads) * len(cases))
+            clock, work = Clock(), telling_work(here, "stability")
+            line = line or SpeedLine(case, load, work)
+            line.work = work
+            try:
+                with one_thread():
+                    answer = line.at(case.operation.speed).answer
+                    elastic(answer, work)
+                    known = about(leading_eigenvalue(answer, work), case, (1, answer.way))
+                    whirl = neutral_whirl(answer, case.operation.speed, work)
+            except ConvergenceError as failure:
+                line.known = None
+                yield failed_record("stability", case, f"not converged: {failure}", work, given_load(load))
+                continue
+            yield record(case, answer, whirl, {**known, **given_load(load)}, (work, clock, ""))
+
+
+def turning(case: Case) -> Case:
+    """The case, if its shaft turns."""
+    if not case.operation.speed > 0.0:
+        raise UsageError("stability needs a turning shaft: give a speed above zero")
+    return case
+
+
+def rotor_mass(case: Case, load: Load | None, mass: float | None) -> float:
     """The mass on this bearing [kg]; nan where nothing tells it."""
     if mass is not None:
         return mass
@@ -71,10 +119,8 @@ def rotor_mass(case: Case, load: tuple[float, float] | None, mass: float | None)
     return float(np.hypot(*loaded(case, load))) / GRAVITY
 
 
-def margin(case: Case, load: tuple[float, float] | None, mass: float, work: Work) -> float:
+def margin(whirl: Whirl, mass: float) -> float:
     """Logarithm of the smallest whirling mass over `mass`: positive where the rotor is stable."""
-    answer, _ = operating_point(case, load, work)
-    whirl = neutral_whirl(answer, case.operation.speed, work)
     return math.log(whirl.mass / mass) if math.isfinite(whirl.mass) else NEVER
 
 
@@ -82,51 +128,69 @@ NEVER = 50.0
 """Margin of a bearing on which no mass whirls."""
 
 
-def threshold_speed(case: Case, load: tuple[float, float] | None, start: tuple[float, Whirl], work: Work) -> float:
-    """Speed at which the mass begins to whirl [rad/s]; nan where none within the range does.
+def threshold_speed(case: Case, load: Load | None, start: tuple[float, Whirl], work: Work) -> Threshold:
+    """Speed at which the mass begins to whirl, within the range.
 
     Upward from a stable bearing, downward from an unstable one. A speed without an equilibrium ends the search.
     """
     mass, whirl = start
-    omega = case.operation.speed
-    here = math.log(whirl.mass / mass) if math.isfinite(whirl.mass) else NEVER
+    if math.isnan(mass):
+        return math.nan, "no threshold speed: give a mass or a load"
+    margin_at = margins(case, load, mass, work)
+    known, here = case.operation.speed, margin(whirl, mass)
     factor = FACTOR if here > 0.0 else 1.0 / FACTOR
-
-    def at(speed: float) -> float:
-        return margin(case.replace(**{"operation.speed": speed}), load, mass, work)
-
-    known = omega
-    while 1.0 / RANGE < known * factor / omega < RANGE:
-        ahead = known * factor
-        try:
-            there = at(ahead)
-        except ConvergenceError as failure:
-            work.note("threshold", outcome=str(failure))
-            return math.nan
-        if (there > 0.0) != (here > 0.0):
-            return float(brentq(at, min(known, ahead), max(known, ahead), rtol=PRECISION))
-        known, here = ahead, there
-    return math.nan
+    first, last = sorted((known, known * RANGE if here > 0.0 else known / RANGE))
+    try:
+        while first <= known * factor <= last:
+            ahead = known * factor
+            there = margin_at(ahead)
+            if (there > 0.0) != (here > 0.0):
+                return float(brentq(margin_at, min(known, ahead), max(known, ahead), rtol=PRECISION)), ""
+            known, here = ahead, there
+    except ConvergenceError as failure:
+        work.note("threshold", outcome=str(failure))
+        return math.nan, f"no threshold speed: no operating point beyond {in_rpm(known)}"
+    if here > 0.0:
+        return math.nan, f"no threshold speed: the rotor is stable up to {in_rpm(known)}"
+    return math.nan, f"no threshold speed: the rotor whirls down to {in_rpm(known)}"
 
 
-def record(case: Case, answer: Answer, whirl: Whirl, extra: Named, run_of: tuple[Work, Clock]) -> Record:
-    """The record of a stability analysis."""
-    work, clock = run_of
-    e = answer.problem.displacement * answer.problem.layout.scales.length
+def margins(case: Case, load: Load | None, mass: float, work: Work) -> Callable[[float], float]:
+    """The margin over speed [rad/s], under the load or at the case's position."""
+    if load is None and case.operation.load is None:
+
+        def in_place(speed: float) -> float:
+            answer, _ = operating_point(positioned(case, speed, None), None, work)
+            return margin(neutral_whirl(answer, speed, work), mass)
+
+        return in_place
+    line = SpeedLine(case, loaded(case, load), work)
+
+    def under_load(speed: float) -> float:
+        answer = line.at(speed).answer
+        elastic(answer, work)
+        return margin(neutral_whirl(answer, speed, work), mass)
+
+    return under_load
+
+
+def in_rpm(speed: float) -> str:
+    """A speed as people read it."""
+    return f"{speed * 30.0 / math.pi:.0f} rpm"
+
+
+def record(case: Case, answer: Answer, whirl: Whirl, extra: Named, ran: tuple[Work, Clock, str]) -> Record:
+    """The record of a stability analysis; what it has no number for is told by its status."""
+    work, clock, ended = ran
+    remarks = ["converged", "" if math.isfinite(whirl.mass) else "no mass whirls", ended]
     own: Named = {
+        **at_position(case, answer),
         "critical_mass": whirl.mass,
         "whirl_ratio": whirl.ratio,
-        "eccentricity_x": float(e[0]),
-        "eccentricity_y": float(e[1]),
-        "contact_share": forces(case, answer)["contact_share"],
-        "residual": answer.residual,
-        "converged": True,
-        "status": "converged",
+        "status": "; ".join(filter(None, remarks)),
         "wall_time": clock.seconds,
     }
     scalars: Named = {**given(case), **extra, **effort(work), **own}
-    if case.operation.load is not None and "load_x" not in scalars:
-        scalars.update(given_load(case.operation.load))
     return Record(
         analysis="stability", scalars=scalars, case_toml=case.to_toml(), title=case.title, history=list(work.history)
     )

@@ -32,6 +32,9 @@ IDEAL = 0.02
 FAILURES = (ValueError, RuntimeError)
 """What CoolProp raises, by version, when it finds no answer."""
 
+LADDER = 8
+"""Pressures, each half of the one before, at which a gas is looked at: a hundredth of it is as good as none."""
+
 BISECTIONS = 40
 """Halvings of a range that is told to a user: far below its four digits."""
 
@@ -165,9 +168,15 @@ def _saturated(state: Any, inputs: int, first: float, second: float) -> Any:
 
 
 def _departure(state: Any, T: float, p: float) -> float:
-    """`|Z - 1|`, what the ideal-gas law is off by [1]."""
-    state.update(_library().PT_INPUTS, p, T)
-    return abs(float(state.compressibility_factor()) - 1.0)
+    """Largest `|Z - 1|` up to `p`, what the ideal-gas law is off by [1].
+
+    Not that at `p` alone: on its way from a gas to a liquid, `Z` comes through 1 again.
+    """
+    factors = []
+    for halvings in range(LADDER):
+        state.update(_library().PT_INPUTS, 0.5**halvings * p, T)
+        factors.append(float(state.compressibility_factor()))
+    return max(abs(Z - 1.0) for Z in factors)
 
 
 def _allowed(state: Any, T: float, p: float) -> str:

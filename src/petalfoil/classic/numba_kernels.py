@@ -164,11 +164,14 @@ def elastic_force(W: Array, shell: Bands, force: Array) -> None:
 
 @compiled
 def project(W: Array, columns: Columns) -> None:
-    """The nearest deflections that keep the restrictions (18)-(20); two and three layers written out."""
+    """The nearest deflections that keep the restrictions (18)-(20); up to three layers written out."""
     node, shift = columns.node, columns.shift
     for c in range(len(columns.layers)):
         layers, low, high = columns.layers[c], columns.low[c], columns.high[c]
-        if layers == 2:
+        if layers == 1:
+            i = node[0, c]
+            W[i] = clip(W[i], low, high)
+        elif layers == 2:
             i, j = node[0, c], node[1, c]
             z0, z1 = W[i], W[j] + shift[1, c]
             mean = 0.5 * (z0 + z1)

@@ -31,7 +31,7 @@ class ClassicOptions:
     then."""
     inner_share: float = 0.01
     """Film and package are settled to this share of the last outer change: closer would be wasted."""
-    loosest: float = 1e-3
+    loosest: float = 1e-2
     """At least to this."""
 
     max_outer: int = 5000

@@ -8,5 +8,9 @@
 `warm.py`         from a known equilibrium to a neighbour: predictor and contact set
 `ascent.py`       the branch from rest up to speed
 `stability.py`    does an equilibrium return when it is disturbed?
+`response.py`     what a small motion of the journal does to it
+`loaded.py`       an equilibrium under a load, and the force left over
+`balancing.py`    the position under a load, from nothing and from a neighbour
+`solid.py`        a package that a load has pressed solid
 ================  ===========================================================================
 """

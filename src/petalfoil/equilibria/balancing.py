@@ -6,19 +6,21 @@ contact set with the position bordered: one factorisation a step serves the stat
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibria.answer import Answer, State, from_closed, total_residual
+from petalfoil.equilibria.answer import from_closed
 from petalfoil.equilibria.cold import GOALS, content, nothing_found
+from petalfoil.equilibria.loaded import Balance, force_residual, journal_force, size_of
 from petalfoil.equilibria.package import assembled
 from petalfoil.equilibria.response import Response
+from petalfoil.equilibria.solid import pressed_solid
 from petalfoil.equilibria.warm import RESTART_BARRIER, keep_open, predict
 from petalfoil.equilibria.work import Work
 from petalfoil.problem.balance import BalanceProblem, FilmForce
-from petalfoil.problem.coupled import RESIDUAL_TOLERANCE, CoupledProblem
+from petalfoil.problem.coupled import CoupledProblem
 from petalfoil.solvers.active_set import ActiveOptions, Closed, Outcome, evaluate, revise, searched
 from petalfoil.solvers.active_set import State as SetState
 from petalfoil.solvers.cone import ConePoint
@@ -33,28 +35,6 @@ BARRIERS = (3.0, 30.0, 0.3)
 
 FORCE_TOLERANCE = 1e-9
 """Largest force residual of a balance, over the load."""
-
-
-@dataclass(frozen=True)
-class Balance:
-    """An equilibrium under a load.
-
-    Attributes
-    ----------
-    answer : Answer
-        The state, at the journal's position.
-    force_residual : float
-        Force left over, over the load [1].
-    """
-
-    answer: Answer
-    force_residual: float
-
-
-def journal_force(problem: CoupledProblem, P: Array, lam: Array) -> Array:
-    """Force of film and contacts on the journal over the unit of force, (2,) [1]."""
-    force: Array = FilmForce.of(problem).at(P) + problem.layout.wall.contacts.by_e.T @ lam
-    return force
 
 
 def balance_cold(problem: CoupledProblem, load: Array, work: Work) -> Balance:
@@ -120,7 +100,7 @@ def through_interior(problem: CoupledProblem, start: ConePoint, load: Array, wor
         balance = newton(problem.at(displacement=z[-2:]), (z[:-2], closed), load, work)
         if balance is not None:
             return balance
-    return squeezed(whole, point, work)
+    return pressed_solid(whole, point, work)
 
 
 def rebalance(known: Balance, problem: CoupledProblem, load: Array, work: Work) -> Balance:
@@ -155,38 +135,6 @@ WARM = ActiveOptions(max_steps=8)
 """A contact set that leads on from a neighbour does so in a few steps."""
 
 
-def squeezed(whole: BalanceProblem, point: ConePoint, work: Work) -> Balance | None:
-    """The interior point's own answer: a package pressed solid, whose reactions no contact set determines.
-
-    It is followed until gap or reaction of every pair has vanished.
-    """
-    for goal in SOLID_GOALS:
-        options = InteriorOptions(least_barrier=0.1 * goal)
-        point, found = interior_point(whole, point, work.film_solver, options, work.watch("balance", content(goal)))
-        problem = whole.at(point.x)
-        state = State(point.x[:-2], np.zeros(problem.layout.n_wall), point.lam)
-        residual = total_residual(problem, state)
-        if not found:
-            return None
-        if residual <= RESIDUAL_TOLERANCE:
-            answer = Answer(problem, state, residual, SOLID)
-            return Balance(answer, force_residual(answer, whole.load))
-    return None
-
-
-SOLID_GOALS = (1e-12, 1e-14, 1e-16)
-"""Barriers at which a package pressed solid is looked at: pairs off the path need two decades more than its mean."""
-
-SOLID = "interior point; petals are pressed solid between journal and bushing"
-"""How such an answer was reached."""
-
-
-def force_residual(answer: Answer, load: Array) -> float:
-    """Force left over, over the load [1]."""
-    force = journal_force(answer.problem, answer.x[answer.problem.positive], answer.lam)
-    return float(np.hypot(*(force + load)) / max(float(np.hypot(*load)), 1e-3))
-
-
 def newton(
     problem: CoupledProblem, start: tuple[Array, Mask], load: Array, work: Work, options: ActiveOptions | None = None
 ) -> Balance | None:
@@ -203,7 +151,7 @@ def newton(
         unchanged = bool(np.array_equal(wanted, state.closed))
         left = np.hypot(*(journal_force(problem, state.x[problem.positive], state.lam) + load))
         work.note("contacts", residual=state.residual, force=float(left), touching=int(state.closed.sum()))
-        if step and unchanged and state.residual <= numbers.tolerance and left <= FORCE_TOLERANCE * np.hypot(*load):
+        if step and unchanged and state.residual <= numbers.tolerance and left <= FORCE_TOLERANCE * size_of(load):
             return finished(problem, state, load, work)
         doubt, swaps = doubt | (wanted != state.closed), swaps + (not unchanged)
         if not unchanged:
@@ -284,5 +232,5 @@ def made_up(response: Response, left: Array) -> tuple[Array, Array]:
     film = FilmForce.of(response.problem)
     units = [response.unit(k) for k in (0, 1)]
     gradient = np.column_stack([film.by_P @ dx[kept] + by_e.T @ dlam for dx, dlam in units])
-    de: Array = np.linalg.solve(gradient, -left)
+    de = np.asarray(np.linalg.solve(gradient, -left), dtype=np.float64)
     return units[0][0] * de[0] + units[1][0] * de[1], de

@@ -7,12 +7,14 @@ In the order data flows:
 - ``estimate`` what a sequence of grids tells about a figure: limit, order, error bar
 - ``summary``  a record as the object of ``--json`` and as the rows of the printed table
 - ``dataset``  records to ``xarray.Dataset``: one point, or a curve of points
+- ``chart``    records over load and speed to ``xarray.Dataset``
+- ``export``   coefficients for other programs: CSV, ROSS
 - ``study``    the records of a grid study and its estimates to ``xarray.Dataset``, and back
 - ``atomic``   a file is replaced whole or left alone
 - ``store``    datasets to NetCDF and back
 
-Conventions: SI units inside; a figure of a state that did not converge is NaN; ``dataset``, ``study`` and ``store``
-load xarray and are therefore imported by whoever needs them, never from here.
+Conventions: SI units inside; a figure of a state that did not converge is NaN; ``dataset``, ``chart``, ``study`` and
+``store`` load xarray and are therefore imported by whoever needs them, never from here.
 """
 
 from petalfoil.results.record import Record, Scalar

@@ -95,6 +95,7 @@ COORDINATES: dict[str, Variable] = {
     "column": Variable(
         ("column",), "1", "direction of the displacement: 0 along x, 1 along y", "j", Kind.INT, Role.GEOMETRY
     ),
+    "load": Variable(("load",), "N", "size of the load on the journal", "|load|", role=Role.GEOMETRY),
     "z": Variable(("z",), "m", "distance along the bearing axis", "z", role=Role.GEOMETRY),
 }
 
@@ -122,6 +123,7 @@ SCALARS: dict[str, Variable] = {
     "eccentricity_y": _given("m", "displacement of the journal's centre along y", "e_y"),
     "load_x": _given("N", "load on the journal along x", "load_x"),
     "load_y": _given("N", "load on the journal along y", "load_y"),
+    "leg": Variable((), "", "up from rest or down to it", "leg", Kind.STR, Role.GIVEN),
     "share": _given("1", "contact share below which the journal floats", "s_f"),
     "rotor_mass": _given("kg", "mass of a rigid rotor on this bearing", "m"),
     "force_x": _answer("N", "force of film and contact on the journal along x", "F_x"),

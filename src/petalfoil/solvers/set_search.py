@@ -40,7 +40,7 @@ def near(problem: ConeProblem, mask: Mask, matrix: sp.csc_array) -> Mask:
 
 def most_doubts(problem: ConeProblem) -> int:
     """Gaps that may be in doubt in a search, so that it costs no more than a few factorisations."""
-    return max(LEAST_MOST, SOLVES // max(1, problem.G.shape[1]))
+    return max(LEAST_MOST, SOLVES // max(1, int(problem.G.shape[1])))
 
 
 def search(

@@ -1,0 +1,108 @@
+"""Ratios of petalfoil against other methods, and against itself at other sizes; one run, one table.
+
+    python benchmarks/run.py [--quick] [--json FILE] [--only NAME ...] [--classic-seconds S]
+
+Times are processor times of calls made in turn, the least of several: only their ratios in one run mean anything.
+What the rows mean is in docs/benchmarks.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import growth
+import numpy as np
+import others
+import plain_journal
+import race
+import scipy
+import spatial_point
+from measure import Row
+
+import petalfoil
+
+GROUPS = ("race", "point", "growth", "journal", "others")
+
+
+def groups(quick: bool, classic_seconds: float) -> dict[str, Callable[[], list[Row]]]:
+    """What each group measures; a quick run has the same rows, on grids too small to be asked anything."""
+    if quick:
+        return {
+            "race": lambda: race.rows(race.QUICK, min(classic_seconds, 10.0), 1),
+            "point": lambda: spatial_point.rows(spatial_point.Grid(12, 6), 3, 2),
+            "growth": lambda: growth.rows((growth.Grid(8, 4), growth.Grid(14, 8)), None),
+            "journal": lambda: plain_journal.rows(((48, 16),), 2),
+            "others": lambda: others.rows(1),
+        }
+    return {
+        "race": lambda: race.rows(race.FULL, classic_seconds, 3),
+        "point": lambda: spatial_point.rows(spatial_point.Grid(), 9, 7),
+        "growth": lambda: growth.rows(growth.SIZES, growth.LARGEST),
+        "journal": lambda: plain_journal.rows(plain_journal.GRIDS, 7),
+        "others": lambda: others.rows(2),
+    }
+
+
+def main() -> None:
+    """Measure, show the table as it grows, write the file."""
+    chosen = arguments()
+    measured: list[Row] = []
+    for name, measure in groups(chosen.quick, chosen.classic_seconds).items():
+        if name not in chosen.only:
+            continue
+        for row in measure():
+            measured.append(row if not chosen.quick else replace(row, wanted="", met=None))
+            print(line(measured[-1]), flush=True)
+    if chosen.json is not None:
+        chosen.json.write_text(json.dumps(report(measured, chosen.quick), indent=1, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def arguments() -> argparse.Namespace:
+    """Arguments of the command line."""
+    about, usage = (__doc__ or "").split("\n\n")[:2]
+    parser = argparse.ArgumentParser(description=about, usage=usage.strip())
+    parser.add_argument("--quick", action="store_true", help="small grids, under a minute")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write all rows with their details")
+    parser.add_argument("--only", nargs="+", choices=GROUPS, default=GROUPS, help="some groups of rows")
+    parser.add_argument("--classic-seconds", type=float, default=30.0, metavar="S", help="limit of each race")
+    return parser.parse_args()
+
+
+def line(row: Row) -> str:
+    """One row for people."""
+    ratio = "–" if row.ratio is None else shown(row.ratio)
+    verdict = {True: "met", False: "not met", None: ""}[row.met]
+    wanted = f"{row.wanted} {verdict}".strip()
+    return f"{row.says:<88} {ratio:>9}  {wanted:<16} {row.remark}".rstrip()
+
+
+def shown(ratio: float) -> str:
+    """Three significant digits, no exponent."""
+    return np.format_float_positional(ratio, precision=3, unique=False, fractional=False, trim="-")
+
+
+def report(measured: list[Row], quick: bool) -> dict[str, object]:
+    """What the file holds: the run, then the rows."""
+    return {
+        "petalfoil": petalfoil.__version__,
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "scipy": scipy.__version__,
+        "cores": os.cpu_count(),
+        "quick": quick,
+        "rows": [row.plain() for row in measured],
+    }
+
+
+if __name__ == "__main__":
+    sys.exit(main())
