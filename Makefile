@@ -49,8 +49,8 @@ format: setup ## Bring the code into shape
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-bench: setup ## Times of fixed cases
-	$(BIN)/python benchmarks/run.py
+bench: setup ## Ratios against other methods and sizes: a table, and benchmarks/results.json
+	$(BIN)/python benchmarks/run.py --json benchmarks/results.json
 
 constraints: ## Renew constraints.txt (needs uv)
 	uv pip compile --quiet --universal --no-header --no-annotate --no-emit-index-url --all-extras pyproject.toml \

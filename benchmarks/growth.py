@@ -1,13 +1,14 @@
 """How time and memory of a warm point grow with the unknowns; each size in a process of its own.
 
-    python benchmarks/growth.py CELLS AXIAL point     one size as a JSON object; `factor` instead of `point`: without
-                                                      the points, for a size at which they take too long
+python benchmarks/growth.py CELLS AXIAL point     one size as a JSON object; `factor` instead of `point`: without
+                                                  the points, for a size at which they take too long
 """
 
 from __future__ import annotations
 
 import json
 import os
+import re
 import resource
 import statistics
 import subprocess
@@ -19,7 +20,6 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 from measure import Row, Value, at_most
-from numpy.typing import NDArray
 from spatial_point import FARTHEST, STEP, Grid
 
 from petalfoil.analysis import load_curve
@@ -34,32 +34,40 @@ LARGEST = Grid(106, 72)
 MEGABYTES = 1.0
 """Less than this is lost in what the imports took."""
 
-Array = NDArray[np.float64]
 Found = dict[str, float]
 
 
 def rows(sizes: tuple[Grid, ...], largest: Grid | None) -> list[Row]:
     """Fitted exponents of time and memory."""
     found = [alone(grid, "point") for grid in sizes]
-    remark = ""
-    if largest is not None:
-        last, far = found[-1], alone(largest, "factor")
-        far["point"] = far["factorisation"] * last["point"] / last["factorisation"]
-        found.append(far)
-        remark = "largest size: one factorisation measured, times what a point costs over one at the size before"
-    n = np.array([size["unknowns"] for size in found])
-    time_slope, time_details = fitted(n, np.array([size["point"] for size in found]), "seconds")
-    held = np.array([max(size["megabytes"], MEGABYTES) for size in found])
-    memory_slope, memory_details = fitted(n, held, "megabytes")
-    says = f"growth: exponent of the {{}}, {n[0]:.0f} to {n[-1]:.0f} unknowns"
-    peak = f"peak {held[-1]:.0f} MB at {n[-1]:.0f} unknowns, Python and imports not counted"
-    return [
-        at_most("growth_time", says.format("time per warm point"), time_slope, 1.35, details=time_details, remark=remark),
-        Row("growth_memory", says.format("memory"), memory_slope, details=memory_details, remark=peak),
-    ]
+    far = [] if largest is None else [alone(largest, "factor")]
+    return [growth_of_time(found, far), growth_of_memory(found, far)]
 
 
-def fitted(n: Array, values: Array, unit: str) -> tuple[float, dict[str, Value]]:
+def growth_of_time(found: list[Found], far: list[Found]) -> Row:
+    """Time of a warm point; at the far size, a factorisation times what a point costs over one at the last size."""
+    over = found[-1]["point"] / found[-1]["factorisation"]
+    seconds = [size["point"] for size in found] + [size["factorisation"] * over for size in far]
+    unknowns = [size["unknowns"] for size in found + far]
+    slope, details = fitted(unknowns, seconds, "seconds")
+    says = f"growth: exponent of the time per warm point, {unknowns[0]:.0f} to {unknowns[-1]:.0f} unknowns"
+    remark = "largest size: one factorisation measured, times what a point costs over one at the size before"
+    return at_most("growth_time", says, slope, 1.35, details=details, remark=remark if far else "")
+
+
+def growth_of_memory(found: list[Found], far: list[Found]) -> Row:
+    """Peak memory of a curve; at the far size there is only a factorisation, which the remark tells."""
+    unknowns, megabytes = [size["unknowns"] for size in found], [size["megabytes"] for size in found]
+    slope, details = fitted(unknowns, [max(held, MEGABYTES) for held in megabytes], "megabytes")
+    says = f"growth: exponent of the memory of a curve, {unknowns[0]:.0f} to {unknowns[-1]:.0f} unknowns"
+    remark = f"peak {megabytes[-1]:.0f} MB at {unknowns[-1]:.0f} unknowns, Python and imports not counted"
+    for size in far:
+        remark += f"; one factorisation of {size['unknowns']:.0f}: {size['megabytes']:.0f} MB"
+        details["megabytes of the largest factorisation"] = size["megabytes"]
+    return Row("growth_memory", says, slope, details=details, remark=remark)
+
+
+def fitted(n: list[float], values: list[float], unit: str) -> tuple[float, dict[str, Value]]:
     """Exponent of the growth of `values` with `n`, and what it is made of."""
     local = np.diff(np.log(values)) / np.diff(np.log(n))
     details: dict[str, Value] = {f"{unit} at {size:.0f}": float(value) for size, value in zip(n, values, strict=True)}
@@ -88,7 +96,14 @@ def measured(grid: Grid, kind: str) -> Found:
 
 
 def peak() -> float:
-    """Most memory that the process has held [MB]."""
+    """Most memory that this program has held [MB].
+
+    Where Linux tells it: `getrusage` counts what the process held before it became this program, too.
+    """
+    status = Path("/proc/self/status")
+    if status.exists():
+        (held,) = re.findall(r"^VmHWM:\s*(\d+) kB", status.read_text(encoding="ascii"), re.MULTILINE)
+        return float(held) / 1024.0
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
 
 

@@ -87,7 +87,9 @@ def on(grid: Grid, repeats: int) -> list[Row]:
     return [
         Row(f"journal_{name}_solve", f"{about} `solve` with stability and all figures, over the yardstick", whole),
         at_most(f"journal_{name}", f"{about} the solution alone, over the yardstick", bare, 1.0, details=details),
-        at_most(f"journal_{name}_error", f"{about} worst error of the load, twelve bearings", max(ours), 1e-3, remark=said),
+        at_most(
+            f"journal_{name}_error", f"{about} worst error of the load, twelve bearings", max(ours), 1e-3, remark=said
+        ),
     ]
 
 

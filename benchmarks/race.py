@@ -134,25 +134,31 @@ def raced(lane: Lane, limit: float, repeats: int) -> Row:
 
 def unfinished(row: Row, lines: list[dict[str, Any]], newton: float, limit: float) -> Row:
     """The row of a classic method that was stopped: estimated from how its changes fell, else what was waited for."""
-    needed, changes = estimate(lines), [line["change"] for line in lines if "change" in line]
+    changes = [line for line in lines if "change" in line]
+    if not changes:
+        return replace(row, remark=f"stopped after {limit:g} s, within its first outer iteration")
+    needed, last = estimate(changes), changes[-1]
     if needed is None:
-        least = limit / newton
-        remark = f"stopped after {limit:g} s before its changes fell steadily: at least this"
+        least = last["seconds"] / newton
+        remark = f"stopped at a change of {last['change']:.0e} that did not fall steadily: at least this"
         return replace(row, ratio=least, met=True if least >= WANTED else None, remark=remark)
-    remark = f"estimated: stopped after {limit:g} s at a change of {changes[-1]:.0e}, to fall to {EPSILON:.0e} at its rate"
-    details = row.details | {"seconds_classic_estimated": needed}
+    remark = f"estimated: stopped at a change of {last['change']:.0e}, to fall to {EPSILON:.0e} at its rate"
+    details = row.details | {"seconds_measured": last["seconds"], "seconds_estimated": needed}
     return replace(row, ratio=needed / newton, met=needed / newton >= WANTED, remark=remark, details=details)
 
 
-def estimate(lines: list[dict[str, Any]]) -> float | None:
+STEADY = 0.1
+"""A change below this over the second half of a run, and tenfold less at its end, falls steadily."""
+
+
+def estimate(changes: list[dict[str, Any]]) -> float | None:
     """Time to the paper's accuracy from how the changes fell over the second half [s]; None if they did not."""
-    late = [line for line in lines if "change" in line]
-    late = late[len(late) // 2 :]
-    if len(late) < 3:
-        return None
+    late = changes[len(changes) // 2 :]
     seconds, level = np.array([line["seconds"] for line in late]), np.log([line["change"] for line in late])
+    if len(late) < 3 or level[0] > math.log(STEADY) or level[-1] > level[0] + math.log(STEADY):
+        return None
     slope, start = np.polyfit(seconds, level, 1)
-    return float((math.log(EPSILON) - start) / slope) if slope < 0.0 else None
+    return float((math.log(EPSILON) - start) / slope)
 
 
 def figures(problem: CoupledProblem, x: Any, lam: Any) -> np.ndarray:

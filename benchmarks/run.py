@@ -1,6 +1,6 @@
 """Ratios of petalfoil against other methods, and against itself at other sizes; one run, one table.
 
-    python benchmarks/run.py [--quick] [--json FILE] [--only NAME ...] [--classic-seconds S]
+    python benchmarks/run.py [--quick] [--json FILE] [--against FILE] [--only GROUP ...] [--classic-seconds S]
 
 Times are processor times of calls made in turn, the least of several: only their ratios in one run mean anything.
 What the rows mean is in docs/benchmarks.md.
@@ -56,15 +56,18 @@ def groups(quick: bool, classic_seconds: float) -> dict[str, Callable[[], list[R
 def main() -> None:
     """Measure, show the table as it grows, write the file."""
     chosen = arguments()
+    before = earlier(chosen.against)
     measured: list[Row] = []
     for name, measure in groups(chosen.quick, chosen.classic_seconds).items():
         if name not in chosen.only:
             continue
         for row in measure():
             measured.append(row if not chosen.quick else replace(row, wanted="", met=None))
-            print(line(measured[-1]), flush=True)
+            print(line(measured[-1], before), flush=True)
     if chosen.json is not None:
-        chosen.json.write_text(json.dumps(report(measured, chosen.quick), indent=1, allow_nan=False) + "\n", encoding="utf-8")
+        chosen.json.write_text(
+            json.dumps(report(measured, chosen.quick), indent=1, allow_nan=False) + "\n", encoding="utf-8"
+        )
 
 
 def arguments() -> argparse.Namespace:
@@ -73,14 +76,24 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=about, usage=usage.strip())
     parser.add_argument("--quick", action="store_true", help="small grids, under a minute")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all rows with their details")
+    parser.add_argument("--against", type=Path, metavar="FILE", help="show the ratios of an earlier run beside")
     parser.add_argument("--only", nargs="+", choices=GROUPS, default=GROUPS, help="some groups of rows")
     parser.add_argument("--classic-seconds", type=float, default=30.0, metavar="S", help="limit of each race")
     return parser.parse_args()
 
 
-def line(row: Row) -> str:
+def earlier(path: Path | None) -> dict[str, float]:
+    """Ratios of an earlier run by the names of their rows."""
+    if path is None:
+        return {}
+    rows = json.loads(path.read_text(encoding="utf-8"))["rows"]
+    return {row["name"]: row["ratio"] for row in rows if row["ratio"] is not None}
+
+
+def line(row: Row, before: dict[str, float]) -> str:
     """One row for people."""
     ratio = "–" if row.ratio is None else shown(row.ratio)
+    ratio += f" (was {shown(before[row.name])})" if row.name in before else ""
     verdict = {True: "met", False: "not met", None: ""}[row.met]
     wanted = f"{row.wanted} {verdict}".strip()
     return f"{row.says:<88} {ratio:>9}  {wanted:<16} {row.remark}".rstrip()

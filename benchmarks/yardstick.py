@@ -1,7 +1,7 @@
 """The shortest honest SciPy program for a plain gas journal bearing: what petalfoil must not be slower than.
 
-Finite volumes for `div(H^3 P grad P / 2 - Lam P H / 2) = 0` in `phi, Z`, central in the advection, `P = 1` at both ends,
-half the length by symmetry; Newton with the exact sparse Jacobian and `spsolve`. It imports nothing of petalfoil.
+Finite volumes for `div(H^3 P grad P / 2 - Lam P H / 2) = 0` in `phi, Z`, central in the advection, `P = 1` at both
+ends, half the length by symmetry; Newton with the exact sparse Jacobian and `spsolve`. It imports nothing of petalfoil.
 """
 
 from __future__ import annotations
@@ -17,13 +17,12 @@ TOLERANCE = 1e-8
 
 
 class Film(NamedTuple):
-    """Load along and across the line of centres over `p_a L D`, largest `p / p_a`, scaled residual, Newton steps."""
+    """Load along and across the line of centres over `p_a L D`, largest `p / p_a`, scaled residual."""
 
     along: float
     across: float
     peak: float
     residual: float
-    steps: int
 
 
 def solve(around: int, along: int, length: float, Lam: float, eps: float) -> Film:
@@ -54,7 +53,7 @@ def solve(around: int, along: int, length: float, Lam: float, eps: float) -> Fil
     outflow = (at_a - at_b).T.tocsr()[free]
     at_a, at_b = at_a[:, free], at_b[:, free]
     P = np.ones(H.size)
-    for step in range(50):
+    for _ in range(50):
         flow = 0.5 * mean_cube * (P[a] ** 2 - P[b] ** 2) + carried * (P[a] * H[a] + P[b] * H[b])
         residual = outflow @ flow
         size = abs(outflow) @ (0.5 * mean_cube * (P[a] ** 2 + P[b] ** 2) + carried * (P[a] * H[a] + P[b] * H[b]))
@@ -69,4 +68,4 @@ def solve(around: int, along: int, length: float, Lam: float, eps: float) -> Fil
     weight = 2.0 * width * dphi / (2.0 * length)  # both halves, over L D / R_j^2
     weight[0] *= 0.5
     push = (P.reshape(node.shape) - 1.0) @ weight
-    return Film(float(-push @ np.cos(theta)), float(push @ np.sin(theta)), float(P.max()), worst, step)
+    return Film(float(-push @ np.cos(theta)), float(push @ np.sin(theta)), float(P.max()), worst)

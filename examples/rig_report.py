@@ -108,7 +108,9 @@ def figure(legs: list[tuple[str, Record]], experiment: Experiment) -> Figure:
         look = {"color": colour, "linestyle": dashes, "marker": marker, "markersize": 3.5, "label": label}
         upper.plot(rpm, [float(record.scalars["friction_torque"]) for record in records], **look)
         lower.plot(rpm, [100.0 * float(record.scalars["contact_share"]) for record in records], **look)
-    upper.plot(0.0, experiment.moment, "*", color=style.INK, markersize=12, clip_on=False, label="measured, largest moment")
+    upper.plot(
+        0.0, experiment.moment, "*", color=style.INK, markersize=12, clip_on=False, label="measured, largest moment"
+    )
     for ax in (upper, lower):
         ax.axvline(experiment.speed, color=style.INK, linestyle=":", label="measured, ascent")
     style.dress(upper, "", "friction moment [N m]")
@@ -125,7 +127,9 @@ def main(folder: Path) -> None:
     """Compute the tables and the run-up; write each as it is done."""
     folder.mkdir(parents=True, exist_ok=True)
     own, known = Case.load(HERE / "rig.toml"), experiments()
-    coarse = own.replace(**{"model.cells_per_pitch": own.cells_per_pitch // 2, "model.axial_cells": own.axial_cells // 2})
+    coarse = own.replace(
+        **{"model.cells_per_pitch": own.cells_per_pitch // 2, "model.axial_cells": own.axial_cells // 2}
+    )
     with Pool(2) as pool:
         legs = pool.apply_async(run, (own, known[0].load))
         for name, case in (("coarse", coarse), ("own", own)):

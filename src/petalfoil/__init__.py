@@ -14,7 +14,19 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from petalfoil.api import check, converge, curve, solve, static
+    from petalfoil.api import (
+        balance,
+        check,
+        coefficients,
+        converge,
+        curve,
+        liftoff,
+        reproduce,
+        runup,
+        solve,
+        stability,
+        static,
+    )
     from petalfoil.case import Case
     from petalfoil.errors import (
         ConvergenceError,
@@ -38,19 +50,31 @@ __all__ = [
     "UnitError",
     "UsageError",
     "__version__",
+    "balance",
     "check",
+    "coefficients",
     "converge",
     "curve",
+    "liftoff",
+    "reproduce",
+    "runup",
     "solve",
+    "stability",
     "static",
 ]
 
 _HOMES = {
     "Case": "petalfoil.case",
+    "balance": "petalfoil.api",
     "check": "petalfoil.api",
+    "coefficients": "petalfoil.api",
     "converge": "petalfoil.api",
     "curve": "petalfoil.api",
+    "liftoff": "petalfoil.api",
+    "reproduce": "petalfoil.api",
+    "runup": "petalfoil.api",
     "solve": "petalfoil.api",
+    "stability": "petalfoil.api",
     "static": "petalfoil.api",
 }
 

@@ -54,7 +54,7 @@ MALFORMED = {
     "wrong type": ("count = 8", "count = [8]", ["petals.count"]),
     "unknown choice": ('mount = "hinged"', 'mount = "welded"', ["petals.mount", "hinged", "rigid"]),
     "three coordinates": ('["0 um", "-100 um"]', '["0 um", "-100 um", "0 um"]', ["operation.eccentricity"]),
-    "method that is not there": ('kind = "flat"', 'kind = "flat"\nmethod = "classic"', ["model.method", "newton"]),
+    "method that is not there": ('kind = "flat"', 'kind = "flat"\nmethod = "clasic"', ["model.method", "classic"]),
     "no overlap": ('arc_length = "45 mm"', 'arc_length = "15 mm"', ["petals.arc_length"]),
     "does not fit": ('thickness = "0.176 mm"', 'thickness = "0.5 mm"', ["petals"]),
     "journal wider than bushing": ('journal_radius = "25 mm"', 'journal_radius = "27 mm"', ["bearing"]),

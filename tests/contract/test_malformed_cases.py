@@ -74,7 +74,7 @@ MALFORMED: dict[str, tuple[str, str, Any, type[DefinitionError], tuple[str, ...]
     "a flatt model": (PETALS, "model.kind", "flatt", DefinitionError, ("model.kind", "'spatial'", "mean 'flat'?")),
     "a clamped mount": (PETALS, "petals.mount", "rigit", DefinitionError, ("petals.mount", "mean 'rigid'?")),
     "edges of another kind": (PETALS, "model.edges", 3, DefinitionError, ("model.edges", "'ambient' or 'continuous'")),
-    "the classic method": (PETALS, "model.method", "classic", DefinitionError, ("model.method", "'newton'")),
+    "a clasic method": (PETALS, "model.method", "clasic", DefinitionError, ("model.method", "mean 'classic'?")),
     "a tilt in words": (PETALS, "petals.root_tilt", "cordal", DefinitionError, ("root_tilt", "'cordal'", "'chordal'")),
     # keys
     "lenght": (PETALS, "bearing.lenght", 1, DefinitionError, ("bearing.lenght", "mean 'length'?", "journal_radius")),

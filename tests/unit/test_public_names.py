@@ -16,10 +16,16 @@ NAMES = {
     "UnitError",
     "UsageError",
     "__version__",
+    "balance",
     "check",
+    "coefficients",
     "converge",
+    "reproduce",
     "curve",
+    "liftoff",
+    "runup",
     "solve",
+    "stability",
     "static",
 }
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.equilibrium import Named, about, positioned
 from petalfoil.analysis.figures import effort, forces, record_of
 from petalfoil.analysis.session import Clock, Progress, one_thread, telling_work
@@ -76,6 +77,7 @@ def settled(case: Case, load: tuple[float, float], work: Work) -> tuple[Balance,
 
 def loaded(case: Case, load: tuple[float, float] | None) -> tuple[float, float]:
     """The load to balance [N]."""
+    newton_only(case)
     wanted = case.operation.load if load is None else load
     if wanted is None:
         raise UsageError("no load to balance: give one, or set operation.load in the case")

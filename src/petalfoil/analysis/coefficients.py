@@ -8,16 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.analysis.balance import given_load, loaded, settled
+from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.equilibrium import Named, chosen, positioned
 from petalfoil.analysis.figures import effort, failed_record, forces, given
 from petalfoil.analysis.session import Clock, Progress, one_thread, part, telling_work
 from petalfoil.case import Case
 from petalfoil.equilibria.answer import Answer
-from petalfoil.equilibria.response import respond
+from petalfoil.equilibria.response import Motion
 from petalfoil.equilibria.work import Work
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.record import Record
-from petalfoil.solvers.ties import tie
 
 Array = NDArray[np.float64]
 Load = tuple[float, float]
@@ -33,7 +33,7 @@ def run(
 ) -> Record:
     """Coefficients at whirl `frequencies` [rad/s] (by default the speed itself), at the case's position or load.
 
-    `dF = -(K + i Omega C) de` for a displacement `de exp(i Omega t)` (E6); contacts that carry load stay closed.
+    `dF = -(K + i Omega C) de` for a displacement `de exp(i Omega t)` (E5); contacts that carry load stay closed.
 
     Raises
     ------
@@ -43,6 +43,7 @@ def run(
         The operating point was not found, or it is pressed solid.
     """
     case = positioned(case, speed, None)
+    newton_only(case)
     wanted = whirl([case.operation.speed], frequencies)
     return point(case, wanted, load, telling_work(progress, "coefficients"))
 
@@ -62,6 +63,7 @@ def iterate(
     UsageError
         A speed is not positive, or a frequency is negative.
     """
+    newton_only(case)
     wanted = whirl(speeds, frequencies)
     return _records([positioned(case, speed, None) for speed in speeds], wanted, load, progress)
 
@@ -105,8 +107,8 @@ def point(case: Case, wanted: Array, load: Load | None, work: Work) -> Record:
     clock = Clock()
     with one_thread():
         answer, known = operating_point(case, load, work)
-        elastic(answer, work)
-        pairs = [impedance(answer, frequency, case.operation.speed, work) for frequency in wanted]
+        motion = elastic(answer, work)
+        pairs = [impedance(motion, frequency, case.operation.speed, work) for frequency in wanted]
     scalars: Named = {**given(case), **known, **at_position(case, answer), **effort(work), "wall_time": clock.seconds}
     return Record(
         analysis="coefficients",
@@ -141,31 +143,32 @@ def at_position(case: Case, answer: Answer) -> Named:
     }
 
 
-def elastic(answer: Answer, work: Work) -> None:
-    """Make sure that the bearing gives way at `answer`.
+def elastic(answer: Answer, work: Work) -> Motion:
+    """Small motions about `answer`, if the bearing gives way there.
 
     Raises
     ------
     ConvergenceError
         It is pressed solid: the journal cannot move without bending what has no room to bend.
     """
-    if not tie(answer.problem.G, answer.in_contact).determinate:
+    motion = Motion.about(answer)
+    if not motion.ties.determinate:
         raise ConvergenceError(
-            "no coefficients: petals are pressed solid between journal and bushing, their stiffness has no bound",
+            "no coefficients: the journal is pressed on what is pressed solid, its stiffness has no bound",
             history=work.history,
             advice="lower the load, or ask `balance` which share of it the contacts carry",
         )
+    return motion
 
 
-def impedance(answer: Answer, frequency: float, speed: float, work: Work) -> tuple[Array, Array]:
+def impedance(motion: Motion, frequency: float, speed: float, work: Work) -> tuple[Array, Array]:
     """`K` [N/m] and `C` [N s/m] at one whirl frequency [rad/s], each (2, 2); one factorisation.
 
     At a frequency of zero, `C` is the limit of small ones.
     """
-    scales = answer.problem.layout.scales
+    scales = motion.problem.layout.scales
     nu = max(frequency / speed, SLOW)
-    state = (answer.problem, answer.x, answer.in_contact)
-    Z = -respond(state, nu, work.probe_solver).force_gradient() * scales.force / scales.length
+    Z = -motion.respond(nu, work.probe_solver).force_gradient() * scales.force / scales.length
     return Z.real, Z.imag / (nu * speed)
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 
+from petalfoil.analysis.classic_method import by_classic, is_classic, typical_steps
 from petalfoil.analysis.figures import effort, record_of
 from petalfoil.analysis.session import Clock, Progress, one_thread, telling_work
 from petalfoil.case import Case, Kind
@@ -45,10 +46,10 @@ def run(
         The displaced journal leaves the package no room.
     """
     case = positioned(case, speed, eccentricity)
-    clock, work = Clock(), telling_work(progress, "solve")
+    clock, work = Clock(), telling_work(progress, "solve", typical_steps(case))
     with one_thread():
-        answer, about = chosen(case, work)
-    extra: Named = {**about, **effort(work), "wall_time": clock.seconds}
+        answer, known = relaxed(case, build_problem(case), work) if is_classic(case) else chosen(case, work)
+    extra: Named = {**known, **effort(work), "wall_time": clock.seconds}
     return record_of("solve", case, answer, extra, work)
 
 
@@ -86,6 +87,18 @@ def chosen(case: Case, work: Work) -> tuple[Answer, Named]:
         found, rates, way = settled(found, rates, way, work)
     known = max(known, distinct(found))
     return found[0], about(rates[0], case, (known, way or found[0].way))
+
+
+def relaxed(case: Case, problem: CoupledProblem, work: Work, known: Answer | None = None) -> tuple[Answer, Named]:
+    """The equilibrium that the paper's method comes to rest at, from nothing or from a `known` neighbour.
+
+    Raises
+    ------
+    ConvergenceError
+        A number of steps was used up.
+    """
+    answer = by_classic(problem, work, known)
+    return answer, about(leading_eigenvalue(answer, work), case, (1, answer.way))
 
 
 def from_nothing(problem: CoupledProblem, work: Work) -> list[Answer]:

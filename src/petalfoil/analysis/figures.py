@@ -133,7 +133,7 @@ def trust(answer: Answer) -> Named:
 def effort(work: Work) -> Named:
     """What it cost."""
     return {
-        "iterations": sum("residual" in row or row["phase"] == "contacts" for row in work.history),
+        "iterations": sum("residual" in row or row["phase"] in ("contacts", "classic") for row in work.history),
         "factorizations": work.film.factorizations,
         "package_iterations": work.package.factorizations,
         "probe_factorizations": work.probes.factorizations,

@@ -11,7 +11,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from petalfoil.analysis.equilibrium import Named, about, chosen, positioned
+from petalfoil.analysis.classic_method import is_classic, typical_steps
+from petalfoil.analysis.equilibrium import Named, about, chosen, positioned, relaxed
 from petalfoil.analysis.figures import effort, failed_record, record_of
 from petalfoil.analysis.session import Clock, Progress, one_thread, part, telling_work
 from petalfoil.case import Case
@@ -54,7 +55,7 @@ def _records(cases: list[Case], progress: Progress | None) -> Iterator[Record]:
     known: Answer | None = None
     base = build_problem(cases[0])
     for number, case in enumerate(cases):
-        clock, work = Clock(), telling_work(part(progress, number, len(cases)), "curve")
+        clock, work = Clock(), telling_work(part(progress, number, len(cases)), "curve", typical_steps(case))
         problem = base.at(displacement=np.array(case.operation.eccentricity) / base.layout.scales.length)
         try:
             with one_thread():
@@ -67,6 +68,9 @@ def _records(cases: list[Case], progress: Progress | None) -> Iterator[Record]:
 
 
 def _point(case: Case, problem: CoupledProblem, known: Answer | None, work: Work) -> tuple[Answer, Named]:
+    if is_classic(case):
+        answer, extra = relaxed(case, problem, work, known)
+        return answer, {**extra, "jump": False}
     if known is None:
         answer, extra = chosen(case, work)
         return answer, {**extra, "jump": False}

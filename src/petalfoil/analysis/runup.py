@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from petalfoil.analysis.balance import balance_record, given_load
+from petalfoil.analysis.balance import balance_record, given_load, loaded
 from petalfoil.analysis.equilibrium import Named
 from petalfoil.analysis.figures import effort, failed_record
 from petalfoil.analysis.session import Clock, Progress, one_thread, part, telling_work
@@ -18,13 +18,10 @@ from petalfoil.results.record import Record
 POINTS = 25
 """Speeds of a run-up, rest included."""
 
-SLOW = 0.02
-"""First speed of a run-up over its last; they grow by a constant factor from there."""
-
 
 def iterate(
     case: Case,
-    load: tuple[float, float],
+    load: tuple[float, float] | None,
     top: float,
     *,
     points: int = POINTS,
@@ -32,10 +29,12 @@ def iterate(
 ) -> Iterator[tuple[str, Record]]:
     """Yield ("up", record) from rest to `top` [rad/s], then ("down", record) back, each followed from the one before.
 
+    The load [N] is by default the case's.
+
     Raises
     ------
     UsageError
-        A plain bearing, or the top speed or the number of points is out of range.
+        A plain bearing, no load, or the top speed or the number of points is out of range.
     """
     if case.petals is None:
         raise UsageError("a run-up needs a case with [petals]: a plain bearing at rest touches in a single line")
@@ -43,9 +42,9 @@ def iterate(
         raise UsageError("the top speed of a run-up must be above zero")
     if points < 3:
         raise UsageError("a run-up needs at least 3 points")
-    speeds = np.concatenate([[0.0], np.geomspace(SLOW * top, top, points - 1)])
+    speeds = top * np.linspace(0.0, 1.0, points) ** 2  # close together where contacts give way to the film
     way = [("up", float(v)) for v in speeds] + [("down", float(v)) for v in speeds[-2::-1]]
-    return _records(case, load, way, progress)
+    return _records(case, loaded(case, load), way, progress)
 
 
 def _records(

@@ -48,14 +48,14 @@ def part(progress: Progress | None, number: int, count: int) -> Progress | None:
     return tell
 
 
-def telling_work(progress: Progress | None, text: str) -> Work:
-    """Work that tells `progress` of its steps; the share approaches 1 as steps go on."""
+def telling_work(progress: Progress | None, text: str, typical: float = TYPICAL_STEPS) -> Work:
+    """Work that tells `progress` of its steps; the share approaches 1 as they exceed the `typical` number."""
     work = Work()
     if progress is None:
         return work
 
     def tell(phase: str) -> None:
-        share = 1.0 - math.exp(-len(work.history) / TYPICAL_STEPS)
+        share = 1.0 - math.exp(-len(work.history) / typical)
         progress(share, f"{text}: {phase}")
 
     work.tell = tell

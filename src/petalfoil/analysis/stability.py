@@ -9,6 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from petalfoil.analysis.balance import given_load, loaded
+from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.coefficients import Load, at_position, elastic, operating_point
 from petalfoil.analysis.equilibrium import Named, about, positioned
 from petalfoil.analysis.figures import effort, failed_record, given
@@ -60,8 +61,7 @@ def run(
         raise UsageError("the mass of the rotor must be positive")
     with one_thread():
         answer, known = operating_point(case, load, work)
-        elastic(answer, work)
-        whirl = neutral_whirl(answer, case.operation.speed, work)
+        whirl = neutral_whirl(elastic(answer, work), case.operation.speed, work)
         rotor = rotor_mass(case, load, mass)
         threshold, ended = threshold_speed(case, load, (rotor, whirl), work)
     own: Named = {**known, "rotor_mass": rotor, "threshold_speed": threshold}
@@ -69,17 +69,38 @@ def run(
 
 
 def iterate(
-    case: Case, speeds: Sequence[float], loads: Sequence[Load], *, progress: Progress | None = None
+    case: Case,
+    speeds: Sequence[float] | None = None,
+    loads: Sequence[float] | None = None,
+    *,
+    load: Load | None = None,
+    progress: Progress | None = None,
 ) -> Iterator[Record]:
-    """Yield the smallest mass that whirls for each load [N] at each speed [rad/s], load by load, speeds in order.
+    """Yield the smallest mass that whirls for each load at each speed, load by load, speeds in order.
+
+    Parameters
+    ----------
+    case : Case
+        The bearing.
+    speeds : sequence of float, optional
+        Speeds instead of the case's [rad/s].
+    loads : sequence of float, optional
+        Loads along -y [N], instead of the one load.
+    load : (x, y), optional
+        The one load instead of the case's [N].
+    progress : callable, optional
+        Told how far it has come.
 
     Raises
     ------
     UsageError
-        A speed is not positive, or a load is zero.
+        A speed is not positive, or there is no load, or one that is not positive.
     """
-    cases = [turning(positioned(case, speed, (0.0, 0.0))) for speed in speeds]
-    return _records(cases, [loaded(case, load) for load in loads], progress)
+    if loads is not None and any(not size > 0.0 for size in loads):
+        raise UsageError("loads must be positive; they act along -y")
+    wanted = [loaded(case, load)] if loads is None else [(0.0, -size) for size in loads]
+    turn = [case.operation.speed] if speeds is None else speeds
+    return _records([turning(positioned(case, speed, (0.0, 0.0))) for speed in turn], wanted, progress)
 
 
 def _records(cases: list[Case], loads: list[Load], progress: Progress | None) -> Iterator[Record]:
@@ -93,9 +114,8 @@ def _records(cases: list[Case], loads: list[Load], progress: Progress | None) ->
             try:
                 with one_thread():
                     answer = line.at(case.operation.speed).answer
-                    elastic(answer, work)
+                    whirl = neutral_whirl(elastic(answer, work), case.operation.speed, work)
                     known = about(leading_eigenvalue(answer, work), case, (1, answer.way))
-                    whirl = neutral_whirl(answer, case.operation.speed, work)
             except ConvergenceError as failure:
                 line.known = None
                 yield failed_record("stability", case, f"not converged: {failure}", work, given_load(load))
@@ -105,6 +125,7 @@ def _records(cases: list[Case], loads: list[Load], progress: Progress | None) ->
 
 def turning(case: Case) -> Case:
     """The case, if its shaft turns."""
+    newton_only(case)
     if not case.operation.speed > 0.0:
         raise UsageError("stability needs a turning shaft: give a speed above zero")
     return case
@@ -161,15 +182,14 @@ def margins(case: Case, load: Load | None, mass: float, work: Work) -> Callable[
 
         def in_place(speed: float) -> float:
             answer, _ = operating_point(positioned(case, speed, None), None, work)
-            return margin(neutral_whirl(answer, speed, work), mass)
+            return margin(neutral_whirl(elastic(answer, work), speed, work), mass)
 
         return in_place
     line = SpeedLine(case, loaded(case, load), work)
 
     def under_load(speed: float) -> float:
         answer = line.at(speed).answer
-        elastic(answer, work)
-        return margin(neutral_whirl(answer, speed, work), mass)
+        return margin(neutral_whirl(elastic(answer, work), speed, work), mass)
 
     return under_load
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from petalfoil.analysis.classic_method import is_classic, rest_by_classic
 from petalfoil.analysis.fields import coordinates, petal_fields
 from petalfoil.analysis.figures import effort, failed_record, forces, given
 from petalfoil.analysis.load_curve import points
@@ -15,8 +16,9 @@ from petalfoil.case import Case
 from petalfoil.equilibria.answer import Answer
 from petalfoil.equilibria.ascent import rest
 from petalfoil.equilibria.work import Work
-from petalfoil.errors import UsageError
+from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.problem.build import build_problem
+from petalfoil.problem.coupled import CoupledProblem
 from petalfoil.results.record import Record
 
 
@@ -49,11 +51,22 @@ def _records(cases: list[Case], progress: Progress | None) -> Iterator[Record]:
             progress(number / len(cases), "static")
         with one_thread():
             problem = base.at(displacement=np.array(case.operation.eccentricity) / base.layout.scales.length)
-            answer = rest(problem, work)
+            answer = at_rest(case, problem, work)
         if answer is None:
             yield failed_record("static", case, "not converged: the package did not settle", work)
         else:
             yield static_record(case, answer, work, clock.seconds)
+
+
+def at_rest(case: Case, problem: CoupledProblem, work: Work) -> Answer | None:
+    """The assembled package by the method of `case`; None, and why in the history, if it did not settle."""
+    if not is_classic(case):
+        return rest(problem, work)
+    try:
+        return rest_by_classic(problem, work)
+    except ConvergenceError as failure:
+        work.note("classic", outcome=str(failure))
+        return None
 
 
 def static_record(case: Case, answer: Answer, work: Work, seconds: float) -> Record:

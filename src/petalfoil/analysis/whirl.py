@@ -1,4 +1,4 @@
-"""Stability of a rigid rotor on the bearing: `det(Z(i Omega) - m Omega^2) = 0` with a real mass `m`."""
+"""Stability of a rigid rotor on the bearing: `det(Z(i Omega) - m Omega^2) = 0` with a real mass `m` (E6)."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from petalfoil.equilibria.answer import Answer
-from petalfoil.equilibria.response import respond
+from petalfoil.equilibria.response import Motion
 from petalfoil.equilibria.work import Work
 
 SCAN = np.concatenate([np.linspace(0.05, 1.2, 24), [1.5, 2.0, 3.0]])
@@ -32,28 +31,27 @@ class Whirl:
     ratio: float
 
 
-def neutral_whirl(answer: Answer, speed: float, work: Work) -> Whirl:
-    """Find the smallest whirling mass at `answer`.
+def neutral_whirl(motion: Motion, speed: float, work: Work) -> Whirl:
+    """Find the smallest whirling mass about the state of `motion`.
 
     For a mass at the threshold the two eigenvalues of `Z(i Omega)` include a real one, `m Omega^2`: the branches of
     their imaginary part are followed over whirl ratio and their zeros bracketed.
     """
     roots: list[Whirl] = []
-    values = [eigenvalues(answer, nu, work) for nu in SCAN]
+    values = [eigenvalues(motion, nu, work) for nu in SCAN]
     for k in range(len(SCAN) - 1):
         ahead = matched(values[k], values[k + 1])
         for branch in (0, 1):
             if np.sign(values[k][branch].imag) != np.sign(ahead[branch].imag):
-                roots += crossing(answer, (SCAN[k], SCAN[k + 1]), values[k][branch], speed, work)
+                roots += crossing(motion, (SCAN[k], SCAN[k + 1]), values[k][branch], speed, work)
         values[k + 1] = ahead
     return min(roots, key=lambda root: root.mass, default=Whirl(np.inf, np.nan))
 
 
-def eigenvalues(answer: Answer, nu: float, work: Work) -> NDArray[np.complex128]:
+def eigenvalues(motion: Motion, nu: float, work: Work) -> NDArray[np.complex128]:
     """Eigenvalues of the impedance at whirl ratio `nu`, (2,) [N/m]."""
-    scales = answer.problem.layout.scales
-    state = (answer.problem, answer.x, answer.in_contact)
-    Z = -respond(state, float(nu), work.probe_solver).force_gradient() * scales.force / scales.length
+    scales = motion.problem.layout.scales
+    Z = -motion.respond(float(nu), work.probe_solver).force_gradient() * scales.force / scales.length
     return np.asarray(np.linalg.eigvals(Z), dtype=np.complex128)
 
 
@@ -64,18 +62,18 @@ def matched(before: NDArray[np.complex128], after: NDArray[np.complex128]) -> ND
     return after if straight <= crossed else after[::-1]
 
 
-def crossing(answer: Answer, between: tuple[float, float], start: complex, speed: float, work: Work) -> list[Whirl]:
+def crossing(motion: Motion, between: tuple[float, float], start: complex, speed: float, work: Work) -> list[Whirl]:
     """The neutral whirl in a bracket of whirl ratios, if it belongs to a positive mass."""
     nearest = start
 
     def imaginary(nu: float) -> float:
-        values = eigenvalues(answer, nu, work)
+        values = eigenvalues(motion, nu, work)
         return float(values[np.argmin(np.abs(values - nearest))].imag)
 
     low, high = imaginary(between[0]), imaginary(between[1])
     if np.sign(low) == np.sign(high):
         return []
     nu = float(brentq(imaginary, *between, xtol=1e-6, rtol=1e-8))
-    values = eigenvalues(answer, nu, work)
+    values = eigenvalues(motion, nu, work)
     mass = float(values[np.argmin(np.abs(values.imag))].real) / (nu * speed) ** 2
     return [Whirl(mass, nu)] if mass > 0.0 else []

@@ -5,10 +5,10 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import Annotated, ClassVar
 
-from pydantic import BeforeValidator, StrictBool, field_validator
+from pydantic import BeforeValidator, StrictBool
 
 from petalfoil.case.definition import Definition
-from petalfoil.case.fields import VALUE_PROBLEM, Count, Quantity, as_pair, refuse
+from petalfoil.case.fields import Count, Quantity, as_pair
 
 MAX_SPEED = 1e6  # rad/s, nearly ten million turns a minute: beyond any shaft
 
@@ -99,10 +99,3 @@ class Model(Definition):
     symmetry: StrictBool = True
     slip: StrictBool = False
     method: Method = Method.NEWTON
-
-    @field_validator("method")
-    @classmethod
-    def _only_newton(cls, method: Method) -> Method:
-        if method is Method.CLASSIC:
-            raise refuse(VALUE_PROBLEM, "'classic' is not available yet; use 'newton'", "'newton'")
-        return method

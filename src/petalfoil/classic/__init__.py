@@ -17,6 +17,6 @@ flow (F2), so that both methods answer alike; steps are counted, and running out
 """
 
 from petalfoil.classic.options import ClassicOptions
-from petalfoil.classic.relaxation import ClassicState, assembled, relax
+from petalfoil.classic.relaxation import ClassicState, Run, assembled, relax
 
-__all__ = ["ClassicOptions", "ClassicState", "assembled", "relax"]
+__all__ = ["ClassicOptions", "ClassicState", "Run", "assembled", "relax"]

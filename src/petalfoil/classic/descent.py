@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from petalfoil.classic.columns import Columns, columns
 from petalfoil.classic.kernels import Bands, Descent, Engine, kernels
+from petalfoil.classic.numpy_kernels import project
 from petalfoil.classic.options import ClassicOptions
 from petalfoil.problem.coupled import CoupledProblem
 
@@ -61,6 +62,10 @@ class PackageDescent:
         """Nodal forces of the pressure unknowns `P` (40), (n_wall,) [1]."""
         out: Array = self.problem.layout.push @ (P - 1.0)
         return out
+
+    def admitted(self, W: Array) -> Array:
+        """The nearest deflections to `W` (n_wall,) that keep the restrictions (18)-(20) at this journal position."""
+        return project(W, self.columns) if len(W) else W.copy()
 
     def advance(self, W: Array, load: Array, tolerance: float, max_steps: int) -> bool:
         """Descend from `W` (n_wall,) in place; whether no node is out of balance by more than `tolerance`."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from enum import StrEnum
 from functools import cache
+from importlib.util import find_spec
 from typing import NamedTuple
 
 import numpy as np
@@ -86,8 +87,4 @@ def kernels(engine: Engine | None = None) -> Kernels:
 
 def numba_is_installed() -> bool:
     """Whether ``pip install petalfoil[classic]`` was done."""
-    try:
-        import numba  # noqa: F401
-    except ImportError:
-        return False
-    return True
+    return find_spec("numba") is not None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
 import numpy as np
@@ -20,8 +20,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 def compiled(function: F) -> F:
     """Compile at the first call; kept on disk for the next session."""
-    made: F = numba.njit(cache=True, error_model="numpy")(function)
-    return made
+    return cast(F, numba.njit(cache=True, error_model="numpy")(function))
 
 
 # ---------------------------------------------------------------------------------------------- film
@@ -45,7 +44,8 @@ def march(P: Array, cells: FilmCells, drive: March) -> tuple[int, float]:
                 P[k] += dt * per_hold[k] * gained[k]  # (58)
             if len(cells.spread):
                 leak = content_defect(P, cells)
-                P -= dt / drive.time * leak
+                for k in range(n):
+                    P[k] *= 1.0 - dt / drive.time * leak
         steps += REFRESH
         change = max(np.max(np.abs(per_hold * gained)) * drive.time, abs(leak))
     return steps, change
@@ -112,11 +112,11 @@ def largest_rate(P: Array, cells: FilmCells, per_hold: Array) -> float:
 
 @compiled
 def content_defect(P: Array, cells: FilmCells) -> float:
-    """Pressure by which a film without ends holds too much gas (F6)."""
+    """Share of its gas that a film without ends holds too much (F6)."""
     excess, slope = 0.0, 0.0
     for k in range(len(cells.spread)):
         excess += cells.spread[k] * (P[k] * P[k] - 1.0) + cells.spread_slip[k] * (P[k] - 1.0)
-        slope += 2.0 * cells.spread[k] * P[k] + cells.spread_slip[k]
+        slope += (2.0 * cells.spread[k] * P[k] + cells.spread_slip[k]) * P[k]
     return excess / slope
 
 

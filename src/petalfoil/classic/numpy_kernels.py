@@ -33,7 +33,7 @@ def march(P: Array, cells: FilmCells, drive: March) -> tuple[int, float]:
             rate = inflow(P, cells, fit) / cells.hold  # (58): right side over h
             P += dt * rate
             leak = content_defect(P, cells)
-            P -= dt / drive.time * leak
+            P *= 1.0 - dt / drive.time * leak
         steps += REFRESH
         change = max(float(np.max(np.abs(rate))) * drive.time, abs(leak))
     return steps, change
@@ -85,15 +85,15 @@ def largest_rate(P: Array, cells: FilmCells) -> float:
 
 
 def content_defect(P: Array, cells: FilmCells) -> float:
-    """Pressure by which a film without ends holds too much gas (F6); zero for a film with ends [1].
+    """Share of its gas that a film without ends holds too much (F6); zero for a film with ends [1].
 
-    Its balances add up to nothing, so a march in which all pressures give way to this defect comes to rest only
-    where the defect is zero.
+    Its balances add up to nothing, so a march in which all cells give way in proportion to this defect comes to rest
+    only where the defect is zero.
     """
     if not len(cells.spread):
         return 0.0
     excess = np.sum(cells.spread * (P**2 - 1.0) + cells.spread_slip * (P - 1.0))
-    slope = np.sum(2.0 * cells.spread * P + cells.spread_slip)
+    slope = np.sum((2.0 * cells.spread * P + cells.spread_slip) * P)
     return float(excess / slope)
 
 
@@ -116,7 +116,7 @@ def descend(W: Array, load: Array, shell: Bands, columns: Columns, drive: Descen
             last, trial = W.copy(), ahead - drive.step * gradient
             W[:] = project(trial, columns)  # (20)
             moved = W - ahead
-            ahead = W
+            ahead = W.copy()
             if drive.momentum:
                 theta, share = momentum(theta, float(np.dot(moved, W - last)))
                 ahead = W + share * (W - last)

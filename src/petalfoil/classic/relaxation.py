@@ -19,6 +19,9 @@ from petalfoil.problem.coupled import CoupledProblem
 Array = NDArray[np.float64]
 Row = dict[str, float | int | str]
 
+STRETCH = 100_000
+"""Most inner steps without looking up: a tenth of a second on coarse grids, some seconds on fine ones."""
+
 
 @dataclass(frozen=True)
 class ClassicState:
@@ -58,12 +61,15 @@ class Run:
         Which inner loops run; the fastest that is installed if None.
     tell : callable or None
         Given every row of the history.
+    pulse : callable or None
+        Called now and then, also within an outer iteration.
     """
 
     problem: CoupledProblem
     options: ClassicOptions = field(default_factory=ClassicOptions)
     engine: Engine | None = None
     tell: Callable[[Row], None] | None = None
+    pulse: Callable[[], None] | None = None
     rows: list[Row] = field(default_factory=list, init=False)
 
     def __post_init__(self) -> None:
@@ -86,15 +92,24 @@ class Run:
 
     def settle_film(self, P: Array, H: Array, tolerance: float) -> None:
         """March the pressures `P` (strip, node, axial) to steadiness at film `H`, in place."""
-        left = self.options.max_film_steps - self.film.steps
-        if not self.film.advance(P, H, tolerance, left):
-            raise self.out_of("film")
+        while not self.film.advance(P, H, tolerance, self.allowed("film", self.film.steps)):
+            if not np.all(np.isfinite(P)):
+                raise self.failure("the classic method's film blew up")
 
     def settle_package(self, w: Array, P: Array, tolerance: float) -> None:
         """Bring the deflections `w` (n_wall,) to equilibrium under the pressure unknowns `P`, in place."""
-        left = self.options.max_package_steps - self.package.steps
-        if len(w) and not self.package.advance(w, self.package.load(P), tolerance, left):
-            raise self.out_of("package")
+        load = self.package.load(P)
+        while len(w) and not self.package.advance(w, load, tolerance, self.allowed("package", self.package.steps)):
+            pass
+
+    def allowed(self, what: str, taken: int) -> int:
+        """Steps to take before looking up, of those that are left; a run can be watched and stopped in between."""
+        if self.pulse is not None:
+            self.pulse()
+        left = (self.options.max_film_steps if what == "film" else self.options.max_package_steps) - taken
+        if left <= 0:
+            raise self.out_of(what)
+        return min(left, STRETCH)
 
     def state(self, w: Array, P: Array, outer: int) -> ClassicState:
         """The state reached, with the reactions that its equations ask for."""
@@ -103,8 +118,12 @@ class Run:
 
     def out_of(self, what: str) -> ConvergenceError:
         """The error of a run that used up its steps."""
+        return self.failure(f"the classic method used up its {what} steps")
+
+    def failure(self, message: str) -> ConvergenceError:
+        """An error with the history so far."""
         return ConvergenceError(
-            f"the classic method used up its {what} steps",
+            message,
             history=self.rows,
             advice="its film steps grow as the square of the cells along a pitch, its package steps as the fourth "
             'power: take a coarser grid, or method = "newton", which solves the same equations',
@@ -121,7 +140,7 @@ def relax(run: Run, start: ClassicState | None = None) -> ClassicState:
     """
     problem, numbers = run.problem, run.options
     begun = start or assembled(run, numbers.loosest)
-    w_out, P = begun.w.copy(), begun.P.copy()  # input values of deflections and pressure
+    w_out, P = run.package.admitted(begun.w), begun.P.copy()  # input values of deflections and pressure
     w_in, settled = w_out.copy(), problem.layout.balance.nodal_pressure(P)
     damping, change = Damping(numbers.deflection_share, numbers.patience), math.inf
     for outer in range(1, numbers.max_outer + 1):
@@ -134,9 +153,9 @@ def relax(run: Run, start: ClassicState | None = None) -> ClassicState:
         run.settle_package(w_out, P, tolerance)  # W_k+1 of the pressure (45)-(50)
         H_new = problem.film(np.concatenate([w_out, P]))
         film_change = float(np.max(np.abs(H_new - H) / H_new))  # before relaxation, which would hide it
-        change = max(pressure_change, film_change)
+        before, change = change, max(pressure_change, film_change)
         run.note(outer, pressure_change, film_change, damping.share)
-        if change <= numbers.epsilon:
+        if max(before, change) <= numbers.epsilon:  # this time film and package were settled to match
             return run.state(w_out, P, outer)
         damping.look(change)
         w_in = (1.0 - damping.share) * w_in + damping.share * w_out  # (61)
@@ -144,7 +163,7 @@ def relax(run: Run, start: ClassicState | None = None) -> ClassicState:
 
 
 def assembled(run: Run, tolerance: float | None = None) -> ClassicState:
-    """The package alone at ambient pressure, from the free shape, settled to `tolerance` of it (1).
+    """The package alone at ambient pressure, from the free shape, settled to `tolerance` of it.
 
     Raises
     ------

@@ -4,12 +4,15 @@ In the order a call runs through them:
 
 - ``app``        the verbs under one name; ``main`` is the entry point
 - ``options``    the options the verbs share, declared once
-- ``solve`` ``curve`` ``static`` ``check`` ``converge`` ``show``   one verb each
+- ``solve`` ``curve`` ``static`` ``balance`` ``liftoff`` ``runup`` ``coefficients`` ``stability`` ``check`` ``converge``
+  ``show``       one verb each
+- ``reproduce``  the paper's figures and claims: a page and data
 - ``parsing``    text of the options to SI numbers
 - ``progress``   the bar on standard error
 - ``series``     runs through the points of a curve and keeps what is finished
 - ``autosave``   rewrites the result file of a curve as its points finish
 - ``answer``     what a verb has to give out: one record or the points of a curve; as JSON and as labelled data
+- ``kinds``      answers laid out in their own way: over loads, legs, frequencies, load and speed
 - ``study``      the grids of `converge` and what they tell, as JSON and as labelled data
 - ``stored``     a result read from a file as the answer it was
 - ``tables``     an answer as the printed table

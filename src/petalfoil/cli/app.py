@@ -7,12 +7,18 @@ from typing import Annotated
 import typer
 
 from petalfoil import __version__
+from petalfoil.cli.balance import balance
 from petalfoil.cli.check import check
+from petalfoil.cli.coefficients import coefficients
 from petalfoil.cli.converge import converge
 from petalfoil.cli.curve import curve
 from petalfoil.cli.failures import handled
+from petalfoil.cli.liftoff import liftoff
+from petalfoil.cli.reproduce import reproduce
+from petalfoil.cli.runup import runup
 from petalfoil.cli.show import show
 from petalfoil.cli.solve import solve
+from petalfoil.cli.stability import stability
 from petalfoil.cli.static import static
 from petalfoil.cli.streams import accept_any_text, emit
 
@@ -22,7 +28,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,  # `failures` speaks to the user, not a decorated traceback
     rich_markup_mode="rich",
 )
-for verb in (solve, curve, static, check, converge, show):
+for verb in (solve, curve, static, balance, liftoff, runup, coefficients, stability, check, converge, show, reproduce):
     app.command()(verb)
 
 

@@ -5,13 +5,17 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from petalfoil.cli.streams import say
 from petalfoil.errors import StoreError
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from petalfoil.results import Record
+
+Layout: TypeAlias = "Callable[[Sequence[Record], str], xr.Dataset]"
 
 PERIOD = 2.0  # [s] between rewrites: a fast curve is not slowed by its own file
 MAX_SHARE = 0.1  # of the time goes into rewriting: the file grows with the curve, and is rewritten whole
@@ -28,11 +32,20 @@ class Autosave:
         Verb the curve answers, stored in the file.
     clock : callable
         Gives the time [s].
+    layout : callable, optional
+        Makes labelled data of the points and the verb; by default a curve.
     """
 
-    def __init__(self, path: Path | None, verb: str, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self,
+        path: Path | None,
+        verb: str,
+        clock: Callable[[], float] = time.monotonic,
+        layout: Layout | None = None,
+    ) -> None:
         self.path = path
         self.verb = verb
+        self._layout = layout
         self._clock = clock
         self._due = clock() + PERIOD
 
@@ -55,4 +68,4 @@ class Autosave:
         from petalfoil.results.dataset import curve_dataset
         from petalfoil.results.store import save
 
-        save(curve_dataset(records, self.verb), self.path)
+        save((self._layout or curve_dataset)(records, self.verb), self.path)

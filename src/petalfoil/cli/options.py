@@ -34,6 +34,54 @@ Direction: TypeAlias = Annotated[
     str,
     typer.Option(metavar="ANGLE", help="Direction of the displacements, from x toward y."),
 ]
+Load: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        metavar="LOAD",
+        help='Load on the journal instead of the case\'s: "0 N, -50 N"; a single value acts along -y.',
+    ),
+]
+Loads: TypeAlias = Annotated[
+    str,
+    typer.Option("--load", metavar="LOADS", help='Loads along -y: "46.4 N, 55.6 N", or "10 N : 100 N : 10".'),
+]
+Share: TypeAlias = Annotated[
+    str,
+    typer.Option(metavar="SHARE", help="Share of the contacts below which the journal floats."),
+]
+Top: TypeAlias = Annotated[
+    str,
+    typer.Option("--to", metavar="QUANTITY", help='Speed to run up to, and back from: "30000 rpm".'),
+]
+Points: TypeAlias = Annotated[int, typer.Option(metavar="COUNT", help="Speeds on the way up, rest included.")]
+Frequencies: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        "--frequency",
+        metavar="LIST",
+        help='Whirl frequencies: "4000 rad/s, 8000 rad/s", or "0 rad/s : 9000 rad/s : 10"; by default the speed.',
+    ),
+]
+Speeds: TypeAlias = Annotated[
+    str | None,
+    typer.Option(metavar="LIST", help='Several speeds instead of one: "20000 rpm : 60000 rpm : 5".'),
+]
+ChartLoads: TypeAlias = Annotated[
+    str | None,
+    typer.Option("--loads", metavar="LIST", help='Several loads along -y instead of one: "10 N, 20 N".'),
+]
+Mass: TypeAlias = Annotated[
+    str | None,
+    typer.Option(metavar="QUANTITY", help='Mass of the rotor on this bearing: "2 kg"; by default the load\'s.'),
+]
+Csv: TypeAlias = Annotated[
+    Path | None,
+    typer.Option("--csv", metavar="FILE.csv", help="Write the coefficients as a table, units in its header."),
+]
+Ross: TypeAlias = Annotated[
+    Path | None,
+    typer.Option("--ross", metavar="FILE.toml", help="Write them for ROSS 3: .toml or .json; needs 5 speeds or more."),
+]
 Levels: TypeAlias = Annotated[int, typer.Option(metavar="COUNT", help="Number of grids, each twice as fine.")]
 Coarsest: TypeAlias = Annotated[
     int | None,

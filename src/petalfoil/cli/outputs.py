@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Self, TypeAlias
 
 import typer
 
@@ -18,8 +19,32 @@ if TYPE_CHECKING:
 
     from petalfoil.cli.answer import Answer
 
+Writer: TypeAlias = "Callable[[xr.Dataset, Path], None]"
+
 DATA_SUFFIXES = (".nc", ".nc4")
 FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Export:
+    """A file for another program.
+
+    Parameters
+    ----------
+    option : str
+        Option that asks for it.
+    path : Path
+        The file.
+    suffixes : tuple of str
+        Suffixes that are known.
+    write : callable
+        Writes it from labelled data.
+    """
+
+    option: str
+    path: Path
+    suffixes: tuple[str, ...]
+    write: Writer
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,14 +59,24 @@ class Outputs:
         NetCDF file.
     plot : Path or None
         Figure.
+    exports : tuple of Export
+        Files for other programs.
     """
 
     as_json: bool
     out: Path | None
     plot: Path | None
+    exports: tuple[Export, ...] = ()
 
     @classmethod
-    def checked(cls, *, as_json: bool, out: Path | None = None, plot: Path | None = None) -> Self:
+    def checked(
+        cls,
+        *,
+        as_json: bool,
+        out: Path | None = None,
+        plot: Path | None = None,
+        exports: tuple[Export, ...] = (),
+    ) -> Self:
         """Make sure, before any work is done, that it can be given out afterwards.
 
         Raises
@@ -53,7 +88,9 @@ class Outputs:
             _check(out, "--out", DATA_SUFFIXES)
         if plot is not None:
             _check(plot, "--plot", FIGURE_SUFFIXES)
-        return cls(as_json=as_json, out=out, plot=plot)
+        for export in exports:
+            _check(export.path, export.option, export.suffixes)
+        return cls(as_json=as_json, out=out, plot=plot, exports=exports)
 
     def deliver(self, answer: Answer, dataset: xr.Dataset | None = None) -> None:
         """Write the files, print the answer, and say what did not converge.
@@ -83,7 +120,7 @@ class Outputs:
             raise typer.Exit(NOT_CONVERGED)
 
     def _write_files(self, answer: Answer, dataset: xr.Dataset | None) -> None:
-        if self.out is None and self.plot is None:
+        if self.out is None and self.plot is None and not self.exports:
             return
         ds = answer.to_dataset() if dataset is None else dataset
         if self.out is not None:
@@ -92,6 +129,8 @@ class Outputs:
             save(ds, self.out)
         if self.plot is not None:
             self._draw(answer, ds, self.plot)
+        for export in self.exports:
+            export.write(ds, export.path)
 
     @staticmethod
     def _draw(answer: Answer, ds: xr.Dataset, path: Path) -> None:

@@ -31,6 +31,40 @@ def direction(text: str) -> float:
     return _named("--direction", units.parse_quantity, text, "rad")
 
 
+def load(text: str | None) -> tuple[float, float] | None:
+    """Load (x, y) [N] of ``--load``; a single value acts along -y; None where the case decides."""
+    if text is None:
+        return None
+    if "," in text:
+        return _named("--load", units.parse_pair, text, "N")
+    return 0.0, -_named("--load", units.parse_quantity, text, "N")
+
+
+def loads(option: str, text: str) -> list[float]:
+    """Loads along -y [N]."""
+    return _named(option, units.parse_range, text, "N")
+
+
+def speeds(option: str, text: str | None) -> list[float] | None:
+    """Speeds or whirl frequencies [rad/s]; None where none are given."""
+    return None if text is None else _named(option, units.parse_range, text, "rad/s")
+
+
+def top(text: str) -> float:
+    """Angular velocity [rad/s] of ``--to``."""
+    return _named("--to", units.parse_quantity, text, "rad/s")
+
+
+def mass(text: str | None) -> float | None:
+    """Mass [kg] of ``--mass``; None where none is given."""
+    return None if text is None else _named("--mass", units.parse_quantity, text, "kg")
+
+
+def share(text: str) -> float:
+    """Contact share [1] of ``--share``."""
+    return _named("--share", units.parse_quantity, text, "1")
+
+
 def _named(option: str, parse: Callable[[str, str], T], text: str, unit: str) -> T:
     try:
         return parse(text, unit)

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from petalfoil.results import Record
 
 
-def collect(points: Iterable[Record], count: int, autosave: Autosave, report: Report) -> Answer:
+def collect(
+    points: Iterable[Record], count: int, autosave: Autosave, report: Report, kind: type[Answer] = Answer
+) -> Answer:
     """Run all points.
 
     Parameters
@@ -27,6 +29,8 @@ def collect(points: Iterable[Record], count: int, autosave: Autosave, report: Re
         Keeps the file of finished points.
     report : callable
         Shows how far it has come.
+    kind : type
+        Kind of the answer.
 
     Returns
     -------
@@ -48,8 +52,8 @@ def collect(points: Iterable[Record], count: int, autosave: Autosave, report: Re
         if not records:
             raise
         say(f"interrupted: {len(records)} of {count} points are finished and kept")
-        return Answer(verb=autosave.verb, records=tuple(records), is_curve=True, interrupted=True)
+        return kind(verb=autosave.verb, records=tuple(records), is_curve=True, interrupted=True)
     except Exception:
         autosave.flush(records)  # the run is lost, its finished points need not be
         raise
-    return Answer(verb=autosave.verb, records=tuple(records), is_curve=True)
+    return kind(verb=autosave.verb, records=tuple(records), is_curve=True)

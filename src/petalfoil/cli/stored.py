@@ -5,6 +5,7 @@ from __future__ import annotations
 import xarray as xr
 
 from petalfoil.cli.answer import Answer
+from petalfoil.cli.kinds import KINDS, ChartAnswer
 from petalfoil.cli.study import StudyAnswer
 from petalfoil.results import Record, Scalar
 from petalfoil.results.schema import SCALARS, Kind
@@ -28,13 +29,35 @@ def answer_of(dataset: xr.Dataset) -> Answer:
     """
     if "grid" in dataset.dims:
         return _study(dataset)
+    if "load" in dataset.dims:
+        return _chart(dataset)
     is_curve = "point" in dataset.dims
     points = [dataset.isel(point=index) for index in range(dataset.sizes["point"])] if is_curve else [dataset]
     verb = str(dataset.attrs["analysis"])
     title = str(dataset.attrs.get("title", ""))
-    records = tuple(Record(analysis=verb, scalars=_scalars(point), title=title) for point in points)
+    records = tuple(_record(point, verb, title) for point in points)
     errors = None if is_curve else error_bars_of(dataset) or None
-    return Answer(verb=verb, records=records, is_curve=is_curve, errors=errors)
+    return KINDS.get(verb, Answer)(verb=verb, records=records, is_curve=is_curve, errors=errors)
+
+
+def _record(point: xr.Dataset, verb: str, title: str) -> Record:
+    """The scalars of a point, and its stiffness and damping: the only fields that are printed."""
+    scalars = _scalars(point)
+    if "stiffness" not in point or not scalars["converged"]:
+        return Record(analysis=verb, scalars=scalars, title=title)
+    fields = {name: point[name].values for name in ("stiffness", "damping")}
+    coords = {name: point[name].values for name in ("whirl_frequency", "row", "column")}
+    return Record(analysis=verb, scalars=scalars, title=title, fields=fields, coords=coords)
+
+
+def _chart(dataset: xr.Dataset) -> ChartAnswer:
+    """The points that were computed of a table over load and speed."""
+    verb, title = str(dataset.attrs["analysis"]), str(dataset.attrs.get("title", ""))
+    places = [(row, column) for row in range(dataset.sizes["load"]) for column in range(dataset.sizes["speed"])]
+    points = [dataset.isel(load=row, speed=column) for row, column in places]
+    computed = [point for point in points if str(point["status"].item())]
+    records = tuple(_record(point, verb, title) for point in computed)
+    return ChartAnswer(verb=verb, records=records)
 
 
 def _study(dataset: xr.Dataset) -> StudyAnswer:

@@ -11,13 +11,15 @@ from rich.console import Console
 from rich.table import Table
 
 from petalfoil.cli.answer import Answer
+from petalfoil.cli.kinds import ChartAnswer, CoefficientsAnswer
 from petalfoil.cli.study import StudyAnswer, grid_text
+from petalfoil.cli.wide_tables import charts, coefficients
 from petalfoil.results import Record
 from petalfoil.results.summary import ABSENT, cell, in_order, with_bar
 
 PIPE_WIDTH = 120  # where no terminal says how wide it is: no column of a curve is cut off
 
-# Columns of a curve with their headings; those that no point has are left out.
+# Columns of a curve with their headings, by verb where they differ; those that no point has are left out.
 COLUMNS = {
     "eccentricity_x": "e_x",
     "eccentricity_y": "e_y",
@@ -30,6 +32,25 @@ COLUMNS = {
     "friction_torque": "torque",
     "starting_torque": "starting torque",
     "max_stress": "stress",
+}
+OWN_COLUMNS = {
+    "liftoff": {
+        "load_y": "load y",
+        "liftoff_speed": "lift-off",
+        "touchdown_speed": "touch-down",
+        "liftoff_by_floor": "d ln up\n/ d ln floor",
+        "liftoff_by_share": "d ln up\n/ d ln share",
+    },
+    "runup": {
+        "leg": "leg",
+        "speed": "speed",
+        "eccentricity_x": "e_x",
+        "eccentricity_y": "e_y",
+        "contact_share": "contact share",
+        "min_film": "film",
+        "max_pressure": "pressure",
+        "friction_torque": "torque",
+    },
 }
 
 
@@ -48,17 +69,23 @@ def render(answer: Answer) -> str:
     """
     width = None if sys.stdout.isatty() else PIPE_WIDTH
     console = Console(width=width, markup=False, highlight=False, emoji=False)
-    table = _table(answer)
+    tables = _tables(answer)
     with console.capture() as capture:
         console.print(f"{answer.verb}: {answer.title}" if answer.title else answer.verb, style="bold")
-        console.print(table)
+        for table in tables:
+            console.print(table)
     return "\n".join(line.rstrip() for line in capture.get().rstrip().splitlines()) + "\n"
 
 
-def _table(answer: Answer) -> Table:
+def _tables(answer: Answer) -> list[Table]:
     if isinstance(answer, StudyAnswer):
-        return _study(answer)
-    return _curve(answer) if answer.is_curve else _single(answer.records[0], answer.errors or {})
+        return [_study(answer)]
+    if isinstance(answer, ChartAnswer):
+        return list(charts(answer))
+    if answer.is_curve and not isinstance(answer, CoefficientsAnswer):
+        return [_curve(answer)]
+    tables = [] if answer.is_curve else [_single(answer.records[0], answer.errors or {})]
+    return [*tables, coefficients(answer)] if isinstance(answer, CoefficientsAnswer) else tables
 
 
 def _single(record: Record, errors: Mapping[str, float]) -> Table:
@@ -98,14 +125,22 @@ def _study(answer: StudyAnswer) -> Table:
 
 def _curve(answer: Answer) -> Table:
     points = [record.reported() for record in answer.records]
-    names = [name for name in COLUMNS if any(name in point for point in points)]
+    columns = OWN_COLUMNS.get(answer.verb, COLUMNS)
+    names = [name for name in columns if any(name in point for point in points)]
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("point", justify="right")
     for name in names:
         unit = cell(name, 0.0).unit
-        table.add_column(f"{COLUMNS[name]}\n{unit}" if unit else COLUMNS[name], justify="right")
+        table.add_column(f"{columns[name]}\n{unit}" if unit else columns[name], justify="right")
     table.add_column("")
     for number, (point, record) in enumerate(zip(points, answer.records, strict=True), start=1):
         figures = [cell(name, point.get(name, float("nan"))).value for name in names]
-        table.add_row(str(number), *figures, "" if record.converged else "failed")
+        table.add_row(str(number), *figures, _remark(record))
     return table
+
+
+def _remark(record: Record) -> str:
+    """What is to be said of a point that its figures do not tell."""
+    if not record.converged:
+        return "failed"
+    return str(record.scalars.get("status", "")).removeprefix("converged").removeprefix("; ")

@@ -15,7 +15,7 @@ from petalfoil.equilibria.answer import from_closed
 from petalfoil.equilibria.cold import GOALS, content, nothing_found
 from petalfoil.equilibria.loaded import Balance, force_residual, journal_force, size_of
 from petalfoil.equilibria.package import assembled
-from petalfoil.equilibria.response import Response
+from petalfoil.equilibria.response import Motion, Response
 from petalfoil.equilibria.solid import pressed_solid
 from petalfoil.equilibria.warm import RESTART_BARRIER, keep_open, predict
 from petalfoil.equilibria.work import Work
@@ -171,16 +171,16 @@ def bordered_step(
     problem: CoupledProblem, state: SetState, load: Array, work: Work
 ) -> tuple[CoupledProblem, Array] | None:
     """One Newton step of state and position: block elimination with one factorisation and three solves."""
-    none = np.zeros(len(state.closed))
     try:
-        factor = work.film_solver.factor(state.ties.reduce(state.line.matrix(none)), state.ties.rank(problem.rank))
+        response = Motion(problem, problem.linearize(state.x), state.closed, state.ties).respond(0.0, work.film_solver)
     except SingularMatrixError:
         return None
-    response = Response(problem, problem.linearize(state.x), state.ties, factor, state.closed, 0.0)
-    film, by_e = FilmForce.of(problem), problem.layout.wall.contacts.by_e[state.closed]
-    settle = state.ties.spread(factor.solve(-state.ties.gather(state.line.residual)))
-    lam = state.ties.reactions(state.line.residual + state.line.matrix(none) @ settle)
-    left = film.at(state.x[problem.positive] + settle[problem.positive]) + by_e.T @ lam + load
+    ties, residual = state.ties, state.line.residual
+    settle = ties.spread(response.factor.solve(-ties.gather(residual)))
+    lam = ties.reactions(residual + response.apply(settle))
+    by_e = problem.layout.wall.contacts.by_e[state.closed]
+    pressures = state.x[problem.positive] + settle[problem.positive]
+    left = FilmForce.of(problem).at(pressures) + by_e.T @ lam + load
     follow, de = made_up(response, left)
     change = settle + follow
     share = reach(problem, state.x, change, de)
@@ -201,10 +201,8 @@ MOST_FILMS = 10.0
 
 def finished(problem: CoupledProblem, state: SetState, load: Array, work: Work) -> Balance | None:
     """Refine the state; the position follows where the refined film pushes otherwise. One factorisation."""
-    none = np.zeros(len(state.closed))
-    factor = work.film_solver.factor(state.ties.reduce(state.line.matrix(none)), state.ties.rank(problem.rank))
-    closed = Closed(state.x, state.lam, state.closed, state.residual, state.ties, factor)
-    response = Response(problem, problem.linearize(state.x), state.ties, factor, state.closed, 0.0)
+    response = Motion(problem, problem.linearize(state.x), state.closed, state.ties).respond(0.0, work.film_solver)
+    closed = Closed(state.x, state.lam, state.closed, state.residual, state.ties, response.factor)
     best: Balance | None = None
     for _ in range(CORRECTIONS):
         answer = from_closed(problem, closed, "balanced with the load")
@@ -228,9 +226,6 @@ CORRECTIONS = 3
 
 def made_up(response: Response, left: Array) -> tuple[Array, Array]:
     """Changes of the unknowns (n,) and of the position (2,) that make up for a force `left` (2,) on the journal."""
-    by_e, kept = response.problem.layout.wall.contacts.by_e[response.closed], response.problem.positive
-    film = FilmForce.of(response.problem)
-    units = [response.unit(k) for k in (0, 1)]
-    gradient = np.column_stack([film.by_P @ dx[kept] + by_e.T @ dlam for dx, dlam in units])
+    changes, gradient = response.units()
     de = np.asarray(np.linalg.solve(gradient, -left), dtype=np.float64)
-    return units[0][0] * de[0] + units[1][0] * de[1], de
+    return changes @ de, de

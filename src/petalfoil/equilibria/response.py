@@ -9,11 +9,14 @@ Contacts that carry load stay closed, and the wall follows the journal where the
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.equilibria.answer import Answer
 from petalfoil.problem.balance import FilmForce
 from petalfoil.problem.coupled import CoupledProblem, Linearization
 from petalfoil.solvers.linear import Factor, LinearSolver
@@ -25,8 +28,8 @@ Values = NDArray[Any]
 
 
 @dataclass(frozen=True)
-class Response:
-    """Displacement of the journal at one state and frequency, ready to be applied.
+class Motion:
+    """The system about one state, whatever the frequency.
 
     Attributes
     ----------
@@ -34,62 +37,87 @@ class Response:
         Speed and position.
     line : Linearization
         The system there.
+    closed : (m,) bool array
+        Gaps that carry load.
     ties : Ties
-        Contacts that carry load.
+        These gaps, eliminated.
+    """
+
+    problem: CoupledProblem
+    line: Linearization
+    closed: NDArray[np.bool_]
+    ties: Ties
+
+    @classmethod
+    def about(cls, answer: Answer) -> Motion:
+        """Small motions about an equilibrium."""
+        problem, closed = answer.problem, answer.in_contact
+        return cls(problem, problem.linearize(answer.x), closed, tie(problem.G, closed))
+
+    @cached_property
+    def steady(self) -> sp.csc_array:
+        """`J`."""
+        return self.line.matrix(np.zeros(len(self.closed)))
+
+    @cached_property
+    def stored(self) -> sp.csc_array:
+        """`M`, the derivative of the stored mass."""
+        return self.line.matrix(np.zeros(len(self.closed)), 1.0) - self.steady
+
+    def respond(self, nu: float, solver: LinearSolver) -> Response:
+        """Factorise the response at whirl ratio `nu`; one factorisation."""
+        matrix = self.steady + 1j * nu * self.stored if nu else self.steady
+        factor = solver.factor(self.ties.reduce(matrix.tocsc()), self.ties.rank(self.problem.rank))
+        return Response(self, factor, 1j * nu)
+
+
+@dataclass(frozen=True)
+class Response:
+    """Displacement of the journal at one state and frequency, ready to be applied.
+
+    Attributes
+    ----------
+    motion : Motion
+        The state.
     factor : Factor
         Reduced tangent, complex where the frequency is not zero.
     rate : complex
         `i nu`.
     """
 
-    problem: CoupledProblem
-    line: Linearization
-    ties: Ties
+    motion: Motion
     factor: Factor
-    closed: NDArray[np.bool_]
-    rate: complex
+    rate: complex = 0.0
 
     def apply(self, v: Values) -> Values:
         """Tangent, with storage at the frequency, times a change of the unknowns."""
-        none = np.zeros(len(self.closed))
-        steady = self.line.matrix(none)
-        out: Values = steady @ v
-        if self.rate:
-            out = out + self.rate * ((self.line.matrix(none, 1.0) - steady) @ v)
-        return out
+        out: Values = self.motion.steady @ v
+        return out + self.rate * (self.motion.stored @ v) if self.rate else out
 
     def forcing(self, change: Array) -> Values:
         """Change of the equations by a change of the gaps they read, (n,)."""
-        steady = self.line.by_shift(change)
+        line = self.motion.line
+        steady = line.by_shift(change)
         if not self.rate:
             return steady
-        return steady + self.rate * (self.line.by_shift(change, 1.0) - steady)
+        return steady + self.rate * (line.by_shift(change, 1.0) - steady)
 
     def unit(self, k: int) -> tuple[Values, Values]:
         """Change of the unknowns (n,) and of the closed reactions (k,) by a unit displacement along axis `k`."""
-        by_e = self.problem.layout.wall.contacts.by_e[:, k]
-        follow = self.ties.close(by_e[self.closed])
-        force = self.apply(follow) + self.forcing(by_e)
-        change = follow + self.ties.spread(self.factor.solve(-self.ties.gather(force)))
-        return change, self.ties.reactions(self.apply(change) + self.forcing(by_e))
+        by_e, ties = self.motion.problem.layout.wall.contacts.by_e[:, k], self.motion.ties
+        follow = ties.close(by_e[self.motion.closed])
+        forcing = self.forcing(by_e)
+        change = follow + ties.spread(self.factor.solve(-ties.gather(self.apply(follow) + forcing)))
+        return change, ties.reactions(self.apply(change) + forcing)
+
+    def units(self) -> tuple[Values, Values]:
+        """Both unit displacements: changes of the unknowns (n, 2), and `dF/de` (2, 2) of film and contacts (E4) [1]."""
+        problem = self.motion.problem
+        film, by_e = FilmForce.of(problem), problem.layout.wall.contacts.by_e[self.motion.closed]
+        both = [self.unit(k) for k in (0, 1)]
+        columns = [film.by_P @ change[problem.positive] + by_e.T @ reaction for change, reaction in both]
+        return np.column_stack([change for change, _ in both]), np.column_stack(columns)
 
     def force_gradient(self) -> Values:
         """`dF/de` of film and contacts on the journal, (2, 2), over unit of force and length [1]."""
-        film, by_e = FilmForce.of(self.problem), self.problem.layout.wall.contacts.by_e[self.closed]
-        columns = []
-        for k in (0, 1):
-            change, reaction = self.unit(k)
-            columns.append(film.by_P @ change[self.problem.positive] + by_e.T @ reaction)
-        return np.column_stack(columns)
-
-
-def respond(state: tuple[CoupledProblem, Array, NDArray[np.bool_]], nu: float, solver: LinearSolver) -> Response:
-    """Factorise the response at `state` (problem, unknowns, closed gaps) and whirl ratio `nu`; one factorisation."""
-    problem, x, closed = state
-    line, ties, rate = problem.linearize(x), tie(problem.G, closed), 1j * nu
-    none = np.zeros(len(closed))
-    matrix = line.matrix(none)
-    if nu:
-        matrix = matrix + rate * (line.matrix(none, 1.0) - matrix)
-    factor = solver.factor(ties.reduce(matrix.tocsc()), ties.rank(problem.rank))
-    return Response(problem, line, ties, factor, closed, rate)
+        return self.units()[1]

@@ -8,6 +8,9 @@ In the order data flows:
 - ``profiles``  pressure and film over one petal, for a family (`petal_profiles`)
 - ``unrolled``  pressure and film over angle and length (`maps`)
 - ``curves``    characteristics against displacement (`load_characteristic`, `static`)
+- ``speeds``    over the speed under a load (`runup`), lift-off over the load (`liftoff`)
+- ``impedance`` stiffness and damping over whirl frequency (`coefficients`)
+- ``whirl``     stability of a rigid rotor over speed and load (`stability`)
 - ``section``   the loaded bearing, cut across (`cross_section`)
 - ``assembly``  the package as it is put together (`package`)
 - ``refinement`` figures against the grid (`convergence`)
@@ -28,34 +31,45 @@ if TYPE_CHECKING:
     from petalfoil.plot.assembly import package
     from petalfoil.plot.curves import load_characteristic, static
     from petalfoil.plot.files import save
+    from petalfoil.plot.impedance import coefficients
     from petalfoil.plot.overview import summary
     from petalfoil.plot.profiles import petal_profiles
     from petalfoil.plot.refinement import convergence
     from petalfoil.plot.section import cross_section
+    from petalfoil.plot.speeds import liftoff, runup
     from petalfoil.plot.unrolled import maps
+    from petalfoil.plot.whirl import stability
 
 __all__ = [
+    "coefficients",
     "convergence",
     "cross_section",
+    "liftoff",
     "load_characteristic",
     "maps",
     "package",
     "petal_profiles",
     "pressure_and_film",
+    "runup",
     "save",
+    "stability",
     "static",
     "summary",
 ]
 
 _HOME = {
+    "coefficients": "impedance",
     "convergence": "refinement",
     "cross_section": "section",
+    "liftoff": "speeds",
     "load_characteristic": "curves",
     "maps": "unrolled",
     "package": "assembly",
     "petal_profiles": "profiles",
     "pressure_and_film": "around",
+    "runup": "speeds",
     "save": "files",
+    "stability": "whirl",
     "static": "curves",
     "summary": "overview",
 }

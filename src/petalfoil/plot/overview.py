@@ -10,10 +10,13 @@ from petalfoil.plot import style
 from petalfoil.plot.around import draw_film, draw_pressure, plane_fact
 from petalfoil.plot.assembly import package
 from petalfoil.plot.curves import load_characteristic, static
+from petalfoil.plot.impedance import coefficients
 from petalfoil.plot.reading import is_spatial, one_point
 from petalfoil.plot.refinement import convergence
 from petalfoil.plot.section import cross_section, draw_section
+from petalfoil.plot.speeds import liftoff, runup
 from petalfoil.plot.unrolled import draw_film_map, draw_pressure_map
+from petalfoil.plot.whirl import stability
 
 
 def summary(ds: xr.Dataset) -> Figure:
@@ -28,7 +31,7 @@ def summary(ds: xr.Dataset) -> Figure:
     -------
     matplotlib.figure.Figure
         A point: section, pressure and film. A curve: its characteristic. A check: the package. A grid study:
-        figures against the grid.
+        figures against the grid. A run-up, lift-off, coefficients, stability: figures over speed, load or frequency.
 
     Raises
     ------
@@ -45,9 +48,16 @@ def summary(ds: xr.Dataset) -> Figure:
         return convergence(ds)
     if analysis == "static":
         return cross_section(ds) if single else static(ds)
-    if analysis in ("solve", "curve"):
+    if analysis in ("solve", "curve", "balance"):
         return _state(ds) if single else load_characteristic([("", ds)])
-    raise UsageError(f"no figure suits a result of {analysis!r}; known: check, converge, curve, solve, static")
+    if analysis in DYNAMIC:
+        return DYNAMIC[analysis](ds)
+    known = ", ".join(sorted(("check", "converge", "static", "solve", "curve", "balance", *DYNAMIC)))
+    raise UsageError(f"no figure suits a result of {analysis!r}; known: {known}")
+
+
+DYNAMIC = {"runup": runup, "liftoff": liftoff, "coefficients": coefficients, "stability": stability}
+"""Figures over speed, load and whirl frequency."""
 
 
 def _state(ds: xr.Dataset) -> Figure:

@@ -24,6 +24,7 @@ _MEASURES = {
     "N": ("a force", "50 N"),
     "Pa": ("a pressure or an elastic modulus", "1 bar"),
     "Pa*s": ("a dynamic viscosity", "18.5 uPa*s"),
+    "kg": ("a mass", "2 kg"),
     "m": ("a length", "25 um"),
     "rad": ("an angle", "45 deg"),
     "rad/s": ("an angular speed", "60000 rpm"),

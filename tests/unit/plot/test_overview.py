@@ -37,5 +37,5 @@ def test_a_single_static_point_gets_its_section() -> None:
 def test_what_has_no_answer_or_no_figure_is_refused(unconverged: xr.Dataset, flat: xr.Dataset) -> None:
     with pytest.raises(ConvergenceError):
         plot.summary(unconverged)
-    with pytest.raises(UsageError, match="known: check, converge, curve, solve, static"):
+    with pytest.raises(UsageError, match="known: balance, check, coefficients, converge"):
         plot.summary(flat.assign_attrs(analysis="orbit"))

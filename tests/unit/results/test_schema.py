@@ -19,7 +19,7 @@ def test_every_variable_explains_itself(name: str) -> None:
     assert bool(variable.units) == (
         variable.kind in (Kind.FLOAT, Kind.INT)
     )  # text and flags have no unit, numbers have one
-    assert set(variable.dims) <= {"petal", "phi", "phi_exposed", "z"}
+    assert set(variable.dims) <= set(COORDINATES)
 
 
 def test_the_tables_do_not_share_a_name() -> None:

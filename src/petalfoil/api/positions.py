@@ -1,25 +1,17 @@
-"""The verbs as functions: a case in, labelled data out.
-
-Each is the same analysis as the verb of the command line. Speeds, displacements and angles are SI numbers or texts
-with a unit, as in a case.
-"""
+"""Questions at a given position of the journal."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
+from petalfoil.api.arguments import Number, Progress, checked, distances_of, position_of, speed_of
 from petalfoil.case import Case
-from petalfoil.errors import UsageError
-from petalfoil.units import parse_pair, parse_quantity, parse_range
-from petalfoil.units.reading import shown
+from petalfoil.units import parse_quantity
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Progress = Callable[[float, str], None]
-Number = float | str  # a float in SI units, or a text such as "25 um"
 
 DOWNWARD = -math.pi / 2.0  # the weight of the rotor displaces the journal along −y [rad]
 
@@ -64,7 +56,7 @@ def solve(
     from petalfoil.results.dataset import to_dataset
 
     record = equilibrium.run(
-        _checked(case), speed=_speed(speed), eccentricity=_position(eccentricity), progress=progress
+        checked(case), speed=speed_of(speed), eccentricity=position_of(eccentricity), progress=progress
     )
     if not error:
         return to_dataset(record)
@@ -119,9 +111,9 @@ def converge(
     from petalfoil.results.study import study_dataset
 
     records = grid_study.run(
-        _checked(case),
-        speed=_speed(speed),
-        eccentricity=_position(eccentricity),
+        checked(case),
+        speed=speed_of(speed),
+        eccentricity=position_of(eccentricity),
         levels=levels,
         coarsest=coarsest,
         progress=progress,
@@ -161,8 +153,8 @@ def curve(
     from petalfoil.analysis import load_curve
     from petalfoil.results.dataset import curve_dataset
 
-    distances, angle = _distances(eccentricities), parse_quantity(direction, "rad")
-    records = load_curve.iterate(_checked(case), distances, direction=angle, speed=_speed(speed), progress=progress)
+    distances, angle = distances_of(eccentricities), parse_quantity(direction, "rad")
+    records = load_curve.iterate(checked(case), distances, direction=angle, speed=speed_of(speed), progress=progress)
     return curve_dataset(list(records), analysis="curve")
 
 
@@ -194,8 +186,8 @@ def static(
     from petalfoil.analysis import static as analysis
     from petalfoil.results.dataset import curve_dataset
 
-    distances, angle = _distances(eccentricities), parse_quantity(direction, "rad")
-    records = analysis.iterate(_checked(case), distances, direction=angle, progress=progress)
+    distances, angle = distances_of(eccentricities), parse_quantity(direction, "rad")
+    records = analysis.iterate(checked(case), distances, direction=angle, progress=progress)
     return curve_dataset(list(records), analysis="static")
 
 
@@ -204,42 +196,4 @@ def check(case: Case) -> xr.Dataset:
     from petalfoil.analysis import check as analysis
     from petalfoil.results.dataset import to_dataset
 
-    return to_dataset(analysis.run(_checked(case)))
-
-
-# ---------------------------------------------------------------------------------------------- arguments
-
-
-def _checked(case: Any) -> Case:
-    if isinstance(case, Case):
-        return case
-    raise UsageError(f"{shown(case)} is not a Case; Case.load(path) reads one from a file")
-
-
-def _speed(speed: Number | None) -> float | None:
-    return None if speed is None else parse_quantity(speed, "rad/s")
-
-
-def _position(position: Sequence[Number] | str | None) -> tuple[float, float] | None:
-    if position is None:
-        return None
-    if isinstance(position, str):
-        return parse_pair(position, "m")
-    if not _is_sequence(position) or len(position) != 2:
-        raise UsageError(f"eccentricity: {shown(position)} is not a pair (x, y)")
-    return parse_quantity(position[0], "m"), parse_quantity(position[1], "m")
-
-
-def _distances(distances: Sequence[Number] | str) -> list[float]:
-    if isinstance(distances, str):
-        return parse_range(distances, "m")
-    if not _is_sequence(distances):
-        raise UsageError(f"eccentricities: {shown(distances)} is not a list of displacements")
-    if len(distances) == 0:
-        raise UsageError("eccentricities: give at least one displacement")
-    return [parse_quantity(distance, "m") for distance in distances]
-
-
-def _is_sequence(value: object) -> bool:
-    """Whether `value` has entries in order; NumPy arrays do although they are no `Sequence`."""
-    return isinstance(value, Sequence) or (hasattr(value, "__len__") and hasattr(value, "__getitem__"))
+    return to_dataset(analysis.run(checked(case)))

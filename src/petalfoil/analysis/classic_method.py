@@ -1,0 +1,94 @@
+"""The paper's own method behind the same verbs: its state as an answer, with the same figures and flags."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from petalfoil.analysis.session import TYPICAL_STEPS
+from petalfoil.case import Case, Method
+from petalfoil.classic import ClassicState, Run, assembled, relax
+from petalfoil.classic.relaxation import Row
+from petalfoil.equilibria.answer import Answer, State, total_residual
+from petalfoil.equilibria.work import Work
+from petalfoil.errors import UsageError
+from petalfoil.problem.coupled import CoupledProblem
+
+TYPICAL_OUTER = 150.0
+"""Outer iterations of a typical run."""
+
+
+def is_classic(case: Case) -> bool:
+    """Whether the case asks for the paper's method."""
+    return case.model.method is Method.CLASSIC
+
+
+def typical_steps(case: Case) -> float:
+    """Rows of history that a run of `case` typically writes."""
+    return TYPICAL_OUTER if is_classic(case) else TYPICAL_STEPS
+
+
+def newton_only(case: Case) -> None:
+    """Refuse the paper's method where a question needs the tangent of an answer.
+
+    Raises
+    ------
+    UsageError
+        The case asks for the paper's method.
+    """
+    if is_classic(case):
+        raise UsageError(
+            'this needs model.method = "newton": the classic method has no tangent; it solves, follows curves and '
+            "finds the package at rest"
+        )
+
+
+def by_classic(problem: CoupledProblem, work: Work, known: Answer | None = None) -> Answer:
+    """The equilibrium that film and package relax to, from the assembled package or from a `known` neighbour.
+
+    Raises
+    ------
+    ConvergenceError
+        A number of steps was used up.
+    """
+    reached = relax(telling_run(problem, work), None if known is None else start_from(known))
+    way = "the assembled package" if known is None else "the neighbouring point"
+    return answer_of(problem, reached, f"film and package relaxed in turn from {way}, {reached.outer} times")
+
+
+def rest_by_classic(problem: CoupledProblem, work: Work) -> Answer:
+    """The assembled package with its film at rest, by gradient descent.
+
+    Raises
+    ------
+    ConvergenceError
+        A number of steps was used up.
+    """
+    still = problem.at(bearing_number=0.0)
+    reached = assembled(telling_run(still, work))
+    work.note("classic", package_steps=reached.package_steps)
+    return answer_of(still, reached, "assembled package at rest, by gradient descent")
+
+
+def telling_run(problem: CoupledProblem, work: Work) -> Run:
+    """A run that writes the history of `work`."""
+
+    def tell(row: Row) -> None:
+        work.note("classic", **row)
+
+    def pulse() -> None:
+        if work.tell is not None:
+            work.tell("classic")
+
+    return Run(problem, tell=tell, pulse=pulse)
+
+
+def start_from(known: Answer) -> ClassicState:
+    """A known neighbour as a start."""
+    n = known.problem.layout.n_wall
+    return ClassicState(known.x[:n], known.x[n:], known.lam, 0, 0, 0)
+
+
+def answer_of(problem: CoupledProblem, reached: ClassicState, way: str) -> Answer:
+    """Where the method came to rest, as an answer; its residual is what it is, some 1e-6."""
+    state = State(np.concatenate([reached.w, reached.P]), np.zeros(len(reached.w)), reached.lam)
+    return Answer(problem, state, total_residual(problem, state), way)

@@ -1,0 +1,71 @@
+"""``petalfoil reproduce``: the paper's figures and claims, computed anew."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+import textwrap
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from petalfoil.cli.failures import NOT_CONVERGED, handled
+from petalfoil.cli.options import Json
+from petalfoil.cli.progress import bar
+from petalfoil.cli.streams import emit, say
+from petalfoil.errors import UsageError
+
+if TYPE_CHECKING:
+    from petalfoil.report.claims import Evidence
+
+Folder = Annotated[Path, typer.Option(metavar="FOLDER", help="Where page and data go; it is made if it is not there.")]
+
+
+def reproduce(out: Folder = Path("report"), as_json: Json = False) -> None:
+    """Compute the paper's Figures 6, 7 and 8 and its claims: a page and data.
+
+    Three bearings with 6, 8 and 10 petals, flat and in space; a study of what
+    the paper does not state. A few minutes on one core.
+
+    Example: petalfoil reproduce --out report
+    """
+    with handled(as_json):
+        _check(out)
+
+        from petalfoil.report.reproduce import report
+
+        with bar("reproduce") as progress:
+            evidence, page = report(out, progress=progress)
+        emit(_json(evidence, page) if as_json else _text(evidence, page))
+        failed = [record for family in evidence.families for record in family.points if not record.converged]
+        if failed:
+            say(f"{len(failed)} points did not converge and are left blank")
+            raise typer.Exit(NOT_CONVERGED)
+
+
+def _check(folder: Path) -> None:
+    """Make sure before any work that the folder can be written to."""
+    try:
+        folder.mkdir(exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise UsageError(f"--out: {folder} cannot be written as a folder: {error.strerror}") from error
+
+
+def _json(evidence: Evidence, page: Path) -> str:
+    from petalfoil.report.files import summary
+
+    return json.dumps({"page": str(page), **summary(evidence)}, allow_nan=False) + "\n"
+
+
+def _text(evidence: Evidence, page: Path) -> str:
+    """Claims and where they stand."""
+    from petalfoil.report.claims import claims
+
+    lines = []
+    for claim in claims(evidence):
+        lines += [f"{claim.verdict.upper()}: {claim.quote} ({claim.where})"]
+        lines += [textwrap.fill(claim.ours, 110, initial_indent="    ", subsequent_indent="    "), ""]
+    return "\n".join([*lines, f"Figures, the study of assumptions and data: {page}\n"])

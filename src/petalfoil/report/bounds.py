@@ -1,0 +1,116 @@
+"""The paper's restrictions as it prints them: fixed bounds (21), (22) in place of contact between petals.
+
+    W >= R_j + e.n + h_min + 3/2 delta - r0     where a petal is covered,   0 < phi < phi3    (21)
+    W <= R_B - 3/2 delta - r0                   where it lies on another,   phi0 <= phi       (22)
+
+One layer is left free for the neighbour, wherever it is; petals then know nothing of each other but through the film.
+The other restrictions are those of the package. (The text prints `R_j` for `R_B` in (22), and `delta0` for `delta`.)
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from petalfoil.analysis.session import one_thread
+from petalfoil.case import Case
+from petalfoil.equilibria.answer import Answer
+from petalfoil.equilibria.cold import solve_cold
+from petalfoil.equilibria.track import advance
+from petalfoil.equilibria.work import Work
+from petalfoil.errors import ConvergenceError
+from petalfoil.physics.contact import Contacts
+from petalfoil.physics.forces import contact_force, film_force, node_area
+from petalfoil.problem.build import build_problem
+from petalfoil.problem.coupled import CoupledProblem
+from petalfoil.structure.petals import build_mesh, petals_of
+
+Array = NDArray[np.float64]
+
+
+def bounded_loads(case: Case, displacements: tuple[float, ...]) -> tuple[tuple[float, ...], float, float]:
+    """`|F|` at downward displacements [N], the film's push at the centre [N], largest contact share [1].
+
+    A point that is not found, and those after it, are nan.
+    """
+    problem = bounded(case)
+    places = [
+        problem.at(displacement=np.array([0.0, -e]) / problem.layout.scales.length) for e in (0.0, *displacements)
+    ]
+    with one_thread():
+        found = _followed(places)
+    figures = [_figures(place, answer, case) for place, answer in zip(places, found, strict=True)]
+    loads, pushes, shares = zip(*figures, strict=True)
+    return tuple(loads[1:]), pushes[0], float(np.max(shares))
+
+
+def _followed(places: list[CoupledProblem]) -> list[Answer | None]:
+    """The answers along a curve."""
+    found: list[Answer | None] = []
+    try:
+        known = solve_cold(places[0], Work())
+        found.append(known)
+        for place in places[1:]:
+            known, _ = advance(known, place, Work())
+            found.append(known)
+    except ConvergenceError:  # the points that are missing say so
+        pass
+    return found + [None] * (len(places) - len(found))
+
+
+def _figures(problem: CoupledProblem, answer: Answer | None, case: Case) -> tuple[float, float, float]:
+    """Load [N], the film's push [N], contact share [1]."""
+    if answer is None:
+        return math.nan, math.nan, math.nan
+    film, scales, radius = problem.layout.wall.film, problem.layout.scales, case.bearing.journal_radius
+    excess = (problem.pressure(answer.x) - 1.0) * scales.pressure
+    touching = (
+        answer.lam[problem.layout.wall.contacts.journal].reshape(*film.theta.shape, -1).sum(axis=2) * scales.force
+    )
+    force = film_force(film, radius, excess) + contact_force(film.theta, touching)
+    push, held = float(np.sum(excess * node_area(film, radius))), float(touching.sum())
+    return float(np.hypot(*force)), push, held / (held + push) if held > 0.0 else 0.0
+
+
+def bounded(case: Case) -> CoupledProblem:
+    """The coupled problem of `case` with fixed bounds between its petals."""
+    problem = build_problem(case)
+    wall = replace(problem.layout.wall, contacts=bounds(case, problem.layout.wall.contacts))
+    return replace(problem, layout=replace(problem.layout, wall=wall))
+
+
+def bounds(case: Case, contacts: Contacts) -> Contacts:
+    """Gaps of the package with the bounds in place of those between petals."""
+    (petals, package), mesh = petals_of(case), build_mesh(case)
+    delta, least = petals.total_thickness, case.bearing.journal_radius + case.surface.film_floor
+    r0 = np.broadcast_to(package.free_radius(mesh.phi)[None, :, None], mesh.shape)
+    theta = np.broadcast_to(mesh.theta[:, :, None], mesh.shape)
+    area = np.broadcast_to(package.metric_radius * mesh.arc_weight[:, None] * mesh.axial.weight, mesh.shape)
+    covered, lap, kept = slice(1, mesh.n_node - mesh.cells - 1), mesh.on_neighbour, slice(0, contacts.bushing.stop)
+    number, n = mesh.free_numbers(), contacts.G.shape[1]
+    direction = np.stack([np.cos(theta[:, covered]).ravel(), np.sin(theta[:, covered]).ravel()], axis=1)
+    inner, outer = (
+        (r0[:, covered] - least - 1.5 * delta).ravel(),
+        (case.bearing.bushing_radius - 1.5 * delta - r0[:, lap]),
+    )
+    rows = (contacts.G[kept], _picked(number[:, covered], 1.0, n), _picked(number[:, lap], -1.0, n))
+    rest = np.concatenate([contacts.rest[kept], inner, outer.ravel()])
+    return Contacts(
+        G=sp.csr_array(sp.vstack(rows, format="csr")),
+        rest=rest,
+        by_e=np.concatenate([contacts.by_e[kept], -direction, np.zeros((outer.size, 2))]),
+        area=np.concatenate([contacts.area[kept], area[:, covered].ravel(), area[:, lap].ravel()]),
+        journal=contacts.journal,
+        bushing=contacts.bushing,
+        petals=slice(contacts.bushing.stop, len(rest)),
+    )
+
+
+def _picked(numbers: NDArray[np.intp], sign: float, n: int) -> sp.csr_array:
+    """Rows that pick one deflection each."""
+    cols = numbers.ravel()
+    return sp.coo_array((np.full(len(cols), sign), (np.arange(len(cols)), cols)), shape=(len(cols), n)).tocsr()

@@ -1,0 +1,142 @@
+"""Lift-off, touch-down and run-up: brackets, load, hysteresis, both legs through contact."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from petalfoil.analysis import balance, liftoff, runup
+from petalfoil.analysis.speeds import SpeedLine
+from petalfoil.equilibria.work import Work
+from petalfoil.errors import UsageError
+from petalfoil.results.record import Record
+from tests.cases import case
+
+BEARING = case("paper_n8", **{"model.cells_per_pitch": 16})
+
+
+def number(record: Record, name: str) -> float:
+    return float(record.scalars[name])
+
+
+def share(speed: float, load: float) -> float:
+    """Share of the contacts of a cold balance."""
+    return float(balance.run(BEARING, (0.0, -load), speed=speed).scalars["contact_share"])
+
+
+LOAD = 40.0  # N
+
+
+@pytest.fixture(scope="module")
+def lifted() -> Record:
+    (record,) = liftoff.iterate(BEARING, [LOAD])
+    return record
+
+
+def test_the_share_is_crossed_within_a_thousandth_of_the_speed(lifted: Record) -> None:
+    for name in ("liftoff_speed", "touchdown_speed"):
+        speed = number(lifted, name)
+        half = 0.55 * liftoff.PRECISION  # the bracket's middle is reported; its ends straddle the share
+        assert share(speed * (1.0 - half), LOAD) > liftoff.SHARE >= share(speed * (1.0 + half), LOAD)
+
+
+def test_a_heavier_load_lifts_off_later(lifted: Record) -> None:
+    """Where load rules and not preload: above 10 N on the paper's eight petals."""
+    near = BEARING.replace(**{"operation.speed": number(lifted, "liftoff_speed")})
+    lighter, heavier = (liftoff.crossings(near, load, liftoff.SHARE, Work())[0] for load in (0.8 * LOAD, 1.25 * LOAD))
+    assert lighter < number(lifted, "liftoff_speed") < heavier
+
+
+def test_from_below_and_from_above_the_same_crossings_are_found(lifted: Record) -> None:
+    """The case touches at its own speed, so that `lifted` ascended first; a faster one descends first."""
+    faster = BEARING.replace(**{"operation.speed": 1.3 * number(lifted, "liftoff_speed")})
+    assert share(BEARING.operation.speed, LOAD) > liftoff.SHARE >= share(faster.operation.speed, LOAD)
+    found = liftoff.crossings(faster, LOAD, liftoff.SHARE, Work())
+    wanted = [number(lifted, name) for name in ("liftoff_speed", "touchdown_speed")]
+    assert_allclose(found, wanted, rtol=1.1 * liftoff.PRECISION, atol=0.0)
+
+
+def test_sensitivity_is_that_of_another_floor_and_share(lifted: Record) -> None:
+    up, factor = number(lifted, "liftoff_speed"), 0.9
+    near = BEARING.replace(**{"operation.speed": up, "surface.film_floor": factor * BEARING.surface.film_floor})
+    by_floor = math.log(liftoff.crossings(near, LOAD, liftoff.SHARE, Work())[0] / up) / math.log(factor)
+    assert_allclose(number(lifted, "liftoff_by_floor"), by_floor, rtol=0.0, atol=0.05)
+    assert -0.2 < number(lifted, "liftoff_by_share") < 0.0  # a smaller share is reached later, if little
+
+
+def test_an_overload_never_floats() -> None:
+    (record,) = liftoff.iterate(BEARING, [400.0])
+    assert record.converged
+    assert number(record, "liftoff_speed") == number(record, "touchdown_speed") == math.inf
+    assert "does not lift off" in str(record.scalars["status"])
+    assert math.isnan(number(record, "liftoff_by_floor"))
+
+
+@pytest.mark.parametrize(
+    ("loads", "least", "reason"), [([-1.0], 0.01, "positive"), ([], 0.01, "positive"), ([1.0], 1.0, "between 0 and 1")]
+)
+def test_what_cannot_be_asked(loads: list[float], least: float, reason: str) -> None:
+    with pytest.raises(UsageError, match=reason):
+        liftoff.iterate(BEARING, loads, share=least)
+
+
+def test_a_plain_bearing_has_no_package_to_lift_off_from() -> None:
+    for asked in (
+        lambda: liftoff.iterate(case("plain_journal"), [1.0]),
+        lambda: runup.iterate(case("plain_journal"), (0.0, -1.0), 100.0),
+    ):
+        with pytest.raises(UsageError, match=r"\[petals\]"):
+            asked()
+
+
+# ---------------------------------------------------------------------------------------------- run-up
+
+
+@pytest.fixture(scope="module")
+def legs() -> dict[str, list[Record]]:
+    found: dict[str, list[Record]] = {"up": [], "down": []}
+    for leg, record in runup.iterate(BEARING, (0.0, -20.0), 9000.0, points=9):
+        found[leg].append(record)
+    return found
+
+
+def test_both_legs_are_followed_through_contact(legs: dict[str, list[Record]]) -> None:
+    assert [len(legs[leg]) for leg in ("up", "down")] == [9, 8]
+    every = [*legs["up"], *legs["down"]]
+    assert all(record.converged for record in every)
+    assert all(number(record, "force_residual") <= 1e-8 for record in every)
+    for leg, sign in (("up", -1.0), ("down", 1.0)):
+        shares = [number(record, "contact_share") for record in legs[leg]]
+        assert np.all(sign * np.diff(shares) >= 0.0)
+    assert number(legs["up"][0], "contact_share") == 1.0
+    assert number(legs["up"][-1], "contact_share") == 0.0
+
+
+def test_a_run_up_begins_with_dry_friction_and_passes_a_least_torque(legs: dict[str, list[Record]]) -> None:
+    rest = legs["up"][0]
+    dry = BEARING.surface.friction_coefficient * BEARING.bearing.journal_radius * number(rest, "contact_total")
+    assert_allclose(number(rest, "friction_torque"), dry, rtol=1e-9, atol=0.0)
+    torques = [number(record, "friction_torque") for record in legs["up"]]
+    assert 0 < int(np.argmin(torques)) < len(torques) - 1
+
+
+def test_the_way_down_returns_where_nothing_snaps(legs: dict[str, list[Record]]) -> None:
+    """On the paper's bearing both legs meet at every speed."""
+    for up, down in zip(legs["up"][:-1], reversed(legs["down"]), strict=True):
+        assert up.scalars["speed"] == down.scalars["speed"]
+        assert_allclose(number(up, "eccentricity_y"), number(down, "eccentricity_y"), rtol=1e-6, atol=0.0)
+
+
+def test_a_line_of_speeds_is_warm() -> None:
+    work = Work()
+    line = SpeedLine(BEARING, (0.0, -20.0), work)
+    line.at(3000.0)
+    counts = []
+    for speed in np.linspace(2950.0, 2500.0, 10):
+        before = work.film.factorizations
+        line.at(float(speed))
+        counts.append(work.film.factorizations - before)
+    assert np.median(counts) <= 6
