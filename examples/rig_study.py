@@ -18,6 +18,7 @@ from dataclasses import asdict, dataclass, replace
 from functools import partial
 from multiprocessing import Pool
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,11 +38,11 @@ Array = NDArray[np.float64]
 
 HERE = Path(__file__).parent
 
-# Table 1. The journal rests in the bearing or the bearing on the journal: the same load in the bearing's frame.
-LOADS = (46.4, 55.6, 64.8, 104.6)  # [N]
-MOMENTS = (1.19, 1.10, 1.10, 3.79)  # largest friction moment [N m]
-SPEEDS = (8800.0, 8300.0, 8600.0, 11000.0)  # lowest ascent speed [rpm]
-FITTED = 3  # the fourth bearing failed; it is predicted
+LOADS, MOMENTS, SPEEDS = (
+    tuple(column)
+    for column in np.loadtxt(HERE / "rig_table1.csv", delimiter=",", skiprows=2, unpack=True, dtype=float).tolist()
+)  # of Table 1 [N], [N m], [rpm]
+FITTED = 3  # experiments; in the fourth the bearing failed: it is predicted
 SCATTER_MOMENT, SCATTER_SPEED = 0.05, 0.03  # standard deviations of experiments 1 to 3 about their means
 
 COUNTS, MOUNTS = range(5, 13), ("hinged", "rigid")
@@ -55,8 +56,6 @@ RANGES = {  # of the unknown dimensions
 FLOORS = (0.3e-6, 5e-6)  # roughness of ground journal and sprayed coating together [m]
 FRICTIONS = (0.05, 0.5)  # solid lubricants to bare metal
 
-SHARE = liftoff.SHARE
-SEARCH_CELLS, FINAL_CELLS = 48, 96  # along a pitch
 DRAWN, REFINED, KEPT = 32, 12, 8  # packages drawn for each pair; steps of each refinement; pairs refined and kept
 FIRST_FLOOR = 0.8e-6  # [m]
 HOPELESS_MOMENTS, HOPELESS_SPEEDS = (
@@ -71,6 +70,19 @@ out, err = Console(markup=False, highlight=False), Console(stderr=True, markup=F
 
 
 @dataclass(frozen=True)
+class Grid:
+    """How finely a package is looked at, and when it floats."""
+
+    cells: int  # along a pitch
+    axial: int | None = None  # over the length; none in the flat model
+    share: float = liftoff.SHARE  # of the contacts, below which the journal floats
+
+
+SEARCH, FINAL = Grid(48), Grid(96)
+SPACE = Grid(32, 24, 0.05)  # in space the ends of the petals, where no film can be, touch long after the rest
+
+
+@dataclass(frozen=True)
 class Package:
     """The unknown dimensions; `RANGES` says what they are."""
 
@@ -82,31 +94,28 @@ class Package:
     turn: float
     tilt: float = 1.0
 
-    def case(self, floor: float, cells: int) -> Case:
-        """The rig with this package and film floor [m], flat."""
+    def case(self, floor: float, grid: Grid) -> Case:
+        """The rig with this package and film floor [m]."""
         rig = Case.load(HERE / "rig.toml")
         R_B, delta = rig.bearing.bushing_radius, 0.15e-3 + self.coating
         pitch, r_m = 2.0 * math.pi / self.count, R_B - delta / 2.0
-        clearance = (math.floor(self.overlap) + 1) * delta + self.room
         length = self.overlap * pitch * r_m
-        bent = rig.replace(
+        tilt = "chordal" if self.mount == "hinged" else self.tilt * chordal(rig, r_m, length)
+        return rig.replace(
             **{
-                "bearing.journal_radius": R_B - clearance,
+                "bearing.journal_radius": R_B - (math.floor(self.overlap) + 1) * delta - self.room,
                 "petals.count": self.count,
                 "petals.mount": self.mount,
                 "petals.arc_length": length,
                 "petals.coating": self.coating,
-                "petals.root_tilt": "chordal",
+                "petals.root_tilt": tilt,
                 "petals.first_root": self.turn * pitch,
                 "surface.film_floor": floor,
-                "model.kind": "flat",
-                "model.cells_per_pitch": cells,
-                "model.axial_cells": None,
+                "model.kind": "spatial" if grid.axial else "flat",
+                "model.cells_per_pitch": grid.cells,
+                "model.axial_cells": grid.axial,
             }
         )
-        if self.mount == "hinged":
-            return bent
-        return bent.replace(**{"petals.root_tilt": self.tilt * chordal(rig, r_m, length)})
 
 
 def chordal(rig: Case, r_m: float, length: float) -> float:
@@ -149,30 +158,30 @@ def reactions(case: Case, loads: Sequence[float]) -> list[float]:
     return [float(record.scalars["contact_total"]) for record in still]
 
 
-def lift_off(case: Case, load: float, near: float) -> float:
+def lift_off(case: Case, load: float, near: float, share: float) -> float:
     """Lift-off speed [rpm], looked for from the speed `near`; nan if it is far above."""
     omega = near * math.pi / 30.0
     with one_thread():
         line = SpeedLine(case, (0.0, -load), Work())
-        touching, known = line.share(omega) > SHARE, line.known
-        if touching and line.share(TOO_FAST * omega) > SHARE:
+        touching, known = line.share(omega) > share, line.known
+        if touching and line.share(TOO_FAST * omega) > share:
             return math.nan
         line.known = known
-        found = liftoff.crossing(line, omega, SHARE, upward=touching)
+        found = liftoff.crossing(line, omega, share, upward=touching)
     return math.nan if found is None else found * 30.0 / math.pi
 
 
-def misfit(found: Sequence[float], measured: Sequence[float], scatter: float) -> float:
+def misfit(found: Sequence[float] | Array, measured: Sequence[float], scatter: float) -> float:
     """Sum of squares of the relative differences of experiments 1 to 3 over their scatter."""
     left = np.log(np.array(found[:FITTED]) / np.array(measured[:FITTED])) / scatter
     return float(left @ left)
 
 
-def judge(package: Package, floor: float, cells: int, known: int = FITTED) -> Finding:
+def judge(package: Package, floor: float, grid: Grid, known: int = FITTED) -> Finding:
     """The moments and lift-off speeds of the first `known` experiments, floor and friction set to the fitted ones."""
     loads = LOADS[:known]
     try:
-        case = package.case(floor, cells)
+        case = package.case(floor, grid)
         arms = case.bearing.journal_radius * np.array(reactions(case, loads))
         friction = float(np.clip(np.exp(np.mean(np.log(MOMENTS[:FITTED] / arms[:FITTED]))), *FRICTIONS))
         moments = tuple((friction * arms).tolist())
@@ -180,7 +189,7 @@ def judge(package: Package, floor: float, cells: int, known: int = FITTED) -> Fi
         of_moments = misfit(moments, MOMENTS, SCATTER_MOMENT)
         if of_moments > HOPELESS_MOMENTS:
             return replace(first, note="moments grow with the load")
-        floor, speeds = levelled(package, floor, cells, loads)
+        floor, speeds = levelled(package, floor, grid, loads)
     except DefinitionError as refused:
         return Finding(package, floor, math.nan, note=str(refused))
     except ConvergenceError as failure:
@@ -191,14 +200,14 @@ def judge(package: Package, floor: float, cells: int, known: int = FITTED) -> Fi
     return replace(first, floor=floor, speeds=tuple(speeds), misfit=whole)
 
 
-def levelled(package: Package, floor: float, cells: int, loads: Sequence[float]) -> tuple[float, list[float]]:
+def levelled(package: Package, floor: float, grid: Grid, loads: Sequence[float]) -> tuple[float, list[float]]:
     """The film floor [m] at which the lift-off speeds of experiments 1 to 3 have the measured mean, and the speeds."""
     slope, before = 0.7, (math.nan, math.nan)  # of lift-off speed over floor, in logarithms, to begin with
     speeds: list[float] = []
     for _ in range(6):
-        case, speeds = package.case(floor, cells), []
+        case, speeds = package.case(floor, grid), []
         for load, measured in zip(loads[:FITTED], SPEEDS[:FITTED], strict=False):
-            speeds.append(lift_off(case, load, measured))
+            speeds.append(lift_off(case, load, measured, grid.share))
             if not math.isfinite(speeds[-1]):
                 return floor, speeds
         above = float(np.mean(np.log(np.array(speeds) / SPEEDS[:FITTED])))
@@ -212,7 +221,9 @@ def levelled(package: Package, floor: float, cells: int, loads: Sequence[float])
         if wanted == floor:
             break
         floor = wanted
-    speeds += [lift_off(case, load, near) for load, near in zip(loads[FITTED:], SPEEDS[FITTED:], strict=False)]
+    speeds += [
+        lift_off(case, load, near, grid.share) for load, near in zip(loads[FITTED:], SPEEDS[FITTED:], strict=False)
+    ]
     return case.surface.film_floor, speeds
 
 
@@ -222,15 +233,15 @@ def levelled(package: Package, floor: float, cells: int, loads: Sequence[float])
 class Store:
     """Findings by package, in a file of one line each: a run that was interrupted goes on from there."""
 
-    def __init__(self, path: Path, cells: int, known: int = FITTED) -> None:
-        self.path, self.cells, self.known = path, cells, known
+    def __init__(self, path: Path, grid: Grid, known: int = FITTED) -> None:
+        self.path, self.grid, self.known = path, grid, known
         lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
         self.findings = {finding.package: finding for finding in map(Finding.read, lines)}
 
     def judge(self, package: Package, floor: float) -> Finding:
         """The finding of a package, computed if it is new."""
         if package not in self.findings:
-            found = judge(package, floor, self.cells, self.known)
+            found = judge(package, floor, self.grid, self.known)
             with self.path.open("a", encoding="utf-8") as file:
                 file.write(found.line + "\n")
             self.findings[package] = found
@@ -269,7 +280,7 @@ def draw(pair: tuple[int, str], folder: Path) -> Finding:
 
 def searched(count: int, mount: str, folder: Path) -> Store:
     """The store of the search for a count and a mount."""
-    return Store(folder / f"search_{count}_{mount}.jsonl", SEARCH_CELLS)
+    return Store(folder / f"search_{count}_{mount}.jsonl", SEARCH)
 
 
 def refine(start: Finding, folder: Path) -> Finding:
@@ -281,13 +292,18 @@ def refine(start: Finding, folder: Path) -> Finding:
         moved = {name: getattr(package, name) * math.exp(step) for name, step in zip(names, steps, strict=True)}
         if any(not ranges[name][0] <= moved[name] <= ranges[name][1] for name in names):
             return OUTSIDE
-        near = replace(package, **{name: float(f"{x:.5g}") for name, x in moved.items()})
-        return min(store.judge(near, start.floor).misfit, OUTSIDE)
+        rounded: dict[str, Any] = {name: float(f"{x:.5g}") for name, x in moved.items()}
+        return min(store.judge(replace(package, **rounded), start.floor).misfit, OUTSIDE)
 
     simplex = np.vstack([np.zeros(len(names)), np.diag([0.04, 0.15, 0.1][: len(names)])])
     minimize(value, simplex[0], method="Nelder-Mead", options={"maxfev": REFINED, "initial_simplex": simplex})
-    best, name = store.best, f"final_{package.count}_{package.mount}.jsonl"
-    return Store(folder / name, FINAL_CELLS, len(LOADS)).judge(best.package, best.floor)
+    return again(store.best, folder, FINAL, "final")
+
+
+def again(finding: Finding, folder: Path, grid: Grid, name: str) -> Finding:
+    """A known package on another grid, all four experiments."""
+    path = folder / f"{name}_{finding.package.count}_{finding.package.mount}.jsonl"
+    return Store(path, grid, len(LOADS)).judge(finding.package, finding.floor)
 
 
 def main(folder: Path) -> None:
@@ -315,10 +331,13 @@ def told(findings: Iterable[Finding], count: int) -> list[Finding]:
 
 def table(findings: Sequence[Finding]) -> str:
     """The sets that explain the experiments best, in Markdown."""
-    heads = "petals mount R_j,mm l_p,mm overlap coating,µm tilt turn floor,µm friction misfit moments,N·m lift-off,rpm".split()
+    heads = [
+        "petals", "mount", "R_j, mm", "l_p, mm", "overlap", "coating, µm", "tilt", "turn", "floor, µm", "friction",
+        "misfit", "moments, N·m", "lift-off, rpm",
+    ]  # fmt: skip
     lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
     for found in findings:
-        p, case = found.package, found.package.case(found.floor, FINAL_CELLS)
+        p, case = found.package, found.package.case(found.floor, FINAL)
         assert case.petals is not None
         cells = [
             str(p.count), p.mount, f"{case.bearing.journal_radius * 1e3:.3f}", f"{case.petals.arc_length * 1e3:.1f}",
