@@ -20,7 +20,7 @@ h1 { font-size: 1.7rem; line-height: 1.2; margin-bottom: .3rem; }
 h2 { font-size: 1.25rem; margin: 2.2rem 0 .6rem; border-bottom: 1px solid #ccc; padding-bottom: .2rem; }
 p.note, figcaption { color: #555; font-size: .9rem; }
 nav { font-size: .9rem; display: flex; flex-wrap: wrap; gap: .2rem 1.1rem; }
-a { color: #0072B2; }
+a { color: #0072B2; } sub { line-height: 0; font-size: .75em; }
 figure { margin: 1rem 0; break-inside: avoid; } figure img { width: 100%; height: auto; }
 .pair { display: grid; grid-template-columns: 1fr 1fr; gap: 1rem; margin-bottom: 1.2rem; }
 .pair figure { margin: 0; }

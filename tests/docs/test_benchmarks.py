@@ -1,0 +1,72 @@
+"""The benchmark runs, its file has the rows, and its page speaks of each; the yardstick is right and stands alone."""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from numpy.testing import assert_allclose
+
+from tests.docs.texts import DOCS, ROOT, text
+
+FOLDER = ROOT / "benchmarks"
+
+
+def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """A script of the benchmarks, on one thread."""
+    environment = os.environ | {"OPENBLAS_NUM_THREADS": "1"}
+    call = [sys.executable, *arguments]
+    return subprocess.run(call, capture_output=True, text=True, check=True, cwd=ROOT, env=environment)
+
+
+def measured(path: Path, *options: str) -> list[dict[str, Any]]:
+    """Rows of a quick run."""
+    printed = run("benchmarks/run.py", "--quick", "--json", str(path), *options).stdout.splitlines()
+    rows: list[dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))["rows"]
+    assert [row["says"] for row in rows] == [line[: len(row["says"])] for row, line in zip(rows, printed, strict=True)]
+    return rows
+
+
+def test_a_quick_run_of_the_plain_journal(tmp_path: Path) -> None:
+    rows = {row["name"]: row for row in measured(tmp_path / "rows.json", "--only", "journal", "others")}
+    error = rows["journal_48x16_error"]["ratio"]
+    assert 5e-3 < error < 2e-2  # of second order: 0.3 % on 120 cells
+    times = rows["journal_48x16"]["details"]
+    assert rows["journal_48x16"]["ratio"] == times["seconds_solution"] / times["seconds_yardstick"]
+    for name in ("openairbearing", "ross"):
+        assert rows[name]["ratio"] is not None or rows[name]["remark"]
+
+
+@pytest.mark.slow
+def test_a_quick_run_has_all_rows(tmp_path: Path) -> None:
+    before = tmp_path / "before.json"
+    rows = {row["name"]: row for row in measured(before)}
+    assert set(rows) >= {"warm_count", "warm_total", "factor_original", "growth_time", "growth_memory", "journal_48x16"}
+    shares = [rows[f"warm_{name}"]["ratio"] for name in ("factorisation", "assembly", "solves", "rest")]
+    assert_allclose(sum(shares), 1.0, rtol=1e-12)
+    assert min(shares) > 0.0
+    assert_allclose(rows["warm_total"]["ratio"] * rows["warm_factorisation"]["ratio"], 1.0, rtol=1e-12)
+    assert rows["warm_count"]["ratio"] >= 2.0
+    assert rows["race_n8_17_e0_numpy"]["details"]["apart at 1e-05"] < 1e-4
+    again = run("benchmarks/run.py", "--quick", "--only", "point", "--against", str(before)).stdout
+    assert again.count("(was ") == len([name for name in rows if name.startswith(("warm", "factor"))])
+
+
+def test_the_yardstick_is_no_petalfoil() -> None:
+    nodes = ast.walk(ast.parse(text(FOLDER / "yardstick.py")))
+    imported = {node.module for node in nodes if isinstance(node, ast.ImportFrom)}
+    assert imported == {"__future__", "typing", "scipy.sparse.linalg"}
+
+
+def test_the_page_speaks_of_every_group() -> None:
+    page = text(DOCS / "benchmarks.md")
+    (listed,) = re.findall(r"^GROUPS = (\(.*\))$", text(FOLDER / "run.py"), re.MULTILINE)
+    for group in ast.literal_eval(listed):
+        assert f"`{group}`" in page
