@@ -10,6 +10,7 @@ import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -27,6 +28,10 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 REFERENCE = Path(__file__).parent / "reference"
+
+
+DIAGONAL: dict[str, Any] = {"diag_pivot_thresh": 1e-3, "options": {"SymmetricMode": True}}
+"""The film's matrix has a symmetric pattern and a strong diagonal: ordered for it, it fills in a tenth as much."""
 
 
 def table(name: str) -> list[dict[str, str]]:
@@ -93,7 +98,7 @@ def solve_film(balance: FilmBalance, H: Array, Lam: float) -> Array:
     for _ in range(60):
         fluxes = balance.fluxes(balance.nodal_pressure(x), H, Lam)
         tangent = matrix(balance.by_pressure, balance.tangent(fluxes)[0], (n, n))
-        step = spla.spsolve(tangent, -balance.residual(fluxes))
+        step = spla.spsolve(sp.csc_array(tangent), -balance.residual(fluxes), permc_spec="MMD_AT_PLUS_A")
         fall = float(np.max(-step / x))
         x = x + step * min(1.0, 0.7 / max(fall, 0.7))  # pressures stay positive
         if np.max(np.abs(step / x)) < 1e-9:
@@ -130,7 +135,7 @@ class RestingFilm:
         pressure += 1j * nu * matrix(Entries(held.rows, held.rows), held_P, (n, n))
         film = matrix(balance.by_film, by_H, (n, one.size)) + 1j * nu * matrix(held, held_H, (n, one.size))
         source = -(film @ dH.reshape(len(dH), -1).T)
-        dP = spla.splu(sp.csc_array(pressure)).solve(source)
+        dP = spla.splu(sp.csc_array(pressure), permc_spec="MMD_AT_PLUS_A", **DIAGONAL).solve(source)
         return np.asarray(np.stack([np.append(column, 0.0)[balance.mesh.unknown] for column in dP.T]))
 
 
