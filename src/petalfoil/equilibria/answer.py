@@ -120,9 +120,9 @@ def refine(problem: CoupledProblem, closed: Closed) -> State:
     for _ in range(REFINEMENTS):
         line = problem.linearize(state.x, fine=state.fine)
         change = ties.spread(closed.factor.solve(-ties.gather(line.residual)))
-        x = state.x.copy()
-        x[n:] += change[n:]
-        fine = state.fine + change[:n]
+        rest = state.fine + change[:n]
+        x = state.x + np.concatenate([rest, change[n:]])
+        fine = rest - (x[:n] - state.x[:n])  # exactly what the sum has lost
         state = State(x, fine, reactions(problem, closed, x, fine))
         residual = total_residual(problem, state)
         if residual < least:
