@@ -4,6 +4,8 @@ Contacts that carry load stay closed, and the wall follows the journal where the
 `nu = Omega / omega`, in `exp(i nu tau)`:
 
     (J + i nu S) dX = -(F_e + i nu S_e) de,     dF = F_P dP + by_e^T dlam        (E4)
+
+A motion that grows or dies out has a complex `s` in place of `i nu`.
 """
 
 from __future__ import annotations
@@ -66,9 +68,13 @@ class Motion:
 
     def respond(self, nu: float, solver: LinearSolver) -> Response:
         """Factorise the response at whirl ratio `nu`; one factorisation."""
-        matrix = self.steady + 1j * nu * self.stored if nu else self.steady
+        return self.growing(1j * nu, solver)
+
+    def growing(self, s: complex, solver: LinearSolver) -> Response:
+        """Factorise the response to a motion in `exp(s tau)`; one factorisation."""
+        matrix = self.steady + s * self.stored if s else self.steady
         factor = solver.factor(self.ties.reduce(matrix.tocsc()), self.ties.rank(self.problem.rank))
-        return Response(self, factor, 1j * nu)
+        return Response(self, factor, s)
 
 
 @dataclass(frozen=True)
@@ -82,7 +88,7 @@ class Response:
     factor : Factor
         Reduced tangent, complex where the frequency is not zero.
     rate : complex
-        `i nu`.
+        `s`: `i nu` for a whirl.
     """
 
     motion: Motion
@@ -100,7 +106,12 @@ class Response:
         steady = line.by_shift(change)
         if not self.rate:
             return steady
-        return steady + self.rate * (line.by_shift(change, 1.0) - steady)
+        return steady + self.rate * self.stored_forcing(change)
+
+    def stored_forcing(self, change: Array) -> Array:
+        """Change of the stored mass by a change of the gaps it reads, (n,)."""
+        line = self.motion.line
+        return line.by_shift(change, 1.0) - line.by_shift(change)
 
     def unit(self, k: int) -> tuple[Values, Values]:
         """Change of the unknowns (n,) and of the closed reactions (k,) by a unit displacement along axis `k`."""
@@ -117,6 +128,18 @@ class Response:
         both = [self.unit(k) for k in (0, 1)]
         columns = [film.by_P @ change[problem.positive] + by_e.T @ reaction for change, reaction in both]
         return np.column_stack([change for change, _ in both]), np.column_stack(columns)
+
+    def slope(self) -> Values:
+        """Derivative of `dF/de` by `s`, (2, 2) [1]: with the same factor, from (E4) differentiated."""
+        problem, ties = self.motion.problem, self.motion.ties
+        film, by_e = FilmForce.of(problem), problem.layout.wall.contacts.by_e
+        columns = []
+        for k in (0, 1):
+            stored = self.motion.stored @ self.unit(k)[0] + self.stored_forcing(by_e[:, k])
+            change = ties.spread(self.factor.solve(-ties.gather(stored)))
+            reaction = ties.reactions(self.apply(change) + stored)
+            columns.append(film.by_P @ change[problem.positive] + by_e[self.motion.closed].T @ reaction)
+        return np.column_stack(columns)
 
     def force_gradient(self) -> Values:
         """`dF/de` of film and contacts on the journal, (2, 2), over unit of force and length [1]."""
