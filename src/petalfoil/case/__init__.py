@@ -6,7 +6,7 @@ In the order data flows:
 - `problems`: all problems of a definition → one `DefinitionError`.
 - `definition`: the base of all definitions.
 - `gas_properties`: a gas by its name.
-- `sections`, `petals`, `gas`: the tables of a case.
+- `sections`, `petals`, `gas`, `rotor`: the tables of a case.
 - `free_shape`: radius of a free petal.
 - `package`: geometry that follows, and whether the package can be assembled.
 - `toml`: files and texts.
@@ -20,6 +20,7 @@ from petalfoil.case.free_shape import arc_radius, chordal_tilt
 from petalfoil.case.gas import Gas
 from petalfoil.case.package import Package, package_of
 from petalfoil.case.petals import Mount, Petals
+from petalfoil.case.rotor import Rotor
 from petalfoil.case.sections import Bearing, Edges, Kind, Method, Model, Operation, Surface
 
 __all__ = [
@@ -34,6 +35,7 @@ __all__ = [
     "Operation",
     "Package",
     "Petals",
+    "Rotor",
     "Surface",
     "arc_radius",
     "chordal_tilt",

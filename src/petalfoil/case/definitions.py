@@ -15,6 +15,7 @@ from petalfoil.case.gas import Gas
 from petalfoil.case.package import Package, bearing_problems, package_of, package_problems
 from petalfoil.case.petals import Petals
 from petalfoil.case.problems import Problem, joined
+from petalfoil.case.rotor import Rotor
 from petalfoil.case.sections import Bearing, Kind, Model, Operation, Surface
 from petalfoil.errors import DefinitionError, PackageError
 
@@ -46,6 +47,7 @@ class Case(Definition):
     gas: Gas
     surface: Surface = Field(default_factory=Surface)
     operation: Operation
+    rotor: Rotor | None = None
     model: Model
 
     # ------------------------------------------------------------------------------------------ in and out

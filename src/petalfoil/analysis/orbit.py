@@ -1,0 +1,302 @@
+"""The journal through time: weight, loads and unbalance, film and petals moving with it (65)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from petalfoil.analysis.classic_method import newton_only
+from petalfoil.analysis.equilibrium import Named, chosen, positioned
+from petalfoil.analysis.figures import effort, given
+from petalfoil.analysis.session import Clock, Progress, one_thread
+from petalfoil.analysis.trace import Trace
+from petalfoil.case import Case
+from petalfoil.equilibria.loaded import journal_force
+from petalfoil.equilibria.work import Work
+from petalfoil.errors import UsageError
+from petalfoil.problem.balance import FilmForce
+from petalfoil.problem.build import build_problem
+from petalfoil.problem.film_rows import FilmState
+from petalfoil.problem.moving import StepProblem
+from petalfoil.results.record import Record
+from petalfoil.transient.march import MarchOptions, march
+from petalfoil.transient.rotor import RotorMotion
+from petalfoil.transient.schedule import Schedule
+from petalfoil.transient.scheme import System
+from petalfoil.transient.state import Instant, Moving
+
+Array = NDArray[np.float64]
+Load = tuple[float, float]
+
+TOLERANCE = 1e-3
+"""Local error of a step in reference films and ambient pressures."""
+
+
+@dataclass(frozen=True)
+class Course:
+    """What a motion is asked for.
+
+    Attributes
+    ----------
+    revolutions : float or None
+        Turns of the shaft; by default what `duration` or the schedule lasts, else 20.
+    duration : float or None
+        Time [s], instead of turns.
+    initial : (2,) or None
+        Displacement that the journal is released from [m]; by default the case's.
+    speeds : list of (time, speed) or None
+        Speed of the shaft [s, rad/s]; by default the case's.
+    load : (2,) or None
+        Constant load [N]; by default the case's, without one the weight.
+    tolerance : float
+        Local error of a step in reference films and ambient pressures.
+    longest : float
+        Longest step, as an angle of the shaft at its highest speed [rad].
+    """
+
+    revolutions: float | None = None
+    duration: float | None = None
+    initial: Load | None = None
+    speeds: tuple[tuple[float, float], ...] | None = None
+    load: Load | None = None
+    tolerance: float = TOLERANCE
+    longest: float = MarchOptions.longest
+
+    def __post_init__(self) -> None:
+        """Refuse what has no meaning.
+
+        Raises
+        ------
+        UsageError
+            Turns, time, tolerance or step are not above zero, or both turns and time are given.
+        """
+        named = {"revolutions": self.revolutions, "duration": self.duration}
+        for name, value in {**named, "tolerance": self.tolerance, "longest step": self.longest}.items():
+            if value is not None and not (value > 0.0 and np.isfinite(value)):
+                raise UsageError(f"{name} must be above zero, got {value:g}")
+        if self.revolutions is not None and self.duration is not None:
+            raise UsageError("give either revolutions or a duration, not both")
+
+    def schedule(self, case: Case) -> Schedule:
+        """Speed over time."""
+        return Schedule.through(list(self.speeds or ((0.0, case.operation.speed),)))
+
+    def lasts(self, schedule: Schedule, start: float) -> float:
+        """Time from `start` to the end [s].
+
+        Raises
+        ------
+        UsageError
+            The shaft never turns that often.
+        """
+        if self.duration is not None:
+            return self.duration
+        if self.revolutions is None and len(schedule.times) > 1 and schedule.times[-1] > start:
+            return float(schedule.times[-1]) - start
+        turns = self.revolutions or 20.0
+        end = schedule.instant(schedule.angle(start) + 2.0 * np.pi * turns)
+        if not np.isfinite(end):
+            raise UsageError(f"the shaft never turns {turns:g} times at these speeds: give a duration instead")
+        return end - start
+
+
+class Orbit:
+    """A motion that can be followed step by step, and recorded at any of them.
+
+    Parameters
+    ----------
+    case : Case
+        A bearing with its rotor.
+    course : Course
+        How it moves.
+    restart : xarray.Dataset or None
+        Result of a motion of the same bearing, to go on from its end.
+
+    Raises
+    ------
+    UsageError
+        The case has no rotor, or the result is that of another bearing.
+    ConvergenceError
+        No equilibrium was found to start from.
+    """
+
+    def __init__(self, case: Case, course: Course, restart: xr.Dataset | None = None) -> None:
+        newton_only(case)
+        self.clock, self.work, self.course = Clock(), Work(), course
+        start = course.initial or (case.operation.eccentricity if restart is None else end_position(restart))
+        self.case = positioned(case, None, start)
+        schedule = course.schedule(case)
+        begin = 0.0 if restart is None else continued(case, restart)
+        with one_thread():
+            self.system = system_of(self.case, schedule, course.load)
+            tau = begin * self.system.rotor.clock.rate
+            if restart is None:
+                self.start = at_rest(self.case, self.system, tau, self.work)
+            else:
+                self.start = instant_of(restart, self.system, tau)
+        self.end = begin + course.lasts(schedule, begin)
+        self.trace = Trace(self.case, self.system)
+        self.trace.add(self.start)
+        self.counts = {"steps": 0, "residual": 0.0}
+
+    def steps(self, progress: Progress | None = None) -> Iterator[float]:
+        """Take the steps; yield the share of the motion that is done.
+
+        Raises
+        ------
+        ConvergenceError
+            No step, however short, leads on.
+        """
+        rate = self.system.rotor.clock.rate
+        options = MarchOptions(tolerance=self.course.tolerance, longest=self.course.longest)
+        begin, end = self.start.tau, self.end * rate
+        with one_thread():
+            for stepped in march(self.system, self.start, end, self.work, options):
+                self.trace.add(stepped.end)
+                self.counts["steps"] += 1
+                self.counts["residual"] = max(self.counts["residual"], stepped.residual)
+                share = (stepped.end.tau - begin) / (end - begin)
+                if progress is not None:
+                    progress(share, f"orbit: {self.trace.rows[-1]['shaft_angle'] / (2.0 * np.pi):.1f} turns")
+                yield share
+
+    def record(self, status: str = "converged") -> Record:
+        """Everything up to here as a record."""
+        time, over = self.trace.histories()
+        coords, pictures = self.trace.pictures()
+        last = self.trace.last or self.start
+        refused = [row.get("outcome") for row in self.work.history if row["phase"] == "motion"]
+        scalars: Named = {
+            **{key: value for key, value in given(self.case).items() if key not in HERE},
+            **self.trace.audits(),
+            "revolutions": float(over["shaft_angle"][-1] - over["shaft_angle"][0]) / (2.0 * np.pi),
+            "tolerance": self.course.tolerance,
+            "rotor_mass": 0.0 if self.case.rotor is None else self.case.rotor.mass,
+            "steps": int(self.counts["steps"]),
+            "refused_steps": refused.count("error"),
+            "failed_steps": refused.count("no answer"),
+            "residual": float(self.counts["residual"]),
+            **effort(self.work),
+            "film_scale": self.system.problem.layout.scales.length,
+            "wall_time": self.clock.seconds,
+            "converged": True,
+            "status": status,
+        }
+        return Record(
+            analysis="orbit",
+            scalars=scalars,
+            fields={**over, **pictures, **end_state(last, self.system)},
+            coords={"time": time, **coords, **end_coordinates(last)},
+            case_toml=self.case.to_toml(),
+            title=self.case.title,
+            history=[],
+        )
+
+
+HERE = ("eccentricity_x", "eccentricity_y")
+"""Figures of a point that a motion has over time."""
+
+
+def run(case: Case, course: Course, restart: xr.Dataset | None = None, progress: Progress | None = None) -> Record:
+    """The whole motion.
+
+    Raises
+    ------
+    UsageError
+        The case has no rotor, the course is impossible, or the result to go on from is that of another bearing.
+    ConvergenceError
+        No equilibrium to start from, or no step that leads on.
+    """
+    orbit = Orbit(case, course, restart)
+    for _ in orbit.steps(progress):
+        pass
+    return orbit.record()
+
+
+def system_of(case: Case, schedule: Schedule, load: Load | None) -> System:
+    """The bearing of `case` and its rotor in the units of the problem."""
+    problem = build_problem(case)
+    rotor = RotorMotion.of(case, problem.layout.scales, schedule, load)
+    still = StepProblem(problem.layout, 0.0, problem.displacement, rotor.clock.bearing_number)
+    return System(still, rotor, FilmForce.of(problem))
+
+
+def at_rest(case: Case, system: System, tau: float, work: Work) -> Instant:
+    """The journal held where it is, film and petals in equilibrium, and let go."""
+    speed = system.rotor.schedule.speed(tau / system.rotor.clock.rate)
+    answer, _ = chosen(case.replace(**{"operation.speed": speed}), work)
+    return released(system, tau, (answer.x, answer.lam, answer.in_contact), (answer.problem.displacement, np.zeros(2)))
+
+
+def released(
+    system: System, tau: float, state: tuple[Array, Array, NDArray[np.bool_]], moving: tuple[Array, Array]
+) -> Instant:
+    """An instant from unknowns, reactions and closed gaps, position and velocity: its rates by the equations."""
+    (x, lam, closed), (e, v), rotor = state, moving, system.rotor
+    problem = system.problem.at(displacement=e, bearing_number=rotor.bearing_number(tau))
+    film = FilmState(problem.layout.film_rows, problem.pressure(x), problem.film(x), problem.bearing_number)
+    outflow = film.residual.copy()
+    if problem.layout.film_rows.content is not None:
+        outflow[0] = 0.0  # the content stands in place of this balance
+    force = journal_force(problem, x[problem.positive], lam) + rotor.outside(tau)
+    change = Moving(-outflow, v, force / rotor.inertia)
+    return Instant(tau, x, lam, closed, Moving(problem.stored(x), e, v), change)
+
+
+def end_state(last: Instant, system: System) -> dict[str, Array]:
+    """The state at the end, from which a motion can go on."""
+    length, rate = system.problem.layout.scales.length, system.rotor.clock.rate
+    return {
+        "last_state": last.x,
+        "last_reactions": last.lam,
+        "last_position": last.moving.e * length,
+        "last_velocity": last.moving.v * length * rate,
+    }
+
+
+def end_coordinates(last: Instant) -> dict[str, NDArray[np.generic]]:
+    """Coordinates of the state at the end."""
+    return {"unknown": np.arange(len(last.x)), "gap": np.arange(len(last.lam)), "axis": np.arange(2)}
+
+
+def instant_of(result: xr.Dataset, system: System, tau: float) -> Instant:
+    """The end of a motion, to go on from."""
+    length, rate = system.problem.layout.scales.length, system.rotor.clock.rate
+    x, lam = result["last_state"].to_numpy(), result["last_reactions"].to_numpy()
+    e, v = result["last_position"].to_numpy() / length, result["last_velocity"].to_numpy() / (length * rate)
+    return released(system, tau, (x, lam, lam > 0.0), (e, v))
+
+
+def end_position(result: xr.Dataset) -> Load:
+    """Where a motion ended [m].
+
+    Raises
+    ------
+    UsageError
+        The result is not that of a motion.
+    """
+    if "last_position" not in result:
+        raise UsageError("this result holds no motion to go on from: give a file that orbit wrote")
+    x, y = (float(value) for value in result["last_position"].to_numpy())
+    return x, y
+
+
+def continued(case: Case, result: xr.Dataset) -> float:
+    """Time at which the motion of `result` ended [s].
+
+    Raises
+    ------
+    UsageError
+        It is the motion of another bearing.
+    """
+    before = Case.from_toml(result.attrs["case"])
+    for section in ("bearing", "petals", "gas", "surface", "model"):
+        if getattr(before, section) != getattr(case, section):
+            raise UsageError(
+                f"the motion to go on from is that of another bearing: its [{section}] differs from the case's"
+            )
+    return float(result["time"].to_numpy()[-1])

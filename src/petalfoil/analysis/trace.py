@@ -1,0 +1,201 @@
+"""What a motion leaves behind: figures at every step, its audits, pictures, and the state to go on from."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import cumulative_trapezoid
+
+from petalfoil.analysis.extremes import highest, lowest
+from petalfoil.case import Case
+from petalfoil.physics.forces import node_area, viscous_torque
+from petalfoil.problem.film_rows import FilmState
+from petalfoil.structure.petals import build_mesh, petals_of
+from petalfoil.transient.scheme import System
+from petalfoil.transient.state import Instant
+
+Array = NDArray[np.float64]
+Named = dict[str, Array]
+
+FRAMES = 48
+"""Pictures kept, the latest ones."""
+FRAMES_A_TURN = 24
+"""Pictures of a turn of the shaft."""
+
+
+AS_THEY_ARE = (
+    *("x", "y", "velocity_x", "velocity_y", "shaft_speed", "shaft_angle", "min_film", "contact_share", "max_pressure"),
+    *("force_x", "force_y", "friction_torque", "kinetic_energy"),
+)
+"""Figures of the steps that are kept as they are."""
+
+
+@dataclass
+class Trace:
+    """Everything kept of one motion.
+
+    Attributes
+    ----------
+    case, system
+        The bearing and its rotor, and the same in the units of the problem.
+    rows : list
+        Figures of every step, SI.
+    frames : deque
+        The latest pictures: instants at equal angles of the shaft.
+    last : Instant or None
+        The latest instant.
+    """
+
+    case: Case
+    system: System
+    rows: list[dict[str, float]] = field(default_factory=list)
+    frames: deque[Instant] = field(default_factory=lambda: deque(maxlen=FRAMES))
+    last: Instant | None = None
+    _due: float = -np.inf
+
+    def add(self, instant: Instant) -> None:
+        """Keep an instant, and what film and loads have done since the one before."""
+        row = {**self.rotor_figures(instant), **self.film_figures(instant), **self.done_since(instant)}
+        self.rows.append(row)
+        self.last = instant
+        if row["shaft_angle"] >= self._due:
+            self.frames.append(instant)
+            self._due = row["shaft_angle"] + 2.0 * np.pi / FRAMES_A_TURN
+
+    @cached_property
+    def _units(self) -> tuple[float, float, float, float]:
+        """Length [m], pressure [Pa], force [N], units of time in a second [rad/s]."""
+        scales = self.system.problem.layout.scales
+        return scales.length, scales.pressure, scales.force, self.system.rotor.clock.rate
+
+    @cached_property
+    def _area(self) -> Array:
+        return node_area(self.system.problem.layout.wall.film, self.case.bearing.journal_radius)
+
+    def rotor_figures(self, instant: Instant) -> dict[str, float]:
+        """Position, velocity, speed and energies at an instant."""
+        length, _, force, rate = self._units
+        layout, rotor = self.system.problem.layout, self.system.rotor
+        t, (e, v) = instant.tau / rate, (instant.moving.e * length, instant.moving.v * length * rate)
+        w = instant.x[: layout.n_wall]
+        inertia = rotor.inertia * force / (length * rate**2)
+        return {
+            "time": t,
+            "x": float(e[0]),
+            "y": float(e[1]),
+            "velocity_x": float(v[0]),
+            "velocity_y": float(v[1]),
+            "shaft_speed": rotor.schedule.speed(t),
+            "shaft_angle": rotor.schedule.angle(t),
+            "kinetic_energy": 0.5 * inertia * float(v @ v),
+            "elastic_energy": 0.5 * float(w @ layout.elastic_force(w)) * force * length,
+        }
+
+    def film_figures(self, instant: Instant) -> dict[str, float]:
+        """Film, pressure, forces and friction at an instant, its gas and what of it leaves."""
+        length, ambient, force, _ = self._units
+        problem = self.system.problem.at(displacement=instant.e)
+        mesh, case, contacts = problem.layout.wall.film, self.case, problem.layout.wall.contacts
+        P, H = problem.pressure(instant.x), problem.film(instant.x)
+        p, h, omega = P * ambient, H * length, self.system.rotor.schedule.speed(instant.tau / self._units[3])
+        touching = float(instant.lam[contacts.journal].sum()) * force
+        lift = float(np.sum((p - ambient) * self._area))
+        pushed = (self.system.film.at(instant.x[problem.positive]) + contacts.by_e.T @ instant.lam) * force
+        shear = (case.gas.viscosity, omega * case.bearing.journal_radius)
+        rubbing = case.surface.friction_coefficient * case.bearing.journal_radius * touching
+        viscous = viscous_torque(mesh, case.bearing.journal_radius, (p, h), shear, case.slip_length * ambient)
+        film = FilmState(problem.layout.film_rows, P, H, self.system.rotor.bearing_number(instant.tau))
+        return {
+            "min_film": max(lowest(h, mesh.phi).value, min(case.surface.film_floor, float(h.min()))),
+            "max_pressure": highest(p, mesh.phi).value,
+            "contact_share": touching / (touching + lift) if touching > 0.0 else 0.0,
+            "force_x": float(pushed[0]),
+            "force_y": float(pushed[1]),
+            "friction_torque": viscous + rubbing,
+            "rubbing_torque": rubbing,
+            "gas": float(np.sum(instant.moving.mass)),
+            "outflow": float(np.sum(film.residual)) * self._units[3],
+        }
+
+    def done_since(self, instant: Instant) -> dict[str, float]:
+        """Work of film and loads on rotor and petals since the latest instant, by the trapezium rule [J]."""
+        before = self.last
+        if before is None:
+            return {"film_step": 0.0, "load_step": 0.0}
+        length, _, force, _ = self._units
+        layout, system = self.system.problem.layout, self.system
+        kept, n = system.problem.positive, layout.n_wall
+        by_film = 0.5 * (system.film.at(before.x[kept]) + system.film.at(instant.x[kept]))
+        pushed = 0.5 * layout.push @ (before.x[kept] + instant.x[kept] - 2.0)
+        loads = 0.5 * (system.rotor.outside(before.tau) + system.rotor.outside(instant.tau))
+        moved, bent = instant.e - before.e, instant.x[:n] - before.x[:n]
+        unit = force * length
+        return {"film_step": float(by_film @ moved + pushed @ bent) * unit, "load_step": float(loads @ moved) * unit}
+
+    def column(self, name: str) -> Array:
+        """One figure over all steps."""
+        return np.array([row[name] for row in self.rows])
+
+    def histories(self) -> tuple[Array, Named]:
+        """Time [s] and everything over it."""
+        time, speed = self.column("time"), self.column("shaft_speed")
+        over = {name: self.column(name) for name in AS_THEY_ARE}
+        elastic = self.column("elastic_energy")
+        over["elastic_energy"] = elastic - elastic[0]
+        over["load_work"] = np.cumsum(self.column("load_step"))
+        over["film_work"] = np.cumsum(self.column("film_step"))
+        for work, torque in (("shaft_work", "friction_torque"), ("rubbing_work", "rubbing_torque")):
+            over[work] = cumulative_trapezoid(self.column(torque) * speed, time, initial=0.0)
+        return time, over
+
+    def audits(self) -> dict[str, float]:
+        """Defects of gas and energy over the whole motion [1]: both fall as the square of the steps."""
+        gas, outflow, time = self.column("gas"), self.column("outflow"), self.column("time")
+        gained = gas - gas[0] + cumulative_trapezoid(outflow, time, initial=0.0)
+        _, over = self.histories()
+        energy = over["kinetic_energy"] + over["elastic_energy"] - over["kinetic_energy"][0]
+        missing = energy - over["load_work"] - over["film_work"]
+        exchanged = np.sum(np.abs(self.column("load_step"))) + np.sum(np.abs(self.column("film_step")))
+        return {
+            "mass_defect": float(np.max(np.abs(gained)) / gas[0]) if gas[0] else 0.0,
+            "energy_defect": float(np.max(np.abs(missing)) / exchanged) if exchanged else 0.0,
+        }
+
+    def pictures(self) -> tuple[dict[str, NDArray[np.generic]], Named]:
+        """Coordinates and fields of the pictures."""
+        length, ambient, _, rate = self._units
+        problem = self.system.problem
+        mesh = problem.layout.wall.film
+        whole, instants = mesh.axial.whole, list(self.frames)
+        coords: dict[str, NDArray[np.generic]] = {
+            "frame": np.array([instant.tau for instant in instants]) / rate,
+            "petal": np.arange(len(mesh.theta)),
+            "root_angle": mesh.theta[:, 0] - mesh.phi[0],
+            "phi_exposed": mesh.phi,
+            "z": mesh.axial.whole_z,
+        }
+        films = [problem.at(displacement=instant.e).film(instant.x) * length for instant in instants]
+        fields: Named = {
+            "frame_pressure": np.array([whole(problem.pressure(instant.x) * ambient) for instant in instants]),
+            "frame_film": np.array([whole(film) for film in films]),
+            "frame_x": np.array([instant.e[0] * length for instant in instants]),
+            "frame_y": np.array([instant.e[1] * length for instant in instants]),
+        }
+        if self.case.petals is not None:
+            package = build_mesh(self.case)
+            coords["phi"] = package.phi
+            free = petals_of(self.case)[1].free_radius(package.phi)
+            fields["frame_radius"] = np.array([self._radii(instant, package.shape, free) for instant in instants])
+        return coords, fields
+
+    def _radii(self, instant: Instant, shape: tuple[int, ...], free: Array) -> Array:
+        """Mid-surfaces of the petals at an instant, (petal, node, axial) [m]."""
+        layout = self.system.problem.layout
+        W = np.zeros(shape)
+        W[:, 1:] = instant.x[: layout.n_wall].reshape(shape[0], -1, shape[2]) * layout.scales.length
+        radii: Array = layout.wall.film.axial.whole(free[None, :, None] + W)
+        return radii

@@ -1,0 +1,11 @@
+"""Film, petals, contacts and rotor through time.
+
+In the order data flows:
+
+- `schedule`: speed and angle of the shaft over time.
+- `rotor`: mass, loads and unbalance in the units of the problem.
+- `state`: what is known at an instant.
+- `stage`: one implicit stage: film, wall, contacts and rotor in one Newton.
+- `scheme`: a step of second order from two stages, with an error estimate.
+- `march`: steps that adapt, from start to end.
+"""

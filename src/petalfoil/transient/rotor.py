@@ -1,0 +1,113 @@
+"""The rotor's equation of motion (65) in the units of the problem.
+
+    M e'' = F_film + F_contact + load + rotating load + unbalance      (O1)
+
+A rigid rotor whose mass centre is `u` off the axis: the unbalance is `m u (omega^2 n - alpha t)` with `n` the direction
+of the mass centre and `t` across it, turned with the shaft.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.case import Case
+from petalfoil.errors import UsageError
+from petalfoil.problem.scales import Scales
+from petalfoil.transient.schedule import Schedule
+
+Array = NDArray[np.float64]
+
+GRAVITY = 9.80665
+"""Standard gravity [m/s^2]."""
+
+
+@dataclass(frozen=True)
+class Clock:
+    """Units of time.
+
+    Attributes
+    ----------
+    rate : float
+        Units of time in a second [rad/s].
+    bearing_number : float
+        Bearing number of one radian per unit of time, `Lam_t` [1].
+    """
+
+    rate: float
+    bearing_number: float
+
+    @classmethod
+    def of(cls, case: Case, scales: Scales, schedule: Schedule) -> Clock:
+        """A radian at the highest speed; where nothing turns, the time in which a film of reference size drains."""
+        radius, viscosity = case.bearing.journal_radius, case.gas.viscosity
+        rate = schedule.top or 1.0 / scales.bearing_number(viscosity, 1.0, radius)
+        return cls(rate, scales.bearing_number(viscosity, rate, radius))
+
+
+@dataclass(frozen=True)
+class RotorMotion:
+    """Mass and loads of the rotor.
+
+    Attributes
+    ----------
+    inertia : float
+        `M = m h_ref rate^2 / F_ref` [1].
+    load : (2,) array
+        Constant load over the unit of force [1].
+    unbalance : float
+        `m u / F_ref` [s^2].
+    rotating : (force, speed)
+        Rotating load over the unit of force [1] and its speed [rad/s]; None turns with the shaft.
+    schedule : Schedule
+        Speed of the shaft.
+    clock : Clock
+        Units of time.
+    """
+
+    inertia: float
+    load: Array
+    unbalance: float
+    rotating: tuple[float, float | None]
+    schedule: Schedule
+    clock: Clock
+
+    @classmethod
+    def of(cls, case: Case, scales: Scales, schedule: Schedule, load: tuple[float, float] | None = None) -> RotorMotion:
+        """The rotor of `case` under `load` [N], by default the case's load, without one its weight along -y.
+
+        Raises
+        ------
+        UsageError
+            The case has no rotor.
+        """
+        if case.rotor is None:
+            raise UsageError("the motion of a rotor needs a case with [rotor]: give its mass there")
+        rotor, clock = case.rotor, Clock.of(case, scales, schedule)
+        given = load or case.operation.load or (0.0, -rotor.mass * GRAVITY)
+        return cls(
+            inertia=rotor.mass * scales.length * clock.rate**2 / scales.force,
+            load=np.array(given) / scales.force,
+            unbalance=rotor.mass * rotor.unbalance / scales.force,
+            rotating=(rotor.rotating_load / scales.force, rotor.rotating_speed),
+            schedule=schedule,
+            clock=clock,
+        )
+
+    def outside(self, tau: float) -> Array:
+        """All that acts on the rotor but the bearing, at time `tau` [units of time], (2,) [1]."""
+        t = tau / self.clock.rate
+        omega, alpha, angle = self.schedule.speed(t), self.schedule.acceleration(t), self.schedule.angle(t)
+        along, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+        off_centre = self.unbalance * (omega**2 * along - alpha * across)
+        force, speed = self.rotating
+        turned = angle if speed is None else speed * t
+        rotating = force * np.array([np.cos(turned), np.sin(turned)])
+        total: Array = self.load + rotating + off_centre
+        return total
+
+    def bearing_number(self, tau: float) -> float:
+        """Bearing number at time `tau` [1]."""
+        return self.clock.bearing_number * self.schedule.speed(tau / self.clock.rate) / self.clock.rate

@@ -1,0 +1,296 @@
+"""One implicit stage in time: film, wall, contacts and rotor in one Newton, exact in its contacts.
+
+Every stage of the scheme asks for a state whose rates lead to it from a base: with `rate` one over its implicit part,
+
+    film     net outflow + rate (m - m_base) = 0                         (O2)
+    rotor    M rate^2 (e - e_base - v_base / rate) = F + loads           (O3)
+
+and wall and contacts as at rest. One factorisation, with both displacements of the journal bordered, serves as many
+corrections, stages and steps as it contracts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.equilibria.response import Motion, Response
+from petalfoil.problem.balance import FilmForce
+from petalfoil.problem.moving import StepProblem
+from petalfoil.solvers.active_set import ActiveOptions, revise, searched
+from petalfoil.solvers.active_set import State as SetState
+from petalfoil.solvers.complementarity import solve_lcp
+from petalfoil.solvers.linear import LinearSolver, SingularMatrixError
+from petalfoil.solvers.spanning import determining
+from petalfoil.solvers.ties import Ties, tie
+from petalfoil.transient.state import Moving
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+SIGNS = ActiveOptions()
+"""How far gaps and reactions may miss zero."""
+
+
+@dataclass(frozen=True)
+class StageOptions:
+    """Numbers of the method."""
+
+    accuracy: float = 1e-6
+    """Correction after which a stage is done [reference films, ambient pressures]."""
+    corrections: int = 8
+    """Most corrections with one contact set."""
+    slow: float = 0.2
+    """Contraction past which the tangent is renewed."""
+    sets: int = 8
+    """Most contact sets tried in a stage."""
+
+
+@dataclass(frozen=True)
+class Tangent:
+    """The factorised system of a stage, rotor bordered.
+
+    Attributes
+    ----------
+    rate : float
+        Its `rate` [1 / unit of time].
+    closed : (m,) bool array
+        Gaps that it keeps closed.
+    stops : (k,) int array
+        Gaps that close a chain of closed ones between journal and bushing: only the journal can open them.
+    response : Response
+        Factor, ties, and products.
+    units : (n, 2) array
+        Change of the unknowns by a unit displacement along x and y.
+    gradient : (2, 2) array
+        Change of the bearing's force on the journal by them.
+    """
+
+    rate: float
+    closed: Mask
+    stops: NDArray[np.intp]
+    response: Response
+    units: Array
+    gradient: Array
+
+    @property
+    def ties(self) -> Ties:
+        """The closed gaps that are eliminated."""
+        return self.response.motion.ties
+
+    def serves(self, closed: Mask) -> bool:
+        """The gaps `closed` are those that it keeps closed, or stops."""
+        mine = self.closed.copy()
+        mine[self.stops] = closed[self.stops]
+        return bool(np.array_equal(mine, closed))
+
+
+@dataclass(frozen=True)
+class Stage:
+    """What a stage asks for.
+
+    Attributes
+    ----------
+    problem : StepProblem
+        Film and wall with the stage's base mass, speed and rate; its displacement does not matter.
+    base : Moving
+        Where the rates lead from.
+    inertia : float
+        `M` [1].
+    outside : (2,) array
+        Loads at the stage's time over the unit of force [1].
+    film : FilmForce
+        Force of the film on the journal.
+    """
+
+    problem: StepProblem
+    base: Moving
+    inertia: float
+    outside: Array
+    film: FilmForce
+
+    @property
+    def rate(self) -> float:
+        """One over the implicit part of the step."""
+        return self.problem.rate
+
+    def left(self, P: Array, reaction: Array, e: Array) -> Array:
+        """Force that is left over for acceleration at `e` (O3), (2,) [1]; `reaction` is the contacts' force."""
+        reached = e - self.base.e - self.base.v / self.rate
+        force: Array = self.film.at(P) + reaction + self.outside - self.inertia * self.rate**2 * reached
+        return force
+
+    def moving(self, stored: Array, e: Array) -> Moving:
+        """Gas, position and velocity of a state of this stage."""
+        return Moving(stored, e, self.rate * (e - self.base.e))
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A stage's answer, and the tangent that found it."""
+
+    x: Array
+    lam: Array
+    closed: Mask
+    moving: Moving
+    residual: float
+    tangent: Tangent
+
+
+def tangent_of(problem: StepProblem, x: Array, closed: Mask, solver: LinearSolver) -> Tangent | None:
+    """Factorise a stage at `x` with the gaps `closed`; None if the system has no solution."""
+    held = determining(problem.G, closed, problem.layout.wall.contacts.journal)
+    ties, stops = tie(problem.G, held), np.flatnonzero(closed & ~held)
+    try:
+        response = Motion(problem, problem.linearize(x), held, ties).respond(0.0, solver)
+    except SingularMatrixError:
+        return None
+    units, gradient = response.units()
+    return Tangent(problem.rate, held, stops, response, units, gradient)
+
+
+def solve_stage(
+    stage: Stage, start: tuple[Array, Array, Mask], tangent: Tangent | None, solver: LinearSolver, options: StageOptions
+) -> Solved | None:
+    """Find the stage's state from `start`: unknowns, displacement, closed gaps; None if there is none near it."""
+    x, e, closed = start
+    doubt = np.zeros(len(closed), dtype=bool)
+    for count in range(options.sets):
+        found = with_set(stage, (x, e, closed), tangent, solver, options)
+        if found is None:
+            return None
+        state, e, tangent = found
+        wanted = revise(stage.problem, state, SIGNS)
+        if np.array_equal(wanted, state.closed):
+            stored = stage.problem.at(displacement=e).stored(state.x)
+            return Solved(state.x, state.lam, state.closed, stage.moving(stored, e), state.residual, tangent)
+        doubt |= wanted != state.closed
+        x, closed = state.x, wanted
+        if count >= 1:
+            sought = searched(stage.problem.at(displacement=e), state, doubt, solver)
+            if isinstance(sought, SetState):
+                x, closed = sought.x, sought.closed
+        tangent = None
+    return None
+
+
+def with_set(
+    stage: Stage, start: tuple[Array, Array, Mask], tangent: Tangent | None, solver: LinearSolver, options: StageOptions
+) -> tuple[SetState, Array, Tangent] | None:
+    """Newton with the contact set given, the tangent renewed where it does not contract; None if that fails."""
+    x, e, closed = start
+    usable = tangent is not None and tangent.serves(closed)
+    for renewal in range(3):
+        if not usable or tangent is None:
+            tangent = tangent_of(stage.problem.at(displacement=e), x, closed, solver)
+            if tangent is None:
+                return None
+        reached = contract(stage, (x, e), tangent, options)
+        if reached is not None:
+            state, e, done = reached
+            if done:
+                return state, e, tangent
+            x = state.x
+        elif renewal and not usable:
+            return None
+        usable = False
+    return None
+
+
+def contract(
+    stage: Stage, start: tuple[Array, Array], tangent: Tangent, options: StageOptions
+) -> tuple[SetState, Array, bool] | None:
+    """Corrections with one tangent: state, displacement, and whether they are an answer; None if they diverge."""
+    (x, e), last, push = start, np.inf, np.zeros(len(tangent.stops))
+    for _ in range(options.corrections):
+        state = evaluate(stage, (x, e), push, tangent)
+        if state is None:
+            return None
+        found = eliminated(stage, state, tangent, e)
+        if found is None:
+            return None
+        change, de, push = found
+        size = measure(change, de)
+        if size > 2.0 * last:
+            return None
+        slope = size / last if np.isfinite(last) else options.slow
+        x, e = state.x + keep_positive(stage, state.x, change), e + de
+        done = size * min(1.0, slope / max(1.0 - slope, 0.1)) <= options.accuracy
+        if done or (np.isfinite(last) and slope > options.slow):
+            end = evaluate(stage, (x, e), push, tangent)
+            return None if end is None else (end, e, done)
+        last = size
+    end = evaluate(stage, (x, e), push, tangent)
+    return None if end is None else (end, e, False)
+
+
+def evaluate(stage: Stage, at: tuple[Array, Array], push: Array, tangent: Tangent) -> SetState | None:
+    """Close the closed gaps exactly and evaluate the equations; None where the film is not open."""
+    (x, e), ties, closed = at, tangent.ties, tangent.closed.copy()
+    problem = stage.problem.at(displacement=e)
+    if np.any(closed):
+        x = x + ties.close(problem.gaps(x)[closed])
+    if not problem.admits(x) or np.min(x[problem.positive], initial=1.0) <= 0.0 or not np.all(np.isfinite(x)):
+        return None
+    line = problem.linearize(x)
+    lam = np.zeros(len(closed))
+    lam[tangent.stops] = push
+    lam[closed] = ties.reactions(line.residual - problem.G.T @ lam)
+    residual = float(np.max(np.abs(line.residual - problem.G.T @ lam) / line.size, initial=0.0))
+    closed[tangent.stops] = push > 0.0
+    return SetState(x, lam, closed, residual, ties, line, problem.gaps(x))
+
+
+def freely(stage: Stage, residual: Array, tangent: Tangent, at: tuple[Array, Array]) -> tuple[Array, Array, Array]:
+    """Film, wall and ties settle against `residual`; the rotor follows the force that is left over, stops apart.
+
+    Parameters
+    ----------
+    at : (P, e)
+        Pressure unknowns and displacement.
+
+    Returns
+    -------
+    settle, de, stiffness
+        Change of the unknowns at a journal that stays (n,), of the displacement (2,), and what resists it (2, 2).
+    """
+    (P, e), ties, response = at, tangent.ties, tangent.response
+    settle = ties.spread(response.factor.solve(-ties.gather(residual)))
+    by_e = stage.problem.layout.wall.contacts.by_e[tangent.closed]
+    reaction = by_e.T @ ties.reactions(residual + response.apply(settle))
+    left = stage.left(P + settle[stage.problem.positive], reaction, e)
+    stiffness: Array = stage.inertia * stage.rate**2 * np.eye(2) - tangent.gradient
+    return settle, np.asarray(np.linalg.solve(stiffness, left), dtype=np.float64), stiffness
+
+
+def eliminated(stage: Stage, state: SetState, tangent: Tangent, e: Array) -> tuple[Array, Array, Array] | None:
+    """Change of the unknowns (n,), of the displacement (2,), and reactions of the stops (k,); None if they contradict.
+
+    Stops hold the journal alone, whatever film and wall do: a complementarity problem of their own.
+    """
+    settle, de, stiffness = freely(stage, state.line.residual, tangent, (state.x[stage.problem.positive], e))
+    if not len(tangent.stops):
+        return settle + tangent.units @ de, de, np.zeros(0)
+    arm = stage.problem.layout.wall.contacts.by_e[tangent.stops] + stage.problem.G[tangent.stops] @ tangent.units
+    give = np.linalg.solve(stiffness, arm.T)
+    push = solve_lcp(arm @ give, state.gaps[tangent.stops] + arm @ de, np.zeros(len(arm), dtype=bool))
+    if push is None:
+        return None
+    de = de + give @ push
+    return settle + tangent.units @ de, de, push
+
+
+def measure(change: Array, de: Array) -> float:
+    """Size of a correction: displacement and deflections in reference films, pressures in ambient ones."""
+    return float(max(np.max(np.abs(change), initial=0.0), np.max(np.abs(de))))
+
+
+def keep_positive(stage: Stage, x: Array, change: Array) -> Array:
+    """The change, shortened as a whole so that no pressure falls by more than four fifths."""
+    kept = stage.problem.positive
+    falling = change[kept] < 0.0
+    reach = 0.8 * np.min(x[kept][falling] / -change[kept][falling], initial=np.inf)
+    shortened: Array = min(1.0, float(reach)) * change
+    return shortened
