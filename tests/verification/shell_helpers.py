@@ -110,9 +110,8 @@ class ElasticProblem:
         return len(self.force)
 
     @property
-    def rank(self) -> Array | None:
+    def rank(self) -> None:
         """The solver orders the elimination itself."""
-        return None
 
     @property
     def positive(self) -> slice:

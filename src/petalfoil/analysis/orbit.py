@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
+from petalfoil.analysis.balance import settled
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.equilibrium import Named, chosen, positioned
 from petalfoil.analysis.figures import effort, given
@@ -22,12 +23,16 @@ from petalfoil.problem.balance import FilmForce
 from petalfoil.problem.build import build_problem
 from petalfoil.problem.film_rows import FilmState
 from petalfoil.problem.moving import StepProblem
+from petalfoil.results.motion import figures_of
 from petalfoil.results.record import Record
 from petalfoil.transient.march import MarchOptions, march
-from petalfoil.transient.rotor import RotorMotion
+from petalfoil.transient.rotor import RotorMotion, constant_load
 from petalfoil.transient.schedule import Schedule
 from petalfoil.transient.scheme import System
 from petalfoil.transient.state import Instant, Moving
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Array = NDArray[np.float64]
 Load = tuple[float, float]
@@ -46,8 +51,8 @@ class Course:
         Turns of the shaft; by default what `duration` or the schedule lasts, else 20.
     duration : float or None
         Time [s], instead of turns.
-    initial : (2,) or None
-        Displacement that the journal is released from [m]; by default the case's.
+    initial : (2,), "balance" or None
+        Displacement that the journal is released from [m], or where the constant load balances; by default the case's.
     speeds : list of (time, speed) or None
         Speed of the shaft [s, rad/s]; by default the case's.
     load : (2,) or None
@@ -60,7 +65,7 @@ class Course:
 
     revolutions: float | None = None
     duration: float | None = None
-    initial: Load | None = None
+    initial: Load | Literal["balance"] | None = None
     speeds: tuple[tuple[float, float], ...] | None = None
     load: Load | None = None
     tolerance: float = TOLERANCE
@@ -127,10 +132,9 @@ class Orbit:
     def __init__(self, case: Case, course: Course, restart: xr.Dataset | None = None) -> None:
         newton_only(case)
         self.clock, self.work, self.course = Clock(), Work(), course
-        start = course.initial or (case.operation.eccentricity if restart is None else end_position(restart))
-        self.case = positioned(case, None, start)
+        self.case = positioned(case, None, first_position(case, course, self.work)) if restart is None else case
         schedule = course.schedule(case)
-        begin = 0.0 if restart is None else continued(case, restart)
+        begin = 0.0 if restart is None else continued(case, schedule, restart)
         with one_thread():
             self.system = system_of(self.case, schedule, course.load)
             tau = begin * self.system.rotor.clock.rate
@@ -173,6 +177,7 @@ class Orbit:
         scalars: Named = {
             **{key: value for key, value in given(self.case).items() if key not in HERE},
             **self.trace.audits(),
+            **figures_of(time, over),
             "revolutions": float(over["shaft_angle"][-1] - over["shaft_angle"][0]) / (2.0 * np.pi),
             "tolerance": self.course.tolerance,
             "rotor_mass": 0.0 if self.case.rotor is None else self.case.rotor.mass,
@@ -197,6 +202,8 @@ class Orbit:
         )
 
 
+SAME = 1e-6
+"""Share by which speed and angle of the shaft may differ where one motion goes on from another."""
 HERE = ("eccentricity_x", "eccentricity_y")
 """Figures of a point that a motion has over time."""
 
@@ -215,6 +222,24 @@ def run(case: Case, course: Course, restart: xr.Dataset | None = None, progress:
     for _ in orbit.steps(progress):
         pass
     return orbit.record()
+
+
+def first_position(case: Case, course: Course, work: Work) -> Load | None:
+    """Where the journal is released [m]; None where the case says so.
+
+    Raises
+    ------
+    ConvergenceError
+        No position balances the load.
+    """
+    if course.initial != "balance":
+        return course.initial
+    load = constant_load(case, course.load)
+    there = positioned(case, course.schedule(case).speed(0.0), (0.0, 0.0))
+    with one_thread():
+        found, _ = settled(there, load, work)
+    x, y = found.answer.problem.displacement * found.answer.problem.layout.scales.length
+    return float(x), float(y)
 
 
 def system_of(case: Case, schedule: Schedule, load: Load | None) -> System:
@@ -271,32 +296,28 @@ def instant_of(result: xr.Dataset, system: System, tau: float) -> Instant:
     return released(system, tau, (x, lam, lam > 0.0), (e, v))
 
 
-def end_position(result: xr.Dataset) -> Load:
-    """Where a motion ended [m].
-
-    Raises
-    ------
-    UsageError
-        The result is not that of a motion.
-    """
-    if "last_position" not in result:
-        raise UsageError("this result holds no motion to go on from: give a file that orbit wrote")
-    x, y = (float(value) for value in result["last_position"].to_numpy())
-    return x, y
-
-
-def continued(case: Case, result: xr.Dataset) -> float:
+def continued(case: Case, schedule: Schedule, result: xr.Dataset) -> float:
     """Time at which the motion of `result` ended [s].
 
     Raises
     ------
     UsageError
-        It is the motion of another bearing.
+        The result is not that of a motion, or it is the motion of another bearing or of another shaft's speed.
     """
+    if "last_position" not in result:
+        raise UsageError("this result holds no motion to go on from: give a file that orbit wrote")
     before = Case.from_toml(result.attrs["case"])
     for section in ("bearing", "petals", "gas", "surface", "model"):
         if getattr(before, section) != getattr(case, section):
             raise UsageError(
                 f"the motion to go on from is that of another bearing: its [{section}] differs from the case's"
             )
-    return float(result["time"].to_numpy()[-1])
+    end, speed, angle = (float(result[name].to_numpy()[-1]) for name in ("time", "shaft_speed", "shaft_angle"))
+    if abs(schedule.speed(end) - speed) > SAME * speed or abs(schedule.angle(end) - angle) > SAME * max(angle, 1.0):
+        turns = 2.0 * np.pi
+        raise UsageError(
+            f"the motion to go on from ended at {speed:.6g} rad/s after {angle / turns:.6g} turns, but these speeds "
+            f"are at {schedule.speed(end):.6g} rad/s after {schedule.angle(end) / turns:.6g} turns then: give the "
+            "speeds from its start on, and what follows"
+        )
+    return end

@@ -1,9 +1,10 @@
-"""Whirl of a rigid rotor on the bearing: smallest mass that whirls, whirl ratio, threshold speed."""
+"""Whirl of a rigid rotor on the bearing: smallest mass that whirls, threshold speed, damped natural frequencies."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import brentq
@@ -13,15 +14,16 @@ from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.coefficients import Load, at_position, elastic, operating_point
 from petalfoil.analysis.equilibrium import Named, about, positioned
 from petalfoil.analysis.figures import effort, failed_record, given
+from petalfoil.analysis.modes import Mode, natural_modes
 from petalfoil.analysis.session import Clock, Progress, one_thread, part, telling_work
 from petalfoil.analysis.speeds import SpeedLine
-from petalfoil.analysis.whirl import Whirl, neutral_whirl
+from petalfoil.analysis.whirl import Whirl, neutral_whirl, scan
 from petalfoil.case import Case
 from petalfoil.equilibria.answer import Answer
 from petalfoil.equilibria.stability import leading_eigenvalue
 from petalfoil.equilibria.work import Work
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.results.record import Record
+from petalfoil.results.record import Array, Record
 
 GRAVITY = 9.80665
 """Standard gravity [m/s^2]: a load without a mass is taken for a weight."""
@@ -44,9 +46,10 @@ def run(
     speed: float | None = None,
     progress: Progress | None = None,
 ) -> Record:
-    """Smallest mass that whirls at the operating point, and the speed at which `mass` [kg] begins to.
+    """Smallest mass that whirls at the operating point, the speed at which `mass` [kg] begins to, and its modes.
 
-    Without a mass the load over gravity stands for it; without a load there is no threshold speed (nan).
+    Without `mass` that of the case's rotor is taken, without one the load over gravity; without a load there are no
+    threshold speed (nan) and no modes.
 
     Raises
     ------
@@ -61,11 +64,29 @@ def run(
         raise UsageError("the mass of the rotor must be positive")
     with one_thread():
         answer, known = operating_point(case, load, work)
-        whirl = neutral_whirl(elastic(answer, work), case.operation.speed, work)
+        motion = elastic(answer, work)
+        scanned = scan(motion, work)
+        whirl = neutral_whirl(motion, case.operation.speed, work, scanned)
         rotor = rotor_mass(case, load, mass)
+        inertia = rotor * case.operation.speed**2
+        modes = None if math.isnan(rotor) else natural_modes(motion, inertia, scanned, work)
         threshold, ended = threshold_speed(case, load, (rotor, whirl), work)
     own: Named = {**known, "rotor_mass": rotor, "threshold_speed": threshold}
-    return record(case, answer, whirl, own, (work, clock, ended))
+    whole = record(case, answer, whirl, own, (work, clock, ended))
+    return whole if modes is None else with_modes(whole, modes, case.operation.speed)
+
+
+def with_modes(record: Record, modes: list[Mode], speed: float) -> Record:
+    """The record with fields that tell the modes."""
+    fields = {
+        "natural_frequency": [mode.s.imag * speed for mode in modes],
+        "mode_growth_rate": [mode.s.real * speed for mode in modes],
+        "damping_ratio": [mode.damping_ratio for mode in modes],
+        "participation": [mode.participation for mode in modes],
+        "whirl_direction": [mode.direction for mode in modes],
+    }
+    arrays: dict[str, Array] = {name: np.array(values, dtype=float) for name, values in fields.items()}
+    return replace(record, fields=arrays, coords={"mode": np.arange(1, len(modes) + 1)})
 
 
 def iterate(
@@ -132,9 +153,11 @@ def turning(case: Case) -> Case:
 
 
 def rotor_mass(case: Case, load: Load | None, mass: float | None) -> float:
-    """The mass on this bearing [kg]; nan where nothing tells it."""
+    """The mass on this bearing [kg]: as asked, else the case's, else the load's; nan where nothing tells it."""
     if mass is not None:
         return mass
+    if case.rotor is not None:
+        return case.rotor.mass
     if load is None and case.operation.load is None:
         return math.nan
     return float(np.hypot(*loaded(case, load))) / GRAVITY

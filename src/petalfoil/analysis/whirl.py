@@ -11,8 +11,11 @@ from scipy.optimize import brentq
 from petalfoil.equilibria.response import Motion
 from petalfoil.equilibria.work import Work
 
-SCAN = np.concatenate([np.linspace(0.05, 1.2, 24), [1.5, 2.0, 3.0]])
-"""Whirl ratios between which changes of sign are looked for; whirl of gas bearings is near a half and below."""
+Complex = NDArray[np.complex128]
+
+SCAN = np.concatenate([[0.006, 0.012, 0.025], np.linspace(0.05, 1.2, 24), [1.5, 2.0, 3.0]])
+"""Whirl ratios between which changes of sign are looked for; whirl of gas bearings is near a half and below, that of a
+heavy rotor on soft petals far below."""
 
 
 @dataclass(frozen=True)
@@ -31,14 +34,14 @@ class Whirl:
     ratio: float
 
 
-def neutral_whirl(motion: Motion, speed: float, work: Work) -> Whirl:
-    """Find the smallest whirling mass about the state of `motion`.
+def neutral_whirl(motion: Motion, speed: float, work: Work, scanned: Complex | None = None) -> Whirl:
+    """Find the smallest whirling mass about the state of `motion`; `scanned` if the impedances of `scan` are known.
 
     For a mass at the threshold the two eigenvalues of `Z(i Omega)` include a real one, `m Omega^2`: the branches of
     their imaginary part are followed over whirl ratio and their zeros bracketed.
     """
     roots: list[Whirl] = []
-    values = [eigenvalues(motion, nu, work) for nu in SCAN]
+    values = list(np.linalg.eigvals(scan(motion, work) if scanned is None else scanned))
     for k in range(len(SCAN) - 1):
         ahead = matched(values[k], values[k + 1])
         for branch in (0, 1):
@@ -48,14 +51,24 @@ def neutral_whirl(motion: Motion, speed: float, work: Work) -> Whirl:
     return min(roots, key=lambda root: root.mass, default=Whirl(np.inf, np.nan))
 
 
-def eigenvalues(motion: Motion, nu: float, work: Work) -> NDArray[np.complex128]:
-    """Eigenvalues of the impedance at whirl ratio `nu`, (2,) [N/m]."""
+def scan(motion: Motion, work: Work) -> Complex:
+    """Impedances at the whirl ratios of `SCAN`, (n, 2, 2) [N/m]."""
+    return np.array([whirl_impedance(motion, nu, work) for nu in SCAN])
+
+
+def whirl_impedance(motion: Motion, nu: float, work: Work) -> Complex:
+    """`Z` at whirl ratio `nu`, (2, 2) [N/m]; one factorisation."""
     scales = motion.problem.layout.scales
-    Z = -motion.respond(float(nu), work.probe_solver).force_gradient() * scales.force / scales.length
-    return np.asarray(np.linalg.eigvals(Z), dtype=np.complex128)
+    gradient = motion.respond(float(nu), work.probe_solver).force_gradient()
+    return np.asarray(-gradient * scales.force / scales.length, dtype=np.complex128)
 
 
-def matched(before: NDArray[np.complex128], after: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def eigenvalues(motion: Motion, nu: float, work: Work) -> Complex:
+    """Eigenvalues of the impedance at whirl ratio `nu`, (2,) [N/m]."""
+    return np.asarray(np.linalg.eigvals(whirl_impedance(motion, nu, work)), dtype=np.complex128)
+
+
+def matched(before: Complex, after: Complex) -> Complex:
     """`after`, ordered so that each eigenvalue continues its own branch."""
     straight = np.abs(after - before).sum()
     crossed = np.abs(after[::-1] - before).sum()

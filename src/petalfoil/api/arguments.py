@@ -7,7 +7,7 @@ from typing import Any, TypeGuard
 
 from petalfoil.case import Case
 from petalfoil.errors import UsageError
-from petalfoil.units import parse_pair, parse_quantity, parse_range
+from petalfoil.units import parse_pair, parse_quantity, parse_ramp, parse_range
 from petalfoil.units.reading import shown
 
 Progress = Callable[[float, str], None]
@@ -26,14 +26,14 @@ def speed_of(speed: Number | None) -> float | None:
     return None if speed is None else parse_quantity(speed, "rad/s")
 
 
-def position_of(position: Sequence[Number] | str | None) -> tuple[float, float] | None:
+def position_of(position: Sequence[Number] | str | None, name: str = "eccentricity") -> tuple[float, float] | None:
     """A displacement (x, y) [m]."""
     if position is None:
         return None
     if isinstance(position, str):
         return parse_pair(position, "m")
     if not _is_sequence(position) or len(position) != 2:
-        raise UsageError(f"eccentricity: {shown(position)} is not a pair (x, y)")
+        raise UsageError(f"{name}: {shown(position)} is not a pair (x, y)")
     return parse_quantity(position[0], "m"), parse_quantity(position[1], "m")
 
 
@@ -69,6 +69,18 @@ def values_of(name: str, values: Sequence[Number] | Number, unit: str) -> list[f
     if not found:
         raise UsageError(f"{name}: give at least one value")
     return found
+
+
+def speeds_of(speeds: Sequence[tuple[Number, Number]] | str | None) -> tuple[tuple[float, float], ...] | None:
+    """Instants [s] and speeds [rad/s]; as a text a ramp."""
+    if speeds is None:
+        return None
+    if isinstance(speeds, str):
+        return tuple(parse_ramp(speeds))
+    for point in speeds if _is_sequence(speeds) else [speeds]:
+        if not _is_sequence(point) or len(point) != 2:
+            raise UsageError(f"speeds: {shown(point)} is not a pair (time, speed)")
+    return tuple((parse_quantity(time, "s"), parse_quantity(speed, "rad/s")) for time, speed in speeds)
 
 
 def _is_sequence(value: object) -> TypeGuard[Sequence[Any]]:

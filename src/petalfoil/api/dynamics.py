@@ -72,7 +72,7 @@ def stability(  # noqa: PLR0913 - the options of the verb
     loads: Sequence[Number] | str | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Find the smallest mass of a rigid rotor that whirls, and the speed from which on the rotor's mass does.
+    """Find the smallest mass of a rigid rotor that whirls, its threshold speed and its damped natural frequencies.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def stability(  # noqa: PLR0913 - the options of the verb
     load : float or str, or pair of them, optional
         Load on the journal instead of the case's [N]; a single value acts along -y.
     mass : float or str, optional
-        Mass of the rotor on this bearing [kg]; by default that of the load.
+        Mass of the rotor on this bearing [kg]; by default the case's, else the load over standard gravity.
     speed : float or str, optional
         Angular speed instead of the case's [rad/s].
     speeds, loads : sequence of float or str, or str, optional
@@ -93,7 +93,9 @@ def stability(  # noqa: PLR0913 - the options of the verb
     -------
     xarray.Dataset
         `critical_mass` (inf where no mass whirls), `whirl_ratio` and `threshold_speed` (nan where there is none, as
-        `status` tells); as a table along `load` and `speed` without the latter.
+        `status` tells); along `mode` `natural_frequency`, `mode_growth_rate`, `damping_ratio`, `participation` and
+        `whirl_direction` of the rotor's modes that resonate or grow, if its mass is known. A table along `load` and
+        `speed` has the first two.
 
     Raises
     ------

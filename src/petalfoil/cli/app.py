@@ -14,6 +14,7 @@ from petalfoil.cli.converge import converge
 from petalfoil.cli.curve import curve
 from petalfoil.cli.failures import handled
 from petalfoil.cli.liftoff import liftoff
+from petalfoil.cli.orbit import orbit
 from petalfoil.cli.reproduce import reproduce
 from petalfoil.cli.runup import runup
 from petalfoil.cli.show import show
@@ -28,7 +29,11 @@ app = typer.Typer(
     pretty_exceptions_enable=False,  # `failures` speaks to the user, not a decorated traceback
     rich_markup_mode="rich",
 )
-for verb in (solve, curve, static, balance, liftoff, runup, coefficients, stability, check, converge, show, reproduce):
+VERBS = (
+    *(solve, curve, static, balance, liftoff, runup, coefficients, stability, orbit),
+    *(check, converge, show, reproduce),
+)
+for verb in VERBS:
     app.command()(verb)
 
 

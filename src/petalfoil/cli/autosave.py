@@ -1,4 +1,4 @@
-"""Rewrites the result file of a curve as its points finish, so that little is lost when the run is."""
+"""Rewrites the result file of a curve or a motion as it grows, so that little is lost when the run is."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
     from petalfoil.results import Record
 
+Finished: TypeAlias = "Sequence[Record] | Callable[[], Sequence[Record]]"
+"""Records, or what makes them when they are needed."""
 Layout: TypeAlias = "Callable[[Sequence[Record], str], xr.Dataset]"
 
 PERIOD = 2.0  # [s] between rewrites: a fast curve is not slowed by its own file
@@ -49,9 +51,9 @@ class Autosave:
         self._clock = clock
         self._due = clock() + PERIOD
 
-    def offer(self, records: Sequence[Record]) -> None:
+    def offer(self, records: Finished) -> None:
         """Write the records if the last writing is long enough ago; a refusal is said, and does not end the run."""
-        if self._clock() < self._due:
+        if self.path is None or self._clock() < self._due:
             return
         start = self._clock()
         try:
@@ -61,11 +63,14 @@ class Autosave:
         end = self._clock()
         self._due = end + max(PERIOD, (end - start) / MAX_SHARE)
 
-    def flush(self, records: Sequence[Record]) -> None:
+    def flush(self, records: Finished) -> None:
         """Write the records now, if there are any."""
-        if self.path is None or not records:
+        if self.path is None:
+            return
+        finished = records() if callable(records) else records
+        if not finished:
             return
         from petalfoil.results.dataset import curve_dataset
         from petalfoil.results.store import save
 
-        save((self._layout or curve_dataset)(records, self.verb), self.path)
+        save((self._layout or curve_dataset)(finished, self.verb), self.path)

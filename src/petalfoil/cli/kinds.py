@@ -8,12 +8,17 @@ from typing import TYPE_CHECKING
 
 from petalfoil.cli.answer import Answer, Plain
 from petalfoil.results import Record
+from petalfoil.results.schema import HISTORIES
 from petalfoil.results.summary import as_json
 
 if TYPE_CHECKING:
     import xarray as xr
 
 LEGS = ("up", "down")
+MODES = ("natural_frequency", "mode_growth_rate", "damping_ratio", "participation", "whirl_direction")
+"""What is told of each natural mode, in the order of the table."""
+OVER_TIME = tuple(name for name, variable in HISTORIES.items() if variable.dims == ("time",))
+"""What is told of every step of a motion."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,6 +66,27 @@ class CoefficientsAnswer(Answer):
 
 
 @dataclass(frozen=True, kw_only=True)
+class StabilityAnswer(Answer):
+    """Threshold and natural modes at one operating point; modes as lists by frequency, null without a rotor's mass."""
+
+    def _plain(self) -> dict[str, object]:
+        (record,) = self.records
+        modes = {name: record.fields[name].tolist() if name in record.fields else None for name in MODES}
+        return {**as_json(record), **modes}
+
+
+@dataclass(frozen=True, kw_only=True)
+class OrbitAnswer(Answer):
+    """A motion: figures of the whole, and lists over its steps."""
+
+    def _plain(self) -> dict[str, object]:
+        (record,) = self.records
+        over = {"time": record.coords["time"].tolist()} if "time" in record.coords else {}
+        over |= {name: record.fields[name].tolist() for name in OVER_TIME if name in record.fields}
+        return {**as_json(record), **over} | ({"interrupted": True} if self.interrupted else {})
+
+
+@dataclass(frozen=True, kw_only=True)
 class ChartAnswer(Answer):
     """Figures over load and speed as ``[load][speed]``; null where nothing was computed."""
 
@@ -99,8 +125,10 @@ KINDS: dict[str, type[Answer]] = {
     "liftoff": LiftoffAnswer,
     "runup": RunupAnswer,
     "coefficients": CoefficientsAnswer,
+    "stability": StabilityAnswer,
+    "orbit": OrbitAnswer,
 }
-"""Kinds of answers that a file with the dimension ``point`` may hold, by verb."""
+"""Kinds of answers that are not tables over load and speed or grids, by verb."""
 
 
 def load_of(record: Record) -> float:

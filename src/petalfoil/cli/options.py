@@ -72,7 +72,44 @@ ChartLoads: TypeAlias = Annotated[
 ]
 Mass: TypeAlias = Annotated[
     str | None,
-    typer.Option(metavar="QUANTITY", help='Mass of the rotor on this bearing: "2 kg"; by default the load\'s.'),
+    typer.Option(
+        metavar="QUANTITY",
+        help="Mass of the rotor on this bearing: \"2 kg\"; by default the case's rotor's, or the load's.",
+    ),
+]
+Revolutions: TypeAlias = Annotated[
+    float | None,
+    typer.Option(metavar="TURNS", help="Turns of the shaft to follow; by default to the end of the ramp, else 20."),
+]
+Duration: TypeAlias = Annotated[
+    str | None,
+    typer.Option(metavar="QUANTITY", help='Time to follow, instead of turns: "10 ms".'),
+]
+Initial: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        metavar="X,Y", help='Where the journal is let go, instead of the case\'s eccentricity: "10 um, 0 um".'
+    ),
+]
+Ramp: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        metavar="FROM:TO:DURATION",
+        help='Speed that changes: "0 rpm : 60000 rpm : 2 s"; several segments with commas between, one joining the '
+        "other. Time counts from the start of the motion, also in a restart.",
+    ),
+]
+Restart: TypeAlias = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE.nc", help="Go on from the end of a motion that --out wrote, of the same bearing."),
+]
+Tolerance: TypeAlias = Annotated[
+    str,
+    typer.Option(metavar="NUMBER", help="Local error of a step in reference films and ambient pressures."),
+]
+Animate: TypeAlias = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE.html", help="Animate the last turns: a page of its own (.html) or a picture (.gif)."),
 ]
 Csv: TypeAlias = Annotated[
     Path | None,

@@ -60,6 +60,26 @@ def mass(text: str | None) -> float | None:
     return None if text is None else _named("--mass", units.parse_quantity, text, "kg")
 
 
+def initial(text: str | None) -> tuple[float, float] | None:
+    """Displacement (x, y) [m] of ``--initial``; None where the case decides."""
+    return None if text is None else _named("--initial", units.parse_pair, text, "m")
+
+
+def duration(text: str | None) -> float | None:
+    """Time [s] of ``--duration``; None where turns are counted."""
+    return None if text is None else _named("--duration", units.parse_quantity, text, "s")
+
+
+def ramp(text: str | None) -> tuple[tuple[float, float], ...] | None:
+    """Instants [s] and speeds [rad/s] of ``--ramp``; None where the speed stays."""
+    return None if text is None else tuple(_named("--ramp", lambda ramp, _: units.parse_ramp(ramp), text, ""))
+
+
+def tolerance(text: str) -> float:
+    """Local error of a step [1] of ``--tolerance``."""
+    return _named("--tolerance", units.parse_quantity, text, "1")
+
+
 def share(text: str) -> float:
     """Contact share [1] of ``--share``."""
     return _named("--share", units.parse_quantity, text, "1")

@@ -1,4 +1,4 @@
-"""``petalfoil stability``: which rotor whirls on the bearing, and from which speed on."""
+"""``petalfoil stability``: which rotor whirls on the bearing, from which speed on, and its natural frequencies."""
 
 from __future__ import annotations
 
@@ -28,13 +28,14 @@ def stability(  # noqa: PLR0913 - one argument for each option the user sees
     out: Out = None,
     plot: Plot = None,
 ) -> None:
-    """Find the smallest mass of a rigid rotor that whirls, and its threshold speed.
+    """Find the smallest mass of a rigid rotor that whirls, threshold speed and damped natural frequencies.
 
     At the case's eccentricity, or under a load where one is given; with
     --speeds or --loads as a table over load and speed.
 
     Example: petalfoil stability case.toml --load "20 N" --mass "2 kg"
     """
+    answer: Answer
     with handled(as_json):
         outputs = Outputs.checked(as_json=as_json, out=out, plot=plot)
         turn, forces = parsing.speeds("--speeds", speeds), None if loads is None else parsing.loads("--loads", loads)
@@ -48,10 +49,10 @@ def stability(  # noqa: PLR0913 - one argument for each option the user sees
         with bar("stability") as report:
             if turn is None and forces is None:
                 from petalfoil.analysis import stability as whirl
-                from petalfoil.cli.answer import Answer
+                from petalfoil.cli.kinds import StabilityAnswer
 
                 record = whirl.run(definition, load=force, mass=rotor, speed=omega, progress=report)
-                answer = Answer(verb="stability", records=(record,))
+                answer = StabilityAnswer(verb="stability", records=(record,))
             else:
                 answer = _chart(definition, (turn or _one(omega), forces, force), (outputs, report))
         outputs.deliver(answer)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import xarray as xr
 
 from petalfoil.cli.answer import Answer
-from petalfoil.cli.kinds import KINDS, ChartAnswer
+from petalfoil.cli.kinds import KINDS, MODES, OVER_TIME, ChartAnswer
 from petalfoil.cli.study import StudyAnswer
 from petalfoil.results import Record, Scalar
 from petalfoil.results.schema import SCALARS, Kind
@@ -41,12 +41,14 @@ def answer_of(dataset: xr.Dataset) -> Answer:
 
 
 def _record(point: xr.Dataset, verb: str, title: str) -> Record:
-    """The scalars of a point, and its stiffness and damping: the only fields that are printed."""
+    """The scalars of a point, and the fields that are printed: stiffness and damping, modes, a motion's histories."""
     scalars = _scalars(point)
-    if "stiffness" not in point or not scalars["converged"]:
+    if not scalars.get("converged", True):
         return Record(analysis=verb, scalars=scalars, title=title)
-    fields = {name: point[name].values for name in ("stiffness", "damping")}
-    coords = {name: point[name].values for name in ("whirl_frequency", "row", "column")}
+    printed = ("stiffness", "damping", *MODES, *OVER_TIME)
+    fields = {name: point[name].values for name in printed if name in point and point[name].dims}
+    axes = ("whirl_frequency", "row", "column", "mode", "time")
+    coords = {dim: point[dim].values for dim in axes if dim in point.dims}
     return Record(analysis=verb, scalars=scalars, title=title, fields=fields, coords=coords)
 
 
@@ -68,7 +70,8 @@ def _study(dataset: xr.Dataset) -> StudyAnswer:
 
 
 def _scalars(point: xr.Dataset) -> dict[str, Scalar]:
-    known = {name: _PLAIN[variable.kind](point[name].item()) for name, variable in SCALARS.items() if name in point}
+    here = {name: variable for name, variable in SCALARS.items() if name in point and not point[name].dims}
+    known = {name: _PLAIN[variable.kind](point[name].item()) for name, variable in here.items()}
     if known.get("converged", True):
         return known
     # A count that a failed point does not have is -1 in the file, for whole numbers know no NaN.

@@ -11,9 +11,10 @@ from rich.console import Console
 from rich.table import Table
 
 from petalfoil.cli.answer import Answer
-from petalfoil.cli.kinds import ChartAnswer, CoefficientsAnswer
+from petalfoil.cli.kinds import ChartAnswer, CoefficientsAnswer, OrbitAnswer, StabilityAnswer
+from petalfoil.cli.motion_table import motion
 from petalfoil.cli.study import StudyAnswer, grid_text
-from petalfoil.cli.wide_tables import charts, coefficients
+from petalfoil.cli.wide_tables import charts, coefficients, modes
 from petalfoil.results import Record
 from petalfoil.results.summary import ABSENT, cell, in_order, with_bar
 
@@ -82,9 +83,13 @@ def _tables(answer: Answer) -> list[Table]:
         return [_study(answer)]
     if isinstance(answer, ChartAnswer):
         return list(charts(answer))
+    if isinstance(answer, OrbitAnswer):
+        return [motion(answer.records[0])]
     if answer.is_curve and not isinstance(answer, CoefficientsAnswer):
         return [_curve(answer)]
     tables = [] if answer.is_curve else [_single(answer.records[0], answer.errors or {})]
+    if isinstance(answer, StabilityAnswer):
+        return [*tables, *modes(answer.records[0])]
     return [*tables, coefficients(answer)] if isinstance(answer, CoefficientsAnswer) else tables
 
 

@@ -1,4 +1,4 @@
-"""Printed tables of coefficients, and of figures over load and speed."""
+"""Printed tables of coefficients, of natural modes, and of figures over load and speed."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from rich import box
 from rich.table import Table
 
-from petalfoil.cli.kinds import ChartAnswer, CoefficientsAnswer
+from petalfoil.cli.kinds import MODES, ChartAnswer, CoefficientsAnswer
 from petalfoil.results import Record
 from petalfoil.results.summary import cell, number
 
@@ -41,6 +41,27 @@ def _lines(record: Record) -> Iterator[list[str]]:
     for place, frequency in enumerate(record.coords["whirl_frequency"].tolist()):
         entries = [number(float(record.fields[name][place][entry])) for name in MATRICES for entry in ENTRIES]
         yield [turn, number(frequency), number(frequency / speed), *entries, ""]
+
+
+def modes(record: Record) -> Iterator[Table]:
+    """One line for each natural mode of the rotor, if its mass is known."""
+    if "natural_frequency" not in record.fields:
+        return
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    headings = (
+        "natural\nrpm",
+        "Hz",
+        "growth\n1/s",
+        "damping\nratio",
+        "rotor's\nshare",
+        "with (+1) or against (-1)\nthe rotation",
+    )
+    for heading in headings:
+        table.add_column(heading, justify="right")
+    lines = zip(*(record.fields[name].tolist() for name in MODES), strict=True)
+    for frequency, *others in lines:
+        table.add_row(cell("speed", frequency).value, number(frequency / (2.0 * math.pi)), *map(number, others))
+    yield table
 
 
 def charts(answer: ChartAnswer) -> Iterator[Table]:

@@ -9,12 +9,15 @@ from numpy.typing import NDArray
 
 from petalfoil.problem.coupled import RESIDUAL_TOLERANCE, CoupledProblem
 from petalfoil.solvers.active_set import Closed
-from petalfoil.solvers.cone import ConePoint, scaled_residual
+from petalfoil.solvers.cone import ConePoint, Linearized, scaled_residual
 
 Array = NDArray[np.float64]
 
 REFINEMENTS = 4
 """Corrections below the last digit: one usually ends them, and none helps after three."""
+
+WORTH = 0.5
+"""A correction that leaves more than this of the residual is the last."""
 
 
 @dataclass(frozen=True)
@@ -79,13 +82,14 @@ class Answer:
         return self.lam / self.problem.weight > self.problem.gaps(self.x)
 
 
-def total_residual(problem: CoupledProblem, state: State) -> float:
-    """Largest scaled residual of a state, from the state alone.
+def total_residual(problem: CoupledProblem, state: State, line: Linearized | None = None) -> float:
+    """Largest scaled residual of a state, from the state alone; `line` is its linearisation, if it is at hand.
 
     Rows of wall and film by their sizes; gaps and reactions (over their weight) by `|min(g, lam)|`, which is zero
     exactly when both are non-negative and one of them vanishes.
     """
-    rows = scaled_residual(problem.linearize(state.x, fine=state.fine), problem.G.T @ state.lam)
+    line = line or problem.linearize(state.x, fine=state.fine)
+    rows = scaled_residual(line, problem.G.T @ state.lam)
     mismatch = np.minimum(problem.gaps(state.x), state.lam / problem.weight)
     return max(rows, float(np.max(np.abs(mismatch), initial=0.0)))
 
@@ -94,8 +98,7 @@ def from_closed(problem: CoupledProblem, closed: Closed | None, way: str) -> Ans
     """The answer of the active set, refined below the last digit of its deflections; None if it is none."""
     if closed is None:
         return None
-    state = refine(problem, closed)
-    return accepted(Answer(problem, state, total_residual(problem, state), way, closed))
+    return accepted(Answer(problem, *refine(problem, closed), way, closed))
 
 
 def from_point(problem: CoupledProblem, point: ConePoint, way: str) -> Answer | None:
@@ -109,29 +112,29 @@ def accepted(answer: Answer) -> Answer | None:
     return answer if answer.residual <= RESIDUAL_TOLERANCE else None
 
 
-def refine(problem: CoupledProblem, closed: Closed) -> State:
-    """Iterative refinement with the tangent at hand (R1): no factorisation.
+def refine(problem: CoupledProblem, closed: Closed) -> tuple[State, float]:
+    """The answer after iterative refinement with the tangent at hand (R1), and its residual; no factorisation.
 
     Deflections are corrected below their last digit, so that the wall's rows, which lose it as `dphi^-4`, balance.
     """
     n, ties = problem.layout.n_wall, closed.ties
     state = State(closed.x, np.zeros(n), closed.lam)
-    best, least = state, total_residual(problem, state)
+    if not n:
+        return state, total_residual(problem, state, closed.line)
+    line = problem.linearize(state.x, fine=state.fine)
+    best, least = state, total_residual(problem, state, line)
     for _ in range(REFINEMENTS):
-        line = problem.linearize(state.x, fine=state.fine)
         change = ties.spread(closed.factor.solve(-ties.gather(line.residual)))
         rest = state.fine + change[:n]
         x = state.x + np.concatenate([rest, change[n:]])
         fine = rest - (x[:n] - state.x[:n])  # exactly what the sum has lost
-        state = State(x, fine, reactions(problem, closed, x, fine))
-        residual = total_residual(problem, state)
+        line = problem.linearize(x, fine=fine)
+        lam = np.zeros(len(closed.closed))
+        lam[closed.closed] = ties.reactions(line.residual)
+        state = State(x, fine, lam)
+        before, residual = least, total_residual(problem, state, line)
         if residual < least:
             best, least = state, residual
-    return best
-
-
-def reactions(problem: CoupledProblem, closed: Closed, x: Array, fine: Array) -> Array:
-    """Reactions of the closed gaps, (m,)."""
-    lam = np.zeros(len(closed.closed))
-    lam[closed.closed] = closed.ties.reactions(problem.linearize(x, fine=fine).residual)
-    return lam
+        if residual > WORTH * before:
+            break
+    return best, least

@@ -24,8 +24,7 @@ def leading_eigenvalue(answer: Answer, work: Work) -> complex:
         return complex(np.nan, np.nan)
     line, none = problem.linearize(answer.x), np.zeros(len(problem.weight))
     steady = line.matrix(none)
-    stored = line.matrix(none, 1.0) - steady
-    ties = tie(problem.G, answer.in_contact)
+    ties = answer.closed.ties if answer.closed is not None else tie(problem.G, answer.in_contact)
     first = int(ties.group[: problem.layout.n_wall].max(initial=-1)) + 1
-    pencil = Pencil(ties.reduce(steady), ties.reduce(stored.tocsc()), first, ties.rank(problem.rank))
+    pencil = Pencil(ties.reduce(steady), ties.reduce(line.stored), first, ties.rank(problem.rank))
     return rightmost(pencil, TIME_STEP, work.probe_solver)

@@ -43,7 +43,10 @@ def follow(known: Answer, problem: CoupledProblem, work: Work, options: ActiveOp
     """The neighbour of `known` on its own branch: tangent and contact set, nothing else; None if they do not lead."""
     start = keep_open(known.x, predict(known, problem), problem.positive)
     try:
-        closed, outcome = active_set(problem, start, known.in_contact, work.film_solver, options or ActiveOptions())
+        before = None if known.closed is None else known.closed.factor
+        closed, outcome = active_set(
+            problem, start, known.in_contact, work.film_solver, options or ActiveOptions(), before
+        )
     except SingularMatrixError as failure:
         work.note("contacts", outcome=str(failure))
         return None

@@ -62,6 +62,8 @@ def slip_pressure(H0: Array, H1: Array, cube: Array, Kn: float) -> tuple[Array, 
     Kn : float
         Knudsen number on the reference film at ambient pressure [1].
     """
+    if Kn == 0.0:
+        return np.zeros_like(cube), np.zeros_like(cube), np.zeros_like(cube)
     square = 0.5 * (H0**2 + H1**2)
     slip = 6.0 * Kn * square / cube
     by_H0 = (6.0 * Kn * H0 - 1.5 * H0**2 * slip) / cube

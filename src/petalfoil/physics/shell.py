@@ -12,6 +12,7 @@ root and a plane of symmetry mirror the first node. Natural conditions (25)-(32)
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -163,9 +164,9 @@ class PetalShell:
 
     def curvatures(self, W: Array) -> tuple[Array, Array]:
         """`chi_phi`, `chi_z` at all nodes, the condensed ones filled in, each of W's shape (..., node, axial) [1/m]."""
-        nu, nodes = self.poisson_ratio, len(self.phi) * len(self.axial.z)
-        strains = (self.strain @ (self.difference @ W.reshape(-1, nodes).T)).T
-        chi_phi, chi_z = (strains[:, k * nodes : (k + 1) * nodes].reshape(W.shape).copy() for k in (0, 1))
+        nu, bent = self.poisson_ratio, self._bent[:, None] / self.bend_radius**2
+        chi_phi = _along(self._second_phi / self.metric_radius**2, np.diff(W, axis=-2), -2) + bent * W
+        chi_z = _along(self._second_z, np.diff(W, axis=-1), -1)
         if not self.axial.flat:
             sides = [0] if self.axial.half else [0, -1]
             for side in sides:
@@ -195,6 +196,13 @@ class PetalShell:
             motions = np.vstack([motions, -(row[i - 1] * motions[i - 1] + row[i] * motions[i]) / row[i + 1]])
         root_rows = np.asarray(self.stiffness[:n_z].sum(axis=0)).ravel()
         return np.repeat(motions, n_z, axis=0), np.outer(motions[0], root_rows)
+
+
+def _along(matrix: sp.csr_array, values: Array, axis: int) -> Array:
+    """Apply `matrix` along an axis of `values`."""
+    first = np.moveaxis(values, axis, 0)
+    flat = matrix @ first.reshape(len(first), math.prod(first.shape[1:]))
+    return np.moveaxis(flat.reshape(matrix.shape[0], *first.shape[1:]), 0, axis)
 
 
 def _jumps(n: int) -> sp.csr_array:

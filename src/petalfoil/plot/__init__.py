@@ -11,7 +11,13 @@ In the order data flows:
 - ``speeds``    over the speed under a load (`runup`), lift-off over the load (`liftoff`)
 - ``impedance`` stiffness and damping over whirl frequency (`coefficients`)
 - ``whirl``     stability of a rigid rotor over speed and load (`stability`)
+- ``motion``    what figures take from a motion: path, axis, circle of contact
+- ``paths``     path of the journal's centre (`orbit_path`)
+- ``histories`` a motion over time (`orbit_histories`), audit of its energy (`orbit_energy`)
+- ``spectra``   spectrum of the whirl (`orbit_spectrum`), over speed or time (`orbit_waterfall`)
+- ``orbits``    a motion in one figure (`orbit`)
 - ``section``   the loaded bearing, cut across (`cross_section`)
+- ``animation`` the section in motion, as a page or a GIF (`animate`)
 - ``assembly``  the package as it is put together (`package`)
 - ``refinement`` figures against the grid (`convergence`)
 - ``overview``  the figure that suits a result (`summary`)
@@ -27,26 +33,38 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from petalfoil.plot.animation import animate
     from petalfoil.plot.around import pressure_and_film
     from petalfoil.plot.assembly import package
     from petalfoil.plot.curves import load_characteristic, static
     from petalfoil.plot.files import save
+    from petalfoil.plot.histories import orbit_energy, orbit_histories
     from petalfoil.plot.impedance import coefficients
+    from petalfoil.plot.orbits import orbit
     from petalfoil.plot.overview import summary
+    from petalfoil.plot.paths import orbit_path
     from petalfoil.plot.profiles import petal_profiles
     from petalfoil.plot.refinement import convergence
     from petalfoil.plot.section import cross_section
+    from petalfoil.plot.spectra import orbit_spectrum, orbit_waterfall
     from petalfoil.plot.speeds import liftoff, runup
     from petalfoil.plot.unrolled import maps
     from petalfoil.plot.whirl import stability
 
 __all__ = [
+    "animate",
     "coefficients",
     "convergence",
     "cross_section",
     "liftoff",
     "load_characteristic",
     "maps",
+    "orbit",
+    "orbit_energy",
+    "orbit_histories",
+    "orbit_path",
+    "orbit_spectrum",
+    "orbit_waterfall",
     "package",
     "petal_profiles",
     "pressure_and_film",
@@ -58,12 +76,19 @@ __all__ = [
 ]
 
 _HOME = {
+    "animate": "animation",
     "coefficients": "impedance",
     "convergence": "refinement",
     "cross_section": "section",
     "liftoff": "speeds",
     "load_characteristic": "curves",
     "maps": "unrolled",
+    "orbit": "orbits",
+    "orbit_energy": "histories",
+    "orbit_histories": "histories",
+    "orbit_path": "paths",
+    "orbit_spectrum": "spectra",
+    "orbit_waterfall": "spectra",
     "package": "assembly",
     "petal_profiles": "profiles",
     "pressure_and_film": "around",

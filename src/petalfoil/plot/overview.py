@@ -11,6 +11,7 @@ from petalfoil.plot.around import draw_film, draw_pressure, plane_fact
 from petalfoil.plot.assembly import package
 from petalfoil.plot.curves import load_characteristic, static
 from petalfoil.plot.impedance import coefficients
+from petalfoil.plot.orbits import orbit
 from petalfoil.plot.reading import is_spatial, one_point
 from petalfoil.plot.refinement import convergence
 from petalfoil.plot.section import cross_section, draw_section
@@ -32,6 +33,7 @@ def summary(ds: xr.Dataset) -> Figure:
     matplotlib.figure.Figure
         A point: section, pressure and film. A curve: its characteristic. A check: the package. A grid study:
         figures against the grid. A run-up, lift-off, coefficients, stability: figures over speed, load or frequency.
+        A motion: its path, spectrum and histories.
 
     Raises
     ------
@@ -56,8 +58,14 @@ def summary(ds: xr.Dataset) -> Figure:
     raise UsageError(f"no figure suits a result of {analysis!r}; known: {known}")
 
 
-DYNAMIC = {"runup": runup, "liftoff": liftoff, "coefficients": coefficients, "stability": stability}
-"""Figures over speed, load and whirl frequency."""
+DYNAMIC = {
+    "runup": runup,
+    "liftoff": liftoff,
+    "coefficients": coefficients,
+    "stability": stability,
+    "orbit": orbit,
+}
+"""Figures over speed, load, whirl frequency and time."""
 
 
 def _state(ds: xr.Dataset) -> Figure:

@@ -104,10 +104,13 @@ def draw_section(ax: Axes, ds: xr.Dataset, scale: float | None = None) -> None:
     """Draw the section of one state into axes."""
     plane = mid_plane(ds)
     stretch = Stretch(number(ds, "bushing_radius"), _checked_scale(plane, scale))
-    _draw_solids(ax, plane, stretch)
-    _draw_petals(ax, plane, stretch)
+    draw_solids(ax, plane, stretch)
+    draw_petals(ax, plane, stretch)
     if "pressure" in ds:
-        _draw_pressure(ax, plane, stretch)
+        shades = Shades.of(array(plane, "pressure") / number(ds, "ambient_pressure"))
+        draw_film_pressure(ax, plane, stretch, shades)
+        bar = ax.figure.colorbar(ax.collections[-1], ax=ax, shrink=0.6, pad=0.02, aspect=24)
+        bar.set_label("p / p$_a$", fontsize=style.LABEL)
     surface = stretch.points(journal_surface(plane, _CIRCLE), _CIRCLE)
     ax.plot(*surface.T, color=style.INK, linewidth=1.0, gid="journal surface")
     _draw_contacts(ax, plane, stretch)
@@ -135,7 +138,8 @@ def _checked_scale(ds: xr.Dataset, scale: float | None) -> float:
     return scale
 
 
-def _draw_solids(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
+def draw_solids(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
+    """Draw bushing and journal."""
     ring = Wedge((0.0, 0.0), (1.0 + _RING) * stretch.bore, 0.0, 360.0, width=_RING * stretch.bore)
     ring.set(facecolor=style.PALE, edgecolor=style.GREY, hatch="////", linewidth=0.8, gid="bushing")
     ax.add_patch(ring)
@@ -143,7 +147,8 @@ def _draw_solids(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
     ax.fill(*surface.T, facecolor="#F4F4F4", edgecolor="none", gid="journal")
 
 
-def _draw_petals(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
+def draw_petals(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
+    """Draw the petals of a result that has them, and their roots."""
     if "radius" not in ds:
         return
     half, phi = number(ds, "petal_thickness") / 2, array(ds, "phi")
@@ -167,29 +172,51 @@ def petal_outline(radius: Floats, theta: Floats, half: float, stretch: Stretch) 
     return np.concatenate([inner, outer[::-1]])
 
 
-def _draw_pressure(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
-    """The film in the colour of its pressure, and the excess pressure as a band inside the journal."""
+@dataclass(frozen=True)
+class Shades:
+    """What colours and heights of pressures are measured by, shared by the states of one drawing.
+
+    Parameters
+    ----------
+    norm : Normalize
+        Colours over p / p_a.
+    suction, largest : float
+        Deepest suction below ambient pressure, largest distance from it, over ambient pressure.
+    """
+
+    norm: Normalize
+    suction: float
+    largest: float
+
+    @classmethod
+    def of(cls, ratio: Floats) -> Shades:
+        """Shades that suit pressures over ambient pressure."""
+        low, high = float(ratio.min()), float(ratio.max())
+        norm = Normalize(min(low, 1.0), max(high, 1.001))
+        return cls(norm, max(1.0 - low, 0.0), max(float(np.abs(ratio - 1.0).max()), 1e-12))
+
+
+def draw_film_pressure(ax: Axes, ds: xr.Dataset, stretch: Stretch, shades: Shades) -> None:
+    """Draw the film in the colour of its pressure, and the excess pressure as a band inside the journal."""
     ratio = array(ds, "pressure") / number(ds, "ambient_pressure")
-    norm = Normalize(min(float(ratio.min()), 1.0), max(float(ratio.max()), 1.001))
     theta = array(ds, "root_angle")[:, None] + array(ds, "phi_exposed")
     surface = journal_surface(ds, theta)
     film = stretch.points(surface, theta), stretch.points(surface + array(ds, "film_thickness"), theta)
-    band = _band(ds, stretch, ratio, theta)
+    band = _band(ds, stretch, (ratio, shades), theta)
     colours = np.concatenate([(row[1:] + row[:-1]) / 2 for row in ratio])
     for (low, high), name in ((film, "film"), (band, "pressure")):
         quads = list(_between(low, high))
-        patches = PolyCollection(quads, array=colours, cmap=style.PRESSURE_MAP, norm=norm, edgecolors="face")
+        patches = PolyCollection(quads, array=colours, cmap=style.PRESSURE_MAP, norm=shades.norm, edgecolors="face")
         patches.set(linewidth=0.3, gid=name)
         ax.add_collection(patches)
-    bar = ax.figure.colorbar(ax.collections[-1], ax=ax, shrink=0.6, pad=0.02, aspect=24)
-    bar.set_label("p / p$_a$", fontsize=style.LABEL)
 
 
-def _band(ds: xr.Dataset, stretch: Stretch, ratio: Floats, theta: Floats) -> tuple[Floats, Floats]:
+def _band(ds: xr.Dataset, stretch: Stretch, pressure: tuple[Floats, Shades], theta: Floats) -> tuple[Floats, Floats]:
     """Base line (ambient pressure) and top of the pressure band; the base line makes room for suction outside it."""
+    ratio, shades = pressure
     drawn = stretch.radius(journal_surface(ds, theta))
-    height = _BAND * stretch.radius(np.array(number(ds, "journal_radius"))) / max(np.abs(ratio - 1.0).max(), 1e-12)
-    base = drawn - height * max(1.0 - ratio.min(), 0.0)
+    height = _BAND * stretch.radius(np.array(number(ds, "journal_radius"))) / shades.largest
+    base = drawn - height * shades.suction
     direction = np.stack([np.cos(theta), np.sin(theta)], axis=-1)
     return base[..., None] * direction, (base - height * (ratio - 1.0))[..., None] * direction
 

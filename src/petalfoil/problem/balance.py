@@ -17,7 +17,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.problem.coupled import CoupledProblem, Linearization
-from petalfoil.sparsity import add_up
+from petalfoil.sparsity import Elimination, add_up
 
 Array = NDArray[np.float64]
 
@@ -84,11 +84,10 @@ class BalanceProblem:
         """Weights of the gaps."""
         return self.coupled.weight
 
-    @property
-    def rank(self) -> Array:
-        """The two rows that reach all over the bearing are eliminated last."""
-        n = self.coupled.layout.n
-        return np.concatenate([self.coupled.rank, [n, n + 1]])
+    @cached_property
+    def rank(self) -> Elimination:
+        """Orders of elimination; the two rows that reach all over the bearing come last by their degree."""
+        return Elimination()
 
     @property
     def positive(self) -> slice:

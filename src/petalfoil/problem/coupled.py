@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 import scipy.sparse as sp
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 from petalfoil.physics.balance import FilmBalance
 from petalfoil.problem.film_rows import FilmRows, FilmState
 from petalfoil.problem.scales import Scales
-from petalfoil.sparsity import Pattern
+from petalfoil.sparsity import Elimination, Pattern
 from petalfoil.structure.wall import Wall
 
 Array = NDArray[np.float64]
@@ -124,6 +125,16 @@ class Layout:
         return Pattern.of(*self.places, self.n)
 
     @cached_property
+    def elimination(self) -> Elimination:
+        """Orders of elimination that its factorisations have found."""
+        return Elimination()
+
+    @cached_property
+    def package_elimination(self) -> Elimination:
+        """The same for the wall alone."""
+        return Elimination()
+
+    @cached_property
     def constant_entries(self) -> Array:
         """Values of the wall's own entries."""
         return np.concatenate([self.stiffness.tocoo().data, -self.push.tocoo().data])
@@ -160,7 +171,7 @@ class CoupledProblem:
     bearing_number: float
     displacement: Array
 
-    def at(self, *, bearing_number: float | None = None, displacement: Array | None = None) -> CoupledProblem:
+    def at(self, *, bearing_number: float | None = None, displacement: Array | None = None) -> Self:
         """The same bearing at another speed or position."""
         Lam = self.bearing_number if bearing_number is None else bearing_number
         e = self.displacement if displacement is None else displacement
@@ -177,9 +188,9 @@ class CoupledProblem:
         return self.layout.weight
 
     @property
-    def rank(self) -> Array:
-        """Place of each unknown in the elimination."""
-        return self.layout.pattern.rank
+    def rank(self) -> Elimination | None:
+        """Orders of elimination, kept for all speeds and positions; a film alone gains nothing by them."""
+        return self.layout.elimination if self.layout.n_wall else None
 
     @property
     def positive(self) -> slice:
@@ -234,6 +245,8 @@ class Linearization:
     def residual(self) -> Array:
         """(C1) without reactions, then (C2); shape (n,) [1]."""
         w, P = self.x[: self.layout.n_wall], self.x[self.layout.n_wall :]
+        if not len(w):
+            return self.film.residual
         elastic = self.layout.elastic_force(w, self.fine)
         pushed = self.layout.push @ (P - 1.0)
         return np.concatenate([elastic - pushed, self.film.residual])
@@ -245,6 +258,8 @@ class Linearization:
         A film row: the flows it adds up. A wall row: see `wall_size`.
         """
         w = self.x[: self.layout.n_wall]
+        if not len(w):
+            return self.film.size
         wall = wall_size(self.layout, w) if self.fine is None else np.ones(len(w))
         return np.concatenate([wall, self.film.size])
 
@@ -256,6 +271,15 @@ class Linearization:
         moving, under = self.layout.film_column >= 0, self.layout.storage_column >= 0
         values = [self.layout.constant_entries, by_P, by_H[moving], theta[gap] * factor]
         return self.layout.pattern.assemble(np.concatenate([*values, rate * held_P, rate * held_H[under]]))
+
+    @property
+    def stored(self) -> sp.csc_array:
+        """Derivative of the stored mass, (n, n)."""
+        layout, (held_P, held_H) = self.layout, self.film.storage
+        under, n = layout.storage_column >= 0, layout.n
+        values = np.concatenate([held_P, held_H[under]])
+        rows, cols = (place[len(place) - len(values) :] for place in layout.places)
+        return sp.coo_array((values, (rows, cols)), shape=(n, n)).tocsc()
 
     def by_shift(self, shift: Array, rate: float = 0.0) -> Array:
         """Derivative of the residual by the shift of the gaps, applied to `shift` (m,); shape (n,)."""

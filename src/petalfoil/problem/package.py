@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.problem.coupled import CoupledProblem, Layout, wall_size
-from petalfoil.sparsity import Pattern
+from petalfoil.sparsity import Elimination, Pattern
 
 Array = NDArray[np.float64]
 
@@ -51,9 +51,9 @@ class PackageProblem:
         return slice(0, 0)
 
     @property
-    def rank(self) -> Array:
-        """Place of each unknown in the elimination: as in the coupled system."""
-        return self.coupled.rank[: self.layout.n_wall]
+    def rank(self) -> Elimination:
+        """Orders of elimination, kept for all loads and positions."""
+        return self.layout.package_elimination
 
     @cached_property
     def pattern(self) -> Pattern:

@@ -8,6 +8,7 @@ In the order data flows:
 - ``summary``  a record as the object of ``--json`` and as the rows of the printed table
 - ``dataset``  records to ``xarray.Dataset``: one point, or a curve of points
 - ``chart``    records over load and speed to ``xarray.Dataset``
+- ``motion``   what the histories of a motion tell: places once a turn, spectra of the whirl
 - ``export``   coefficients for other programs: CSV, ROSS
 - ``study``    the records of a grid study and its estimates to ``xarray.Dataset``, and back
 - ``atomic``   a file is replaced whole or left alone

@@ -62,6 +62,8 @@ class Record:
         _refuse_unknown("scalar", self.scalars, SCALARS)
         _refuse_unknown("field", self.fields, FIELDS)
         _refuse_unknown("coordinate", self.coords, COORDINATES)
+        for name in self.scalars.keys() & self.fields.keys():
+            raise ValueError(f"{name!r} is given as a scalar and as a field: a result has one of them")
         for name, value in self.scalars.items():
             _refuse_type(name, value, SCALARS[name])
         sizes = {name: len(values) for name, values in self.coords.items() if name in COORDINATES[name].dims}

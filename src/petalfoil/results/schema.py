@@ -78,6 +78,7 @@ def _geometry(units: str, long_name: str, symbol: str, kind: Kind = Kind.FLOAT) 
 
 _FILM = ("petal", "phi_exposed", "z")
 _PETAL = ("petal", "phi", "z")
+_TIME = ("time",)
 
 COORDINATES: dict[str, Variable] = {
     "petal": Variable(("petal",), "1", "petal number, growing with the bushing angle", "l", Kind.INT, Role.GEOMETRY),
@@ -95,8 +96,14 @@ COORDINATES: dict[str, Variable] = {
     "column": Variable(
         ("column",), "1", "direction of the displacement: 0 along x, 1 along y", "j", Kind.INT, Role.GEOMETRY
     ),
+    "mode": Variable(("mode",), "1", "number of the natural mode, by frequency", "k", Kind.INT, Role.GEOMETRY),
     "load": Variable(("load",), "N", "size of the load on the journal", "|load|", role=Role.GEOMETRY),
     "z": Variable(("z",), "m", "distance along the bearing axis", "z", role=Role.GEOMETRY),
+    "time": Variable(_TIME, "s", "time", "t", role=Role.GEOMETRY),
+    "frame": Variable(("frame",), "s", "time of a picture of film and petals", "t", role=Role.GEOMETRY),
+    "unknown": Variable(("unknown",), "1", "number of an unknown of film and petals", "i", Kind.INT, Role.GEOMETRY),
+    "gap": Variable(("gap",), "1", "number of a gap between journal, petals and bushing", "j", Kind.INT, Role.GEOMETRY),
+    "axis": Variable(("axis",), "1", "direction: 0 along x, 1 along y", "i", Kind.INT, Role.GEOMETRY),
 }
 
 FIELDS: dict[str, Variable] = {
@@ -112,10 +119,52 @@ FIELDS: dict[str, Variable] = {
     ),
     "stiffness": Variable(("whirl_frequency", "row", "column"), "N m-1", "stiffness of the bearing", "K"),
     "damping": Variable(("whirl_frequency", "row", "column"), "N s m-1", "damping of the bearing", "C"),
+    "natural_frequency": Variable(("mode",), "rad s-1", "damped natural frequency of the rotor", "omega_d"),
+    "mode_growth_rate": Variable(("mode",), "s-1", "growth rate of the mode, negative where it dies out", "Re s_k"),
+    "damping_ratio": Variable(("mode",), "1", "damping ratio of the mode, negative where it grows", "zeta"),
+    "participation": Variable(("mode",), "1", "share of the rotor's mass in the mode", "q"),
+    "whirl_direction": Variable(
+        ("mode",), "1", "1 for a circle with the rotation, -1 against it, 0 along a line", "kappa"
+    ),
     "bending_stress": Variable(
         _PETAL, "Pa", "bending stress of the petal's metal along phi, assembly included", "sigma_phi"
     ),
 }
+
+HISTORIES: dict[str, Variable] = {
+    "x": Variable(_TIME, "m", "displacement of the journal's centre along x", "e_x"),
+    "y": Variable(_TIME, "m", "displacement of the journal's centre along y", "e_y"),
+    "velocity_x": Variable(_TIME, "m s-1", "velocity of the journal's centre along x", "v_x"),
+    "velocity_y": Variable(_TIME, "m s-1", "velocity of the journal's centre along y", "v_y"),
+    "shaft_speed": Variable(_TIME, "rad s-1", "angular velocity of the shaft", "omega"),
+    "shaft_angle": Variable(_TIME, "rad", "angle that the shaft has turned", "theta_s"),
+    "min_film": Variable(_TIME, "m", "smallest film thickness", "min h"),
+    "contact_share": Variable(
+        _TIME, "1", "contact reactions over contact reactions plus integral of the film's excess pressure", "s_c"
+    ),
+    "max_pressure": Variable(_TIME, "Pa", "largest absolute pressure of the film", "p_max"),
+    "force_x": Variable(_TIME, "N", "force of film and contact on the journal along x", "F_x"),
+    "force_y": Variable(_TIME, "N", "force of film and contact on the journal along y", "F_y"),
+    "friction_torque": Variable(_TIME, "N m", "friction torque on the journal, film and contact", "M"),
+    "kinetic_energy": Variable(_TIME, "J", "energy of the rotor's motion across the bearing", "T"),
+    "elastic_energy": Variable(_TIME, "J", "elastic energy of the petals above the start's", "U"),
+    "load_work": Variable(_TIME, "J", "work of load, rotating load and unbalance on the rotor", "W_load"),
+    "film_work": Variable(_TIME, "J", "work of the film on rotor and petals", "W_film"),
+    "shaft_work": Variable(_TIME, "J", "work of the shaft against film and dry friction", "W_shaft"),
+    "rubbing_work": Variable(_TIME, "J", "work of the shaft against dry friction alone", "W_rub"),
+    "frame_pressure": Variable(("frame", *_FILM), "Pa", "absolute pressure of the film", "p"),
+    "frame_film": Variable(("frame", *_FILM), "m", "film thickness between journal and petal", "h"),
+    "frame_radius": Variable(("frame", *_PETAL), "m", "radius of the deformed mid-surface of the petal", "r"),
+    "frame_x": Variable(("frame",), "m", "displacement of the journal's centre along x", "e_x"),
+    "frame_y": Variable(("frame",), "m", "displacement of the journal's centre along y", "e_y"),
+    "last_state": Variable(("unknown",), "1", "deflections and pressures at the end, in the units of the problem", "X"),
+    "last_reactions": Variable(("gap",), "1", "contact reactions at the end, in the units of the problem", "lambda"),
+    "last_position": Variable(("axis",), "m", "displacement of the journal's centre at the end", "e"),
+    "last_velocity": Variable(("axis",), "m s-1", "velocity of the journal's centre at the end", "v"),
+}
+"""What a motion leaves behind: over time, as pictures, and the state at its end, from which it can go on."""
+
+FIELDS |= HISTORIES
 
 SCALARS: dict[str, Variable] = {
     "speed": _given("rad s-1", "angular velocity of the journal", "omega"),
@@ -169,6 +218,19 @@ SCALARS: dict[str, Variable] = {
     "growth_frequency": _answer(
         "rad s-1", "imaginary part of the leading eigenvalue of film and petals at the fixed journal", "Im s"
     ),
+    "mass_defect": _answer("1", "gas that the film has gained beyond what flowed in, over what it holds", "d_gas"),
+    "energy_defect": _answer(
+        "1", "energy of rotor and petals beyond the work done on them, over the work exchanged", "d_energy"
+    ),
+    "amplitude": _answer("m", "largest distance from the mean position, in the last half of a motion", "A"),
+    "dominating_ratio": _answer(
+        "1", "frequency of the largest circle of the whirl over the speed, negative against the rotation", "Omega/omega"
+    ),
+    "revolutions": _answer("1", "turns of the shaft", "N_rev"),
+    "steps": _run("1", "steps in time", "N_steps", Kind.INT),
+    "refused_steps": _run("1", "steps taken again shorter, for their error", "N_refused", Kind.INT),
+    "failed_steps": _run("1", "steps taken again shorter, for want of an answer", "N_failed", Kind.INT),
+    "tolerance": _given("1", "local error of a step in reference films and ambient pressures", "tol"),
     "residual": _run("1", "largest scaled residual of the coupled system", "res"),
     "force_residual": _run("1", "force left over by film, contacts and load, over the load", "d_load"),
     "carried_by": _run("", "what carries the load", "carried by", Kind.STR),

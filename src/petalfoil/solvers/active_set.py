@@ -69,6 +69,8 @@ class Closed:
         Largest scaled residual.
     ties, factor
         Closed gaps as ties, and the reduced tangent near the answer.
+    line
+        The equations at the answer.
     """
 
     x: Array
@@ -77,23 +79,35 @@ class Closed:
     residual: float
     ties: Ties = field(repr=False)
     factor: Factor = field(repr=False)
+    line: Linearized | None = field(default=None, repr=False)
 
 
 def active_set(
-    problem: ConeProblem, x: Array, closed: Mask, solver: LinearSolver, options: ActiveOptions
+    problem: ConeProblem,
+    x: Array,
+    closed: Mask,
+    solver: LinearSolver,
+    options: ActiveOptions,
+    before: Factor | None = None,
 ) -> tuple[Closed | None, Outcome]:
-    """Newton from `x` with the gaps `closed`, correcting the set, until residual and signs agree."""
+    """Newton from `x` with the gaps `closed`, correcting the set, until residual and signs agree.
+
+    `before`, the tangent of a neighbour with the same set, serves the first step: it shows where the set is wrong.
+    """
     factor: Factor | None = None
     doubt, swaps = np.zeros(len(closed), dtype=bool), 0
     state = evaluate(problem, x, closed)
+    if before is not None and not isinstance(state, Outcome):
+        state = evaluate(problem, newton_step(problem, state, before, options), closed, state.ties)
     for step in range(options.max_steps + 1):
         if isinstance(state, Outcome):
             return None, state
-        wanted = revise(problem, state, options) if step else state.closed
+        wanted = revise(problem, state, options) if step or before is not None else state.closed
         unchanged = bool(np.array_equal(wanted, state.closed))
         done = unchanged and state.residual <= options.tolerance and settled(problem, state, options)
         if done and factor is not None:  # without a tangent, one more step: refinement and prediction need it
-            return Closed(state.x, state.lam, state.closed, state.residual, state.ties, factor), Outcome.CONVERGED
+            known = (state.x, state.lam, state.closed, state.residual, state.ties, factor, state.line)
+            return Closed(*known), Outcome.CONVERGED
         if step == options.max_steps:
             break
         doubt, swaps = doubt | (wanted != state.closed), swaps + (not unchanged)
@@ -110,7 +124,7 @@ def active_set(
             factor = solver.factor(matrix, state.ties.rank(problem.rank))
         except SingularMatrixError:
             return None, Outcome.SINGULAR
-        state = evaluate(problem, newton_step(problem, state, factor, options), wanted)
+        state = evaluate(problem, newton_step(problem, state, factor, options), wanted, state.ties)
         state = with_the_same_factor(problem, state, factor, options)
     return None, Outcome.STEPS
 
@@ -127,7 +141,7 @@ def with_the_same_factor(
             break
         if not settled(problem, state, options):
             break
-        ahead = evaluate(problem, newton_step(problem, state, factor, options), state.closed)
+        ahead = evaluate(problem, newton_step(problem, state, factor, options), state.closed, state.ties)
         if isinstance(ahead, Outcome) or ahead.residual > options.gain * state.residual:
             break
         state = ahead
@@ -161,9 +175,9 @@ DEEP = -0.5
 """A gap this far below zero (in units of the reference film) is no small correction any more."""
 
 
-def evaluate(problem: ConeProblem, x: Array, closed: Mask) -> State | Outcome:
-    """Close the gaps `closed` exactly, and find residual and reactions there."""
-    ties = tie(problem.G, closed)
+def evaluate(problem: ConeProblem, x: Array, closed: Mask, ties: Ties | None = None) -> State | Outcome:
+    """Close the gaps `closed` exactly, and find residual and reactions there; `ties` are theirs, if known."""
+    ties = ties or tie(problem.G, closed)
     if not ties.determinate:
         return Outcome.OVERDETERMINED
     x = x + ties.close(problem.gaps(x)[closed])
@@ -182,9 +196,12 @@ def evaluate(problem: ConeProblem, x: Array, closed: Mask) -> State | Outcome:
 
 def revise(problem: ConeProblem, state: State, options: ActiveOptions) -> Mask:
     """Keep closed what pushes, close what has gone negative."""
+    below: Mask = state.gaps < -options.sign
+    if not state.closed.any():
+        return below
     noise = np.maximum(problem.weight, abs(problem.G) @ state.line.size)  # rows that lose digits blur reactions too
     pushing = state.lam > -options.sign * noise
-    return np.where(state.closed, pushing, state.gaps < -options.sign)
+    return np.where(state.closed, pushing, below)
 
 
 def settled(problem: ConeProblem, state: State, options: ActiveOptions) -> bool:

@@ -9,6 +9,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.sparsity import Elimination
+
 Array = NDArray[np.float64]
 
 
@@ -42,8 +44,8 @@ class ConeProblem(Protocol):
         """Weights of the gaps, (m,): `lam / weight` is comparable between nodes."""
 
     @property
-    def rank(self) -> Array | None:
-        """Place of each unknown in the elimination, (n,); None to leave it to the solver."""
+    def rank(self) -> Elimination | None:
+        """Orders of elimination that like problems left; None to leave them to the solver."""
 
     @property
     def positive(self) -> slice:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from petalfoil.solvers.linear import Factor, LinearSolver
 from petalfoil.solvers.ties import apart
+from petalfoil.sparsity import Order
 
 Array = NDArray[np.float64]
 
@@ -35,7 +36,7 @@ class Pencil:
     J: sp.csc_array
     M: sp.csc_array
     first: int
-    rank: Array | None = None
+    rank: Order | None = None
 
 
 def rightmost(pencil: Pencil, step: float, solver: LinearSolver) -> complex:
@@ -50,9 +51,11 @@ def rightmost(pencil: Pencil, step: float, solver: LinearSolver) -> complex:
     factor = solver.factor(sp.csc_array(pencil.M + GAMMA * step * pencil.J), pencil.rank)
     count = n - first
 
+    mass_rows = sp.csr_array(pencil.M[first:])
+
     def advance(mass: Array) -> Array:
-        stored: Array = pencil.M @ sdirk(pencil, factor, mass)
-        return stored[first:]
+        stored: Array = mass_rows @ sdirk(mass_rows, factor, mass)
+        return stored
 
     if count <= DENSE:
         values, vectors = la.eig(np.column_stack([advance(column) for column in np.eye(count)]))
@@ -60,7 +63,7 @@ def rightmost(pencil: Pencil, step: float, solver: LinearSolver) -> complex:
         operator = spla.LinearOperator((count, count), matvec=advance, dtype=float)
         values, vectors = leading(operator, count)
     best = int(np.argmax(np.abs(values)))
-    return rayleigh(pencil, sdirk(pencil, factor, vectors[:, best]))
+    return rayleigh(pencil, sdirk(mass_rows, factor, vectors[:, best]))
 
 
 def leading(operator: spla.LinearOperator, count: int) -> tuple[Array, Array]:
@@ -84,12 +87,15 @@ def survivor(operator: spla.LinearOperator, state: Array) -> tuple[Array, Array]
     return np.array([growth]), state[:, None]
 
 
-def sdirk(pencil: Pencil, factor: Factor, mass: Array) -> Array:
-    """State after one step (E2) from the stored mass `mass` (differential rows), (n,)."""
-    start = np.concatenate([np.zeros(pencil.first, dtype=mass.dtype), mass])
-    stage = apart(factor.solve, start)
-    rate = (pencil.M @ stage - start) / GAMMA
-    return apart(factor.solve, start + (1.0 - GAMMA) * rate)
+def sdirk(mass_rows: sp.csr_array, factor: Factor, mass: Array) -> Array:
+    """State after one step (E2) from the stored mass `mass`, (n,); `mass_rows` are the differential rows of `M`."""
+    algebraic = np.zeros(mass_rows.shape[1] - len(mass))
+
+    def stage(stored: Array) -> Array:
+        return apart(factor.solve, np.concatenate([algebraic, stored]))
+
+    rate = (mass_rows @ stage(mass) - mass) / GAMMA
+    return stage(mass + (1.0 - GAMMA) * rate)
 
 
 def rayleigh(pencil: Pencil, u: Array) -> complex:

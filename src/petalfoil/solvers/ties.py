@@ -17,7 +17,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
-from petalfoil.sparsity import add_up
+from petalfoil.sparsity import Elimination, TiedOrder, add_up
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -71,17 +71,14 @@ class Ties:
         """Move every unknown with its group; shape (n,)."""
         return np.append(free, 0.0)[self.group]
 
-    def rank(self, rank: Array | None) -> Array | None:
-        """Place of each free unknown in the elimination: that of the last of its group, (n_free,)."""
-        if rank is None:
-            return None
-        inside = self.group >= 0
-        last = np.full(self.n_free, -np.inf)
-        np.maximum.at(last, self.group[inside], rank[inside])
-        return last
+    def rank(self, order: Elimination | None) -> TiedOrder | None:
+        """Order of the free unknowns in the elimination, as far as it is known from other contact sets."""
+        return None if order is None else TiedOrder(order.tied, self.group, self.n_free)
 
     def reduce(self, matrix: sp.csc_array) -> sp.csc_array:
         """The matrix over the free unknowns: rows and columns of a group added up."""
+        if not self.G.shape[0]:
+            return matrix
         coo = matrix.tocoo()
         rows, cols = self.group[coo.row], self.group[coo.col]
         inside = (rows >= 0) & (cols >= 0)

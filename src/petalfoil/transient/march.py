@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 from petalfoil.equilibria.work import Work
 from petalfoil.errors import ConvergenceError
 from petalfoil.transient.scheme import Stepped, System, take_step
-from petalfoil.transient.stage import StageOptions, Tangent
+from petalfoil.transient.stage import StageOptions
 from petalfoil.transient.state import Instant
+from petalfoil.transient.tangent import Tangent
 
 
 @dataclass(frozen=True)

@@ -84,9 +84,8 @@ class RotorMotion:
             The case has no rotor.
         """
         if case.rotor is None:
-            raise UsageError("the motion of a rotor needs a case with [rotor]: give its mass there")
-        rotor, clock = case.rotor, Clock.of(case, scales, schedule)
-        given = load or case.operation.load or (0.0, -rotor.mass * GRAVITY)
+            raise UsageError(NO_ROTOR)
+        rotor, clock, given = case.rotor, Clock.of(case, scales, schedule), constant_load(case, load)
         return cls(
             inertia=rotor.mass * scales.length * clock.rate**2 / scales.force,
             load=np.array(given) / scales.force,
@@ -111,3 +110,19 @@ class RotorMotion:
     def bearing_number(self, tau: float) -> float:
         """Bearing number at time `tau` [1]."""
         return self.clock.bearing_number * self.schedule.speed(tau / self.clock.rate) / self.clock.rate
+
+
+NO_ROTOR = "the motion of a rotor needs a case with [rotor]: give its mass there"
+
+
+def constant_load(case: Case, load: tuple[float, float] | None = None) -> tuple[float, float]:
+    """The constant load [N]: `load`, by default the case's, without one the rotor's weight along -y.
+
+    Raises
+    ------
+    UsageError
+        The case has no rotor.
+    """
+    if case.rotor is None:
+        raise UsageError(NO_ROTOR)
+    return load or case.operation.load or (0.0, -case.rotor.mass * GRAVITY)

@@ -17,8 +17,9 @@ from petalfoil.problem.balance import FilmForce
 from petalfoil.problem.moving import StepProblem
 from petalfoil.solvers.linear import LinearSolver
 from petalfoil.transient.rotor import RotorMotion
-from petalfoil.transient.stage import Solved, Stage, StageOptions, Tangent, freely, solve_stage
+from petalfoil.transient.stage import Solved, Stage, StageOptions, freely, solve_stage
 from petalfoil.transient.state import Instant, Moving
+from petalfoil.transient.tangent import Tangent
 
 Array = NDArray[np.float64]
 

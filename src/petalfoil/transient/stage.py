@@ -16,22 +16,24 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibria.response import Motion, Response
 from petalfoil.problem.balance import FilmForce
 from petalfoil.problem.moving import StepProblem
 from petalfoil.solvers.active_set import ActiveOptions, revise, searched
 from petalfoil.solvers.active_set import State as SetState
 from petalfoil.solvers.complementarity import solve_lcp
-from petalfoil.solvers.linear import LinearSolver, SingularMatrixError
-from petalfoil.solvers.spanning import determining
-from petalfoil.solvers.ties import Ties, tie
+from petalfoil.solvers.interior_point import room
+from petalfoil.solvers.linear import LinearSolver
 from petalfoil.transient.state import Moving
+from petalfoil.transient.tangent import Tangent, tangent_of
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 SIGNS = ActiveOptions()
 """How far gaps and reactions may miss zero."""
+
+PATIENCE = 2
+"""Times that all gaps of wrong sign change at once before the set is searched for."""
 
 
 @dataclass(frozen=True)
@@ -46,45 +48,6 @@ class StageOptions:
     """Contraction past which the tangent is renewed."""
     sets: int = 8
     """Most contact sets tried in a stage."""
-
-
-@dataclass(frozen=True)
-class Tangent:
-    """The factorised system of a stage, rotor bordered.
-
-    Attributes
-    ----------
-    rate : float
-        Its `rate` [1 / unit of time].
-    closed : (m,) bool array
-        Gaps that it keeps closed.
-    stops : (k,) int array
-        Gaps that close a chain of closed ones between journal and bushing: only the journal can open them.
-    response : Response
-        Factor, ties, and products.
-    units : (n, 2) array
-        Change of the unknowns by a unit displacement along x and y.
-    gradient : (2, 2) array
-        Change of the bearing's force on the journal by them.
-    """
-
-    rate: float
-    closed: Mask
-    stops: NDArray[np.intp]
-    response: Response
-    units: Array
-    gradient: Array
-
-    @property
-    def ties(self) -> Ties:
-        """The closed gaps that are eliminated."""
-        return self.response.motion.ties
-
-    def serves(self, closed: Mask) -> bool:
-        """The gaps `closed` are those that it keeps closed, or stops."""
-        mine = self.closed.copy()
-        mine[self.stops] = closed[self.stops]
-        return bool(np.array_equal(mine, closed))
 
 
 @dataclass(frozen=True)
@@ -139,18 +102,6 @@ class Solved:
     tangent: Tangent
 
 
-def tangent_of(problem: StepProblem, x: Array, closed: Mask, solver: LinearSolver) -> Tangent | None:
-    """Factorise a stage at `x` with the gaps `closed`; None if the system has no solution."""
-    held = determining(problem.G, closed, problem.layout.wall.contacts.journal)
-    ties, stops = tie(problem.G, held), np.flatnonzero(closed & ~held)
-    try:
-        response = Motion(problem, problem.linearize(x), held, ties).respond(0.0, solver)
-    except SingularMatrixError:
-        return None
-    units, gradient = response.units()
-    return Tangent(problem.rate, held, stops, response, units, gradient)
-
-
 def solve_stage(
     stage: Stage, start: tuple[Array, Array, Mask], tangent: Tangent | None, solver: LinearSolver, options: StageOptions
 ) -> Solved | None:
@@ -161,27 +112,31 @@ def solve_stage(
         found = with_set(stage, (x, e, closed), tangent, solver, options)
         if found is None:
             return None
-        state, e, tangent = found
+        state, e, tangent, done = found
         wanted = revise(stage.problem, state, SIGNS)
-        if np.array_equal(wanted, state.closed):
+        if done and np.array_equal(wanted, state.closed):
             stored = stage.problem.at(displacement=e).stored(state.x)
             return Solved(state.x, state.lam, state.closed, stage.moving(stored, e), state.residual, tangent)
         doubt |= wanted != state.closed
         x, closed = state.x, wanted
-        if count >= 1:
+        if count >= PATIENCE:
             sought = searched(stage.problem.at(displacement=e), state, doubt, solver)
             if isinstance(sought, SetState):
                 x, closed = sought.x, sought.closed
-        tangent = None
     return None
 
 
 def with_set(
     stage: Stage, start: tuple[Array, Array, Mask], tangent: Tangent | None, solver: LinearSolver, options: StageOptions
-) -> tuple[SetState, Array, Tangent] | None:
-    """Newton with the contact set given, the tangent renewed where it does not contract; None if that fails."""
+) -> tuple[SetState, Array, Tangent, bool] | None:
+    """Newton with the contact set given, the tangent renewed where it does not contract; None if that fails.
+
+    Where a step would pierce the film it ends short of that, to have the gaps closed that it ran into.
+    """
     x, e, closed = start
-    usable = tangent is not None and tangent.serves(closed)
+    if tangent is not None and not tangent.serves(closed):
+        tangent = tangent.exchanged(closed)
+    usable = tangent is not None
     for renewal in range(3):
         if not usable or tangent is None:
             tangent = tangent_of(stage.problem.at(displacement=e), x, closed, solver)
@@ -190,8 +145,8 @@ def with_set(
         reached = contract(stage, (x, e), tangent, options)
         if reached is not None:
             state, e, done = reached
-            if done:
-                return state, e, tangent
+            if done or np.any(state.gaps < -SIGNS.sign):
+                return state, e, tangent, done
             x = state.x
         elif renewal and not usable:
             return None
@@ -212,18 +167,17 @@ def contract(
         if found is None:
             return None
         change, de, push = found
-        size = measure(change, de)
+        size, reach = measure(change, de), open_share(stage, (state.x, e), (change, de))
         if size > 2.0 * last:
             return None
         slope = size / last if np.isfinite(last) else options.slow
-        x, e = state.x + keep_positive(stage, state.x, change), e + de
-        done = size * min(1.0, slope / max(1.0 - slope, 0.1)) <= options.accuracy
-        if done or (np.isfinite(last) and slope > options.slow):
-            end = evaluate(stage, (x, e), push, tangent)
-            return None if end is None else (end, e, done)
+        x, e = state.x + reach * change, e + reach * de
+        done = size * min(1.0, slope / max(1.0 - slope, 0.1)) <= options.accuracy and reach == 1.0
+        if done or reach < 1.0 or (np.isfinite(last) and slope > options.slow):
+            break
         last = size
     end = evaluate(stage, (x, e), push, tangent)
-    return None if end is None else (end, e, False)
+    return None if end is None else (end, e, done)
 
 
 def evaluate(stage: Stage, at: tuple[Array, Array], push: Array, tangent: Tangent) -> SetState | None:
@@ -256,10 +210,8 @@ def freely(stage: Stage, residual: Array, tangent: Tangent, at: tuple[Array, Arr
     settle, de, stiffness
         Change of the unknowns at a journal that stays (n,), of the displacement (2,), and what resists it (2, 2).
     """
-    (P, e), ties, response = at, tangent.ties, tangent.response
-    settle = ties.spread(response.factor.solve(-ties.gather(residual)))
-    by_e = stage.problem.layout.wall.contacts.by_e[tangent.closed]
-    reaction = by_e.T @ ties.reactions(residual + response.apply(settle))
+    (P, e), (settle, lam) = at, tangent.settle(residual)
+    reaction = stage.problem.layout.wall.contacts.by_e.T @ lam
     left = stage.left(P + settle[stage.problem.positive], reaction, e)
     stiffness: Array = stage.inertia * stage.rate**2 * np.eye(2) - tangent.gradient
     return settle, np.asarray(np.linalg.solve(stiffness, left), dtype=np.float64), stiffness
@@ -287,10 +239,10 @@ def measure(change: Array, de: Array) -> float:
     return float(max(np.max(np.abs(change), initial=0.0), np.max(np.abs(de))))
 
 
-def keep_positive(stage: Stage, x: Array, change: Array) -> Array:
-    """The change, shortened as a whole so that no pressure falls by more than four fifths."""
-    kept = stage.problem.positive
-    falling = change[kept] < 0.0
-    reach = 0.8 * np.min(x[kept][falling] / -change[kept][falling], initial=np.inf)
-    shortened: Array = min(1.0, float(reach)) * change
-    return shortened
+def open_share(stage: Stage, at: tuple[Array, Array], step: tuple[Array, Array]) -> float:
+    """Share of a step of unknowns and displacement that leaves pressures and film positive, at most 1."""
+    (x, e), (change, de), problem = at, step, stage.problem
+    pressure = room(x[problem.positive], change[problem.positive])
+    film = problem.at(displacement=e).film(x)
+    ahead = problem.at(displacement=e + de).film(x + change)
+    return float(min(1.0, 0.8 * pressure, 0.95 * room(film, ahead - film)))

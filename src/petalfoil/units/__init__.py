@@ -4,10 +4,12 @@ Inside the package every number is a float in SI units; text is read here and no
 
 - `reading`: text or number → float in SI units; pairs and ranges of the command line.
 - `grammar`: the text of a unit → a pint unit; the only file that knows pint, imported when the first unit is read.
+- `ramp`: the text of a speed that changes → instants and speeds.
 - `writing`: float → text for a reader.
 """
 
+from petalfoil.units.ramp import parse_ramp
 from petalfoil.units.reading import parse_pair, parse_quantity, parse_range
 from petalfoil.units.writing import format_quantity
 
-__all__ = ["format_quantity", "parse_pair", "parse_quantity", "parse_range"]
+__all__ = ["format_quantity", "parse_pair", "parse_quantity", "parse_ramp", "parse_range"]

@@ -28,6 +28,7 @@ _MEASURES = {
     "m": ("a length", "25 um"),
     "rad": ("an angle", "45 deg"),
     "rad/s": ("an angular speed", "60000 rpm"),
+    "s": ("a time", "10 ms"),
 }
 
 

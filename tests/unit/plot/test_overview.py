@@ -38,4 +38,4 @@ def test_what_has_no_answer_or_no_figure_is_refused(unconverged: xr.Dataset, fla
     with pytest.raises(ConvergenceError):
         plot.summary(unconverged)
     with pytest.raises(UsageError, match="known: balance, check, coefficients, converge"):
-        plot.summary(flat.assign_attrs(analysis="orbit"))
+        plot.summary(flat.assign_attrs(analysis="sweep"))

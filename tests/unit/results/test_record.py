@@ -19,6 +19,13 @@ def test_unknown_fields_and_coordinates_are_refused() -> None:
         Record(analysis="solve", scalars={}, coords={"theta": np.zeros(3)})
 
 
+def test_a_figure_is_given_once_or_over_time_but_not_both() -> None:
+    over = {"coords": {"time": np.zeros(2)}, "fields": {"min_film": np.ones(2)}}
+    assert Record(analysis="orbit", scalars={}, **over).fields["min_film"].shape == (2,)
+    with pytest.raises(ValueError, match="'min_film' is given as a scalar and as a field"):
+        Record(analysis="orbit", scalars={"min_film": 1e-6}, **over)
+
+
 @pytest.mark.parametrize(
     ("name", "value"),
     [

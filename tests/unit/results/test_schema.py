@@ -3,7 +3,7 @@ import sys
 
 import pytest
 
-from petalfoil.results.schema import COORDINATES, FIELDS, SCALARS, VARIABLES, Kind, Role
+from petalfoil.results.schema import COORDINATES, FIELDS, HISTORIES, SCALARS, VARIABLES, Kind, Role
 
 SOLVE_KEYS = """
     speed eccentricity_x eccentricity_y force_x force_y load_capacity attitude_angle film_force_x film_force_y
@@ -22,8 +22,16 @@ def test_every_variable_explains_itself(name: str) -> None:
     assert set(variable.dims) <= set(COORDINATES)
 
 
-def test_the_tables_do_not_share_a_name() -> None:
-    assert len(VARIABLES) == len(COORDINATES) + len(FIELDS) + len(SCALARS)
+def test_a_name_means_one_thing() -> None:
+    """A figure and its history over time may share a name; then they are the same quantity."""
+    shared = FIELDS.keys() & SCALARS.keys()
+    assert shared <= HISTORIES.keys()
+    assert not COORDINATES.keys() & (FIELDS.keys() | SCALARS.keys())
+    for name in shared:
+        assert FIELDS[name].dims == ("time",)
+        assert (FIELDS[name].units, FIELDS[name].symbol) == (SCALARS[name].units, SCALARS[name].symbol)
+        assert FIELDS[name].long_name == SCALARS[name].long_name
+    assert len(VARIABLES) == len(COORDINATES) + len(FIELDS) + len(SCALARS) - len(shared)
 
 
 def test_the_keys_of_solve_are_declared_as_scalars() -> None:

@@ -49,9 +49,8 @@ class Spring:
         return np.ones(1)
 
     @property
-    def rank(self) -> Array | None:
+    def rank(self) -> None:
         """The solver orders the elimination itself."""
-        return None
 
     @property
     def positive(self) -> slice:

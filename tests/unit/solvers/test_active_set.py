@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from petalfoil.solvers.active_set import ActiveOptions, Closed, Outcome, active_set, evaluate, newton_step
 from petalfoil.solvers.cone import ConeProblem
 from petalfoil.solvers.linear import LinearSolver
-from tests.unit.solvers.problems import CELLS, Spring, string, string_answer
+from tests.unit.solvers.problems import CELLS, OBSTACLE, Spring, string, string_answer
 from tests.verification.shell_helpers import ElasticProblem, rows_of
 
 
@@ -50,6 +50,24 @@ def test_an_answer_already_there_takes_the_one_step_that_gives_its_tangent() -> 
     tangent = answer.ties.reduce(string().linearize(w).matrix(np.zeros(CELLS - 1)))
     ones = np.ones(answer.ties.n_free)
     assert_allclose(tangent @ answer.factor.solve(ones), ones, rtol=1e-10)
+
+
+def test_the_tangent_of_a_neighbour_shows_where_its_set_is_wrong() -> None:
+    known, _, _ = solve(string(), np.zeros(CELLS - 1), string_answer()[1] > 0.0)
+    assert known is not None
+    nearer, options = string(distance=0.5 * OBSTACLE), ActiveOptions()
+    counts, found = [], []
+    for before in (None, known.factor):
+        solver = LinearSolver()
+        answer, outcome = active_set(nearer, known.x, known.closed, solver, options, before)
+        assert outcome is Outcome.CONVERGED
+        assert answer is not None
+        counts.append(solver.counter.factorizations)
+        found.append(answer)
+    assert counts[1] == counts[0] - 1
+    assert np.array_equal(found[0].closed, found[1].closed)
+    assert not np.array_equal(found[1].closed, known.closed)
+    assert_allclose(found[1].x, found[0].x, rtol=1e-12)
 
 
 def test_sets_that_return() -> None:

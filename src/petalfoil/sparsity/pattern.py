@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 Index = NDArray[np.intp]
@@ -31,23 +29,14 @@ class Pattern:
     @classmethod
     def of(cls, rows: Index, cols: Index, n: int) -> Pattern:
         """Sort the places (rows, cols), each of shape (n_entry,), by column."""
-        key, slot = np.unique(cols.astype(np.int64) * n + rows, return_inverse=True)
+        wanted = cols.astype(np.int64) * n + rows
+        order = np.argsort(wanted, kind="stable")  # the places come in sorted runs, which this sort merges
+        first = np.diff(wanted[order], prepend=-1) > 0
+        slot = np.empty(len(order), dtype=np.intp)
+        slot[order] = np.cumsum(first) - 1
+        key = wanted[order][first]
         indptr = np.searchsorted(key, np.arange(n + 1, dtype=np.int64) * n)
         return cls(n, slot, (key % n).astype(np.int32), indptr.astype(np.int32))
-
-    @cached_property
-    def rank(self) -> NDArray[np.float64]:
-        """Place of each unknown in an elimination that fills in little (minimum degree), shape (n,).
-
-        SuperLU orders a matrix of this pattern with a dominant diagonal; found once, it serves every matrix of the
-        pattern and, group by group, those with unknowns tied together.
-        """
-        noise = np.random.default_rng(0).uniform(0.1, 1.0, len(self.indices))
-        shape = (self.n, self.n)
-        dominant = sp.csc_array((noise, self.indices, self.indptr), shape=shape) + self.n * sp.eye_array(self.n)
-        options = {"Equil": False, "SymmetricMode": True}
-        lu = spla.splu(sp.csc_array(dominant), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
-        return np.asarray(lu.perm_c, dtype=np.float64)
 
     def assemble(self, values: NDArray[np.float64]) -> sp.csc_array:
         """The matrix with `values` (n_entry,) at the places, in their order."""

@@ -1,0 +1,81 @@
+"""What figures take from a motion: its path, the axis it is drawn over, the circle of contact, facts for a title."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from petalfoil.case import Case
+from petalfoil.case.package import package_of
+from petalfoil.errors import DefinitionError, UsageError
+from petalfoil.plot import style
+from petalfoil.plot.reading import Floats, array, number
+from petalfoil.results.motion import TURN, Path
+
+RPM = 30.0 / math.pi
+MICRO = 1e6
+
+
+def path_of(ds: xr.Dataset) -> Path:
+    """The path of a motion.
+
+    Raises
+    ------
+    UsageError
+        The dataset holds no motion, or only its start.
+    """
+    if "x" not in ds or ds["x"].dims != ("time",):
+        raise UsageError("this figure needs the result of `orbit`")
+    if ds.sizes["time"] < 2:
+        raise UsageError("this motion has no step yet, so there is nothing to draw")
+    names = ("x", "y", "velocity_x", "velocity_y", "shaft_angle", "shaft_speed")
+    return Path.of(array(ds, "time"), {name: array(ds, name) for name in names})
+
+
+def elapsed(path: Path) -> tuple[Floats, str]:
+    """What histories are drawn over, and its label: turns at one speed, else milliseconds."""
+    if path.is_steady:
+        return path.angle / TURN, "turns of the shaft"
+    return path.time * 1e3, "time  t [ms]"
+
+
+def contact_circle(ds: xr.Dataset) -> tuple[float, str] | None:
+    """Radius of the circle in which the journal's centre has room [m], and what bounds it; none if the case is lost.
+
+    A plain journal touches the bore when its film is at the floor; in petals it can go no further than where they are
+    pressed solid on the bore, but touches them long before that.
+    """
+    try:
+        case = Case.from_toml(str(ds.attrs.get("case", "")))
+    except DefinitionError:
+        return None
+    room = case.bearing.clearance - case.surface.film_floor
+    if case.petals is None:
+        return room, f"journal touches the bore, {room * MICRO:.4g} µm"
+    package = package_of(case.bearing, case.petals)
+    room = case.bearing.clearance - package.layers * package.thickness
+    return room, f"{package.layers} layers of petals pressed solid, {room * MICRO:.4g} µm"
+
+
+def motion_facts(ds: xr.Dataset, path: Path) -> tuple[str, ...]:
+    """Speed, rotor, turns and grid, as a title tells them."""
+    first, last = float(path.speed[0]), float(path.speed[-1])
+    ramp = f"{first * RPM:,.0f} to {last * RPM:,.0f} rpm".replace(",", "\u2009")
+    speed = style.speed_fact(first) if path.is_steady else ramp
+    mass = number(ds, "rotor_mass")
+    rotor = "" if math.isnan(mass) else f"rotor {mass:.4g} kg"
+    return speed, rotor, f"{path.turns:.4g} turns", style.grid_fact(ds)
+
+
+def padded(low: float, high: float, share: float = 0.08) -> tuple[float, float]:
+    """Limits of an axis around values."""
+    spread = max(high - low, 1e-9 * max(abs(low), abs(high)), 1e-30)
+    return low - share * spread, high + share * spread
+
+
+def settled(path: Path) -> tuple[Floats, Floats]:
+    """A smooth line through the settled part: x and y [m]."""
+    _, z = path.evenly(path.settled_since())
+    return np.asarray(z.real, dtype=np.float64), np.asarray(z.imag, dtype=np.float64)

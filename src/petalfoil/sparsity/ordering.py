@@ -1,0 +1,135 @@
+"""Order of elimination, learnt from the factorisations of one problem.
+
+SuperLU finds a minimum-degree order for a symmetric pattern, but does not follow its elimination tree: columns of equal
+structure lie scattered and are treated one by one. The same order in postorder of the tree fills in the same and takes
+half of the time. It is found once and serves for as long as factors do not grow: contact sets that follow each other
+differ in a few unknowns.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+GROWN = 1.15
+"""Growth of the factors past which an order is given up: a new one costs half of a factorisation."""
+
+
+class Order(Protocol):
+    """Where a factorisation finds its order, and leaves what it has learnt."""
+
+    def known(self) -> Index | None:
+        """Unknowns in the order of elimination; None if it must be found."""
+
+    def learn(self, order: Index | None, fill: float) -> None:
+        """A factorisation had `fill` entries an unknown, in `order` if it had to find one."""
+
+
+def postorder(matrix: sp.csc_array, order: Index) -> Index:
+    """Unknowns of `matrix` in postorder of the tree of their elimination in `order`, (n,)."""
+    n = matrix.shape[0]
+    tree = sp.csr_array((np.ones(n), (parents(matrix, order), np.arange(n))), shape=(n + 1, n + 1))
+    downward = sp.csgraph.depth_first_order(tree, n, directed=True, return_predecessors=False)
+    places: Index = order[downward[:0:-1]]
+    return places
+
+
+def parents(matrix: sp.csc_array, order: Index) -> Index:
+    """Parent of every place of `order` in the elimination tree, `n` for roots, (n,) (Liu 1986, doi:10.1145/6497.6499).
+
+    The tree tells when parts of the graph join as unknowns come one by one; a spanning forest of the earliest edges
+    joins them at the same times, and has few edges to look at.
+    """
+    n = matrix.shape[0]
+    place = places(order).astype(np.intp)
+    rows, cols = place[matrix.indices], np.repeat(place, np.diff(matrix.indptr))
+    late, early = np.maximum(rows, cols), np.minimum(rows, cols)
+    apart = late != early
+    graph = sp.coo_array((late[apart], (late[apart], early[apart])), shape=(n, n)).tocsr()
+    graph.data = np.repeat(np.arange(n, dtype=np.float64), np.diff(graph.indptr))  # both triangles may name an edge
+    forest = sp.csgraph.minimum_spanning_tree(graph).tocoo()
+    late, early = np.maximum(forest.row, forest.col), np.minimum(forest.row, forest.col)
+    by_time = np.argsort(late, kind="stable")
+    parent, root = np.full(n, n), list(range(n))
+    for joining, member in zip(late[by_time].tolist(), early[by_time].tolist(), strict=True):
+        top = member
+        while root[top] != top:
+            root[top] = root[root[top]]
+            top = root[top]
+        parent[top] = root[top] = joining
+    return parent
+
+
+@dataclass
+class Learnt:
+    """Place of every unknown in an elimination that once served, (n,), and the entries an unknown it led to."""
+
+    rank: Array | None = None
+    fill: float = np.inf
+
+    def judge(self, fill: float) -> None:
+        """Give the order up where factors have grown."""
+        if fill > GROWN * self.fill:
+            self.rank = None
+
+
+@dataclass
+class Elimination:
+    """Orders of one problem: of all its unknowns with every gap open to the barrier, and of those left by ties."""
+
+    whole: Learnt = field(default_factory=Learnt)
+    tied: Learnt = field(default_factory=Learnt)
+
+    def known(self) -> Index | None:
+        """Unknowns in the order of elimination."""
+        rank = self.whole.rank
+        return None if rank is None else np.argsort(rank, kind="stable")
+
+    def learn(self, order: Index | None, fill: float) -> None:
+        """Keep what a factorisation of all unknowns has found."""
+        if order is None:
+            self.whole.judge(fill)
+        else:
+            self.whole.rank, self.whole.fill = places(order), fill
+
+
+@dataclass(frozen=True)
+class TiedOrder:
+    """Order of unknowns some of which move together: `group` (n,) of each, -1 where it is held; `count` groups."""
+
+    learnt: Learnt
+    group: Index
+    count: int
+
+    def known(self) -> Index | None:
+        """Groups in the order of elimination: each comes when the last of its unknowns would."""
+        rank = self.learnt.rank
+        if rank is None:
+            return None
+        inside = self.group >= 0
+        last = np.full(self.count, -np.inf)
+        np.maximum.at(last, self.group[inside], rank[inside])
+        return np.argsort(last, kind="stable")
+
+    def learn(self, order: Index | None, fill: float) -> None:
+        """Keep what a factorisation of the groups has found, for each of their unknowns."""
+        if order is None:
+            self.learnt.judge(fill)
+            return
+        # a held unknown may move with the next contact set: it is placed by the one before it, its neighbour
+        spread = np.maximum.accumulate(np.where(self.group >= 0, np.arange(len(self.group)), 0))
+        self.learnt.rank, self.learnt.fill = places(order)[self.group[spread]], fill
+
+
+def places(order: Index) -> Array:
+    """Place of every unknown in `order`, (n,)."""
+    rank = np.empty(len(order))
+    rank[order] = np.arange(len(order))
+    return rank

@@ -1,0 +1,140 @@
+"""The motion as a function: what it takes, refuses and returns; what it returns survives a file and goes on."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from numpy.testing import assert_allclose
+
+import petalfoil
+from petalfoil.analysis.orbit import Course
+from petalfoil.errors import PetalfoilError, StoreError, UnitError, UsageError
+from petalfoil.results.store import load, save
+from tests.cases import case
+
+ROTOR = {"rotor.mass": 3.0, "rotor.unbalance": 2e-6}
+PLAIN = case("plain_journal", **{"model.cells_per_pitch": 32, "model.axial_cells": 8}, **ROTOR)
+PETALS = case("paper_n8", **{"model.cells_per_pitch": 16}, **ROTOR)
+FAST = 0.5 * 20000.0 * math.pi / 30.0
+
+
+@pytest.fixture(scope="module")
+def four() -> xr.Dataset:
+    return petalfoil.orbit(PLAIN, revolutions=4.0)
+
+
+def test_a_motion_tells_where_the_journal_is(four: xr.Dataset) -> None:
+    assert four.attrs["analysis"] == "orbit"
+    assert four["x"].dims == four["min_film"].dims == four["contact_share"].dims == ("time",)
+    assert four["time"].attrs["units"] == "s"
+    assert_allclose([four["x"][0], four["y"][0]], [0.0, -1e-5], rtol=0.0, atol=1e-18)
+    assert_allclose(float(four["revolutions"]), 4.0, rtol=1e-9)
+    assert_allclose(float(four["time"][-1]), 4.0 * 60.0 / 20000.0, rtol=1e-9)
+    assert bool(four["converged"])
+    assert int(four["steps"]) == four.sizes["time"] - 1
+
+
+@pytest.mark.parametrize("bearing", [PLAIN, PETALS], ids=["plain", "petals"])
+def test_a_motion_survives_its_file(tmp_path: Path, bearing: petalfoil.Case) -> None:
+    ds = petalfoil.orbit(bearing, duration="0.1 ms")
+    save(ds, tmp_path / "orbit.nc")
+    xr.testing.assert_identical(load(tmp_path / "orbit.nc"), ds)
+    assert ("frame_radius" in ds) == (bearing.petals is not None)
+
+
+def test_two_turns_and_two_more_are_four(four: xr.Dataset, tmp_path: Path) -> None:
+    save(petalfoil.orbit(PLAIN, revolutions=2.0), tmp_path / "two.nc")
+    more = petalfoil.orbit(PLAIN, revolutions=2.0, restart=tmp_path / "two.nc")
+    assert_allclose(more["time"][[0, -1]], [0.5 * float(four["time"][-1]), float(four["time"][-1])], rtol=1e-9)
+    whole, halves = (
+        np.array([float(ds[name][-1]) for name in ("x", "y", "velocity_x", "velocity_y")]) for ds in (four, more)
+    )
+    size = np.abs(whole[:2]).max(), np.abs(whole[2:]).max()
+    assert_allclose(halves[:2], whole[:2], rtol=0.0, atol=1e-3 * size[0])
+    assert_allclose(halves[2:], whole[2:], rtol=0.0, atol=1e-3 * size[1])
+
+
+def test_a_motion_goes_on_from_one_at_hand(four: xr.Dataset) -> None:
+    more = petalfoil.orbit(PLAIN, duration=1e-4, restart=four)
+    for name in ("x", "y", "velocity_x", "velocity_y", "shaft_angle"):
+        assert_allclose(float(more[name][0]), float(four[name][-1]), rtol=1e-12)
+
+
+def test_a_ramp_goes_on_where_it_was_left() -> None:
+    ramp = "2000 rad/s : 2200 rad/s : 0.2 ms"
+    half = petalfoil.orbit(PLAIN, speeds=ramp, duration="0.1 ms")
+    rest = petalfoil.orbit(PLAIN, speeds=ramp, restart=half)  # to the end of the ramp
+    assert_allclose(rest["time"][[0, -1]], [1e-4, 2e-4], rtol=1e-9)
+    assert_allclose(rest["shaft_speed"][[0, -1]], [2100.0, 2200.0], rtol=1e-9)
+
+
+def test_what_is_given_reaches_the_analysis_in_si(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+    monkeypatch.setattr("petalfoil.analysis.orbit.run", lambda *args: asked.append(args))
+    monkeypatch.setattr("petalfoil.results.dataset.to_dataset", lambda record: record)
+    petalfoil.orbit(
+        PLAIN, duration="10 ms", initial="1 um, 2 um", speeds="0 rpm : 10000 rpm : 1 s", load="20 N", tolerance="1e-4"
+    )
+    found, course, restart, progress = asked.pop()
+    assert (found, restart, progress) == (PLAIN, None, None)
+    assert course == Course(None, 0.01, (1e-6, 2e-6), course.speeds, (0.0, -20.0), 1e-4)
+    assert_allclose(course.speeds, [(0.0, 0.0), (1.0, FAST)], rtol=1e-12, atol=0.0)
+    petalfoil.orbit(PLAIN, speeds=[(0, 0), ("1 s", "10000 rpm")], initial=(1e-6, "2 um"))
+    assert_allclose(asked[0][1].speeds, [(0.0, 0.0), (1.0, FAST)], rtol=1e-12, atol=0.0)
+    assert asked[0][1].initial == (1e-6, 2e-6)
+
+
+BARE = case("plain_journal")
+OTHER = case("plain_journal", **{"bearing.length": 0.06}, **ROTOR)
+
+
+@pytest.mark.parametrize(
+    ("bearing", "given", "error", "reason"),
+    [
+        ("case.toml", {}, UsageError, "is not a Case"),
+        (BARE, {"revolutions": 1.0}, UsageError, r"needs a case with \[rotor\]"),
+        (PLAIN, {"revolutions": -1.0}, UsageError, "revolutions must be above zero"),
+        (PLAIN, {"revolutions": 1.0, "duration": 1.0}, UsageError, "either revolutions or a duration"),
+        (PLAIN, {"tolerance": 0.0}, UsageError, "tolerance must be above zero"),
+        (PLAIN, {"duration": "5 m"}, UnitError, "a time"),
+        (PLAIN, {"initial": "1 um"}, UsageError, "not a pair"),
+        (PLAIN, {"initial": (1.0, 2.0, 3.0)}, UsageError, "initial: .* is not a pair"),
+        (PLAIN, {"speeds": "0 : 10 : -1 s"}, UsageError, "goes back in time"),
+        (PLAIN, {"speeds": [(1.0, 10.0), (0.5, 20.0)]}, UsageError, "goes back in time"),
+        (PLAIN, {"speeds": [(1.0, -10.0)]}, UsageError, "negative speed"),
+        (PLAIN, {"speeds": [1.0, 2.0]}, UsageError, r"1.0 is not a pair \(time, speed\)"),
+        (PLAIN, {"speeds": 5.0}, UsageError, r"5.0 is not a pair \(time, speed\)"),
+        (PLAIN, {"speeds": [(0.0, 0.0)], "revolutions": 1.0}, UsageError, "never turns 1 times"),
+        (PLAIN, {"restart": "no such file.nc"}, StoreError, "no result file"),
+    ],
+)
+def test_what_cannot_be_is_refused(
+    bearing: Any, given: dict[str, Any], error: type[PetalfoilError], reason: str
+) -> None:
+    with pytest.raises(error, match=reason):
+        petalfoil.orbit(bearing, **given)
+
+
+def test_a_motion_of_another_bearing_is_refused(four: xr.Dataset) -> None:
+    with pytest.raises(UsageError, match=r"another bearing: its \[bearing\] differs"):
+        petalfoil.orbit(OTHER, restart=four)
+    with pytest.raises(UsageError, match=r"another bearing: its \[petals\] differs|its \[bearing\] differs"):
+        petalfoil.orbit(PETALS, restart=four)
+    with pytest.raises(UsageError, match=r"ended at 2094\.4 rad/s after 4 turns, but these speeds are at 3000 rad/s"):
+        petalfoil.orbit(PLAIN.replace(**{"operation.speed": 3000.0}), restart=four)
+    with pytest.raises(UsageError, match="holds no motion"):
+        petalfoil.orbit(PLAIN, restart=four.drop_vars("last_position"))
+    with pytest.raises(UsageError, match="initial says nothing beside restart"):
+        petalfoil.orbit(PLAIN, restart=four, initial=(0.0, 0.0))
+
+
+def test_progress_is_told() -> None:
+    told: list[float] = []
+    petalfoil.orbit(PLAIN, duration=1e-4, progress=lambda share, _: told.append(share))
+    assert told == sorted(told)
+    assert_allclose(told[-1], 1.0, rtol=1e-12)

@@ -1,0 +1,264 @@
+"""The journal through time against exact answers: eigenvalues, impedances, squeeze films, the scheme's own order."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from petalfoil.analysis import balance, coefficients, stability
+from petalfoil.analysis.orbit import Course, Orbit, run
+from petalfoil.case import Case
+from petalfoil.equilibria.work import Work
+from petalfoil.results.record import Record
+from petalfoil.transient.march import MarchOptions, march
+from petalfoil.transient.state import Instant
+from tests.cases import case
+from tests.verification.film_helpers import table
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+WEIGHT = 9.80665
+
+
+def plain(**changes: object) -> Case:
+    """A plain bearing on a grid that is coarse, but the same for both sides of every comparison."""
+    return case("plain_journal", **{"model.cells_per_pitch": 48, "model.axial_cells": 8}, **changes)
+
+
+def petals(**changes: object) -> Case:
+    return case("paper_n8", **{"model.cells_per_pitch": 16}, **changes)
+
+
+def under(bearing: Case, mass: float, load: float, **rotor: float) -> tuple[Case, tuple[float, float]]:
+    """The bearing with a rotor of `mass` under `load` along -y, and where that balances."""
+    loaded = bearing.replace(rotor={"mass": mass, **rotor}, **{"operation.load": (0.0, -load)})
+    found = balance.run(loaded).scalars
+    return loaded, (float(found["eccentricity_x"]), float(found["eccentricity_y"]))
+
+
+def tail(record: Record, share: float) -> tuple[Array, Array]:
+    """Radians turned and positions (n, 2) [m] of the last part of a motion at constant speed."""
+    time, speed = np.asarray(record.coords["time"]), np.asarray(record.fields["shaft_speed"])[0]
+    kept = time > (1.0 - share) * time[-1]
+    x, y = np.asarray(record.fields["x"]), np.asarray(record.fields["y"])
+    return time[kept] * speed, np.column_stack([x, y])[kept]
+
+
+def eigenvalue(tau: Array, path: Array, guess: complex) -> complex:
+    """`s` of `c + Re(A exp(s tau))` through a path, by least squares."""
+
+    def misfit(s: Array) -> Array:
+        wave = np.exp(complex(*s) * (tau - tau[0]))
+        shape = np.column_stack([np.ones_like(tau), wave.real, -wave.imag])
+        away = path - shape @ np.linalg.lstsq(shape, path, rcond=None)[0]
+        return np.asarray(away.ravel() / np.ptp(path))
+
+    return complex(*least_squares(misfit, [guess.real, guess.imag], xtol=1e-13, ftol=1e-13).x)
+
+
+# ---------------------------------------------------------------------------------------------- free motions
+
+
+@pytest.mark.parametrize("share", [0.6, 2.0])
+def test_free_orbit_grows_or_dies_out_as_its_natural_mode(share: float) -> None:
+    """Growth rate and whirl frequency within 1 %, on both sides of the critical mass."""
+    load = 15.0
+    bearing = plain(**{"operation.load": (0.0, -load)})
+    critical = float(stability.run(bearing).scalars["critical_mass"])
+    loaded, (x, y) = under(bearing, share * critical, load)
+    told = stability.run(loaded, mass=share * critical)
+    omega = loaded.operation.speed
+    modes = np.asarray(told.fields["mode_growth_rate"]) + 1j * np.asarray(told.fields["natural_frequency"])
+    expected = modes[np.argmax(modes.real)] / omega
+    course = Course(revolutions=8.0, initial=(x + 1e-10, y), tolerance=1e-7, longest=0.1)
+    found = eigenvalue(*tail(run(loaded, course), 0.6), 1.02 * expected)
+    assert np.sign(found.real) == np.sign(share - 1.0)
+    assert abs(found.real / expected.real - 1.0) <= 1e-2
+    assert abs(found.imag / expected.imag - 1.0) <= 1e-2
+
+
+def test_critical_mass_divides_orbits_that_die_out_from_orbits_that_grow() -> None:
+    """2 % below it an orbit shrinks, 2 % above it grows."""
+    load = 15.0
+    bearing = plain(**{"operation.load": (0.0, -load)})
+    critical = float(stability.run(bearing).scalars["critical_mass"])
+    rates = []
+    for share in (0.98, 1.02):
+        loaded, (x, y) = under(bearing, share * critical, load)
+        course = Course(revolutions=12.0, initial=(x + 1e-10, y), tolerance=1e-7, longest=0.1)
+        rates.append(eigenvalue(*tail(run(loaded, course), 0.6), 0.45j).real)
+    assert rates[0] < 0.0 < rates[1]
+
+
+def test_a_released_rotor_settles_on_its_balance() -> None:
+    loaded, (x, y) = under(plain(), 0.02, 15.0)
+    record = run(loaded, Course(revolutions=12.0, initial=(0.0, 0.0)))
+    end = np.asarray(record.fields["x"])[-1], np.asarray(record.fields["y"])[-1]
+    assert math.hypot(end[0] - x, end[1] - y) <= 1e-4 * loaded.bearing.clearance
+
+
+# ---------------------------------------------------------------------------------------------- forced motions
+
+
+def harmonics(time: Array, values: Array, frequencies: list[float]) -> Complex:
+    """Complex amplitude at the first of the frequencies, the others fitted beside it."""
+    waves = [wave(frequency * time) for frequency in frequencies for wave in (np.cos, np.sin)]
+    shape = np.column_stack([np.ones_like(time), *waves])
+    found = np.linalg.lstsq(shape, values, rcond=None)[0]
+    return np.asarray(found[1] - 1j * found[2])
+
+
+def measured_impedance(bearing: Case, force: float, frequency: float, course: Course, free: list[float]) -> Complex:
+    """`Z` (2, 2) from orbits that a load rotating each way forces, [N/m]."""
+    moved, pushed = [], []
+    for turn in (frequency, -frequency):
+        rotor = {"mass": bearing.rotor.mass if bearing.rotor else 1.0, "rotating_load": force, "rotating_speed": turn}
+        record = run(bearing.replace(rotor=rotor), course)
+        time = np.asarray(record.coords["time"])
+        kept = time > 0.3 * time[-1]
+        parts = [
+            harmonics(time[kept], np.asarray(record.fields[name])[kept], [frequency, *free])
+            for name in ("x", "y", "force_x", "force_y")
+        ]
+        moved.append(parts[:2])
+        pushed.append(parts[2:])
+    return np.asarray(-np.array(pushed).T @ np.linalg.inv(np.array(moved).T))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ratio", [0.5, 1.0, 2.0])
+def test_forced_orbits_of_petals_give_back_stiffness_and_damping(ratio: float) -> None:
+    """K and C each within 1 % of their size; free motions hardly die out here, and are fitted beside."""
+    loaded, start = under(petals(), 3.0, 3.0 * WEIGHT)
+    omega = loaded.operation.speed
+    free = [float(f) for f in np.asarray(stability.run(loaded, mass=3.0).fields["natural_frequency"]) if f < 0.2 * omega]
+    course = Course(revolutions=20.0, initial=start, tolerance=1e-6, longest=0.1 / max(1.0, ratio))
+    found = measured_impedance(loaded, 0.01, ratio * omega, course, free)
+    told = coefficients.run(loaded, [ratio * omega])
+    K, C = told.fields["stiffness"][0], told.fields["damping"][0]
+    assert np.max(np.abs(found.real - K)) <= 1e-2 * np.max(np.abs(K))
+    assert np.max(np.abs(found.imag / (ratio * omega) - C)) <= 1e-2 * np.max(np.abs(C))
+
+
+STRIPS = [row for row in table("a3_squeeze_linear.csv") if row["shape"] == "strip" and float(row["sigma"]) in (10, 50)]
+
+
+@pytest.mark.parametrize("row", STRIPS, ids=lambda row: f"sigma={row['sigma']}")
+def test_squeeze_film_of_a_journal_at_rest(row: dict[str, str]) -> None:
+    """A journal that does not turn in a very short bearing squeezes strips: stiffness and damping within 0.5 %.
+
+    L/D = 0.02, 64 cells round, 96 over the length; the circle's own share of the flow is 1 / (625 sigma).
+    """
+    bearing = case("plain_journal", **{"bearing.length": "1 mm", "operation.speed": 0.0, "operation.load": (0.0, 0.0)})
+    bearing = bearing.replace(
+        rotor={"mass": 1e-3}, **{"operation.eccentricity": (0.0, 0.0), "model.cells_per_pitch": 64, "model.axial_cells": 96}
+    )
+    sizes, gas = bearing.bearing, bearing.gas
+    frequency = float(row["sigma"]) * gas.ambient_pressure * sizes.clearance**2 / (12.0 * gas.viscosity * sizes.length**2)
+    stiffness = 0.5 * math.pi * gas.ambient_pressure * sizes.length * 2.0 * sizes.journal_radius / sizes.clearance
+    expected = stiffness * complex(float(row["Sk"]), float(row["Sd"]))
+    natural = math.sqrt(expected.real / 1e-3)
+    turn = 2.0 * math.pi / frequency
+    start = Orbit(bearing, Course(duration=turn))
+    longest = 0.05 * start.system.rotor.clock.rate / frequency
+    course = Course(duration=12.0 * turn, tolerance=1e-7, longest=longest)
+    found = measured_impedance(bearing, 1e-4 * abs(expected - 1e-3 * frequency**2) * 1e-6, frequency, course, [])
+    assert natural > 0.0
+    assert np.allclose(np.diag(found).real, expected.real, rtol=5e-3, atol=0.0)
+    assert np.allclose(np.diag(found).imag, expected.imag, rtol=5e-3, atol=0.0)
+
+
+# ---------------------------------------------------------------------------------------------- the scheme
+
+
+def after(bearing: Case, step: float, end: float) -> Instant:
+    """The state after a motion in equal steps [units of time]."""
+    orbit = Orbit(bearing, Course(duration=1.0))
+    options = MarchOptions(tolerance=1e-5, first=step, longest=step, fixed=True)
+    *_, last = march(orbit.system, orbit.start, end, Work(), options)
+    return last.end
+
+
+def falling() -> Case:
+    """A rotor released off its balance: film, position and velocity all move."""
+    return plain(rotor={"mass": 0.1, "unbalance": 2e-6}, **{"operation.eccentricity": (0.0, -5e-6)})
+
+
+def test_second_order_in_time() -> None:
+    """Errors of position and film in 1 rad fall with slope 2 +- 0.1."""
+    bearing = falling()
+    best = after(bearing, 1.0 / 640, 1.0)
+    errors = []
+    for step in (0.05, 0.025, 0.0125):
+        found = after(bearing, step, 1.0)
+        errors.append([np.linalg.norm(found.e - best.e), np.linalg.norm(found.x - best.x)])
+    slopes = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+    assert np.all(np.abs(slopes - 2.0) <= 0.1)
+
+
+def test_audits_close_to_second_order() -> None:
+    """Gas and energy: a quarter of the defect at half the step, for a plain bearing and for petals."""
+    for bearing, least in ((falling(), 1e-9), (petals(rotor={"mass": 1.0, "unbalance": 2e-6}), 1e-9)):
+        defects = []
+        for longest in (0.1, 0.05):
+            record = run(bearing, Course(revolutions=1.0, tolerance=1e-4, longest=longest))
+            defects.append([record.scalars["mass_defect"], record.scalars["energy_defect"]])
+        coarse, fine = np.array(defects, dtype=float)
+        assert np.all((fine <= 0.35 * coarse) | (fine <= least)), (coarse, fine)
+        assert np.all(fine <= 1e-4)
+
+
+def test_steps_adapt_to_the_tolerance() -> None:
+    """A hundredth of the tolerance: smaller error, more steps."""
+    bearing = falling()
+    best = run(bearing, Course(revolutions=1.0, tolerance=1e-8, longest=0.02))
+    ends, steps = [], []
+    for tolerance in (1e-3, 1e-5):
+        record = run(bearing, Course(revolutions=1.0, tolerance=tolerance, longest=10.0))
+        ends.append(abs(np.asarray(record.fields["x"])[-1] - np.asarray(best.fields["x"])[-1]))
+        steps.append(int(record.scalars["steps"]))
+    assert ends[1] < 0.2 * ends[0]
+    assert steps[1] > 2 * steps[0]
+
+
+# ---------------------------------------------------------------------------------------------- contact
+
+
+def test_touching_rubbing_and_lifting_off_without_a_failed_step() -> None:
+    """A large unbalance throws the journal onto the petals and off again."""
+    record = run(petals(rotor={"mass": 3.0, "unbalance": 30e-6}), Course(revolutions=6.0))
+    share = np.asarray(record.fields["contact_share"])
+    touching = share > 0.01
+    assert np.any(touching)
+    assert np.count_nonzero(np.diff(touching.astype(int)) == -1) >= 1
+    assert record.scalars["failed_steps"] == 0
+    assert np.all(np.asarray(record.fields["min_film"]) >= 0.999e-6)
+
+
+@pytest.mark.slow
+def test_an_unstable_orbit_grows_to_the_wall_and_stays_within() -> None:
+    """A heavy rotor whirls at half speed until the bore stops it."""
+    bearing = plain(rotor={"mass": 20.0}, **{"operation.load": (0.0, -1.0)})
+    record = run(bearing, Course(revolutions=15.0))
+    radius = np.hypot(np.asarray(record.fields["x"]), np.asarray(record.fields["y"]))
+    room = bearing.bearing.clearance - bearing.surface.film_floor
+    assert radius.max() > 0.98 * room
+    assert radius.max() <= room * (1.0 + 1e-9)
+    assert np.asarray(record.fields["contact_share"]).max() > 0.0
+
+
+def test_speed_may_rise_from_rest() -> None:
+    """A run-up in time: the shaft turns as the ramp says, the film lifts the journal on the way."""
+    bearing = petals(rotor={"mass": 0.5})
+    course = Course(speeds=((0.0, 0.0), (2e-3, 8000.0)), initial=(0.0, 0.0))
+    record = run(bearing, course)
+    turned = np.asarray(record.fields["shaft_angle"])[-1]
+    assert turned == pytest.approx(0.5 * 2e-3 * 8000.0, rel=1e-9)
+    assert np.asarray(record.fields["shaft_speed"])[-1] == pytest.approx(8000.0)
+    assert replace(course, speeds=None).schedule(bearing).top == bearing.operation.speed
