@@ -76,13 +76,14 @@ def test_free_orbit_grows_or_dies_out_as_its_natural_mode(share: float) -> None:
     omega = loaded.operation.speed
     modes = np.asarray(told.fields["mode_growth_rate"]) + 1j * np.asarray(told.fields["natural_frequency"])
     expected = modes[np.argmax(modes.real)] / omega
-    course = Course(revolutions=8.0, initial=(x + 1e-10, y), tolerance=1e-7, longest=0.1)
+    course = Course(revolutions=6.0, initial=(x + 1e-10, y), tolerance=1e-7, longest=0.15)
     found = eigenvalue(*tail(run(loaded, course), 0.6), 1.02 * expected)
     assert np.sign(found.real) == np.sign(share - 1.0)
     assert abs(found.real / expected.real - 1.0) <= 1e-2
     assert abs(found.imag / expected.imag - 1.0) <= 1e-2
 
 
+@pytest.mark.slow
 def test_critical_mass_divides_orbits_that_die_out_from_orbits_that_grow() -> None:
     """2 % below it an orbit shrinks, 2 % above it grows."""
     load = 15.0
@@ -96,9 +97,11 @@ def test_critical_mass_divides_orbits_that_die_out_from_orbits_that_grow() -> No
     assert rates[0] < 0.0 < rates[1]
 
 
+@pytest.mark.slow
 def test_a_released_rotor_settles_on_its_balance() -> None:
-    loaded, (x, y) = under(plain(), 0.02, 15.0)
-    record = run(loaded, Course(revolutions=12.0, initial=(0.0, 0.0)))
+    """From the centre, a light rotor under a load that a whirl does not turn round: within 1e-4 of the clearance."""
+    loaded, (x, y) = under(plain(), 0.3, 400.0)
+    record = run(loaded, Course(revolutions=20.0, initial=(0.0, 0.0)))
     end = np.asarray(record.fields["x"])[-1], np.asarray(record.fields["y"])[-1]
     assert math.hypot(end[0] - x, end[1] - y) <= 1e-4 * loaded.bearing.clearance
 
@@ -137,7 +140,9 @@ def test_forced_orbits_of_petals_give_back_stiffness_and_damping(ratio: float) -
     """K and C each within 1 % of their size; free motions hardly die out here, and are fitted beside."""
     loaded, start = under(petals(), 3.0, 3.0 * WEIGHT)
     omega = loaded.operation.speed
-    free = [float(f) for f in np.asarray(stability.run(loaded, mass=3.0).fields["natural_frequency"]) if f < 0.2 * omega]
+    free = [
+        float(f) for f in np.asarray(stability.run(loaded, mass=3.0).fields["natural_frequency"]) if f < 0.2 * omega
+    ]
     course = Course(revolutions=20.0, initial=start, tolerance=1e-6, longest=0.1 / max(1.0, ratio))
     found = measured_impedance(loaded, 0.01, ratio * omega, course, free)
     told = coefficients.run(loaded, [ratio * omega])
@@ -149,27 +154,28 @@ def test_forced_orbits_of_petals_give_back_stiffness_and_damping(ratio: float) -
 STRIPS = [row for row in table("a3_squeeze_linear.csv") if row["shape"] == "strip" and float(row["sigma"]) in (10, 50)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("row", STRIPS, ids=lambda row: f"sigma={row['sigma']}")
 def test_squeeze_film_of_a_journal_at_rest(row: dict[str, str]) -> None:
     """A journal that does not turn in a very short bearing squeezes strips: stiffness and damping within 0.5 %.
 
     L/D = 0.02, 64 cells round, 96 over the length; the circle's own share of the flow is 1 / (625 sigma).
     """
-    bearing = case("plain_journal", **{"bearing.length": "1 mm", "operation.speed": 0.0, "operation.load": (0.0, 0.0)})
-    bearing = bearing.replace(
-        rotor={"mass": 1e-3}, **{"operation.eccentricity": (0.0, 0.0), "model.cells_per_pitch": 64, "model.axial_cells": 96}
-    )
+    short = {"bearing.journal_radius": "50 mm", "bearing.bushing_radius": "50.005 mm", "bearing.length": "2 mm"}
+    still = {"operation.speed": 0.0, "operation.load": (0.0, 0.0), "operation.eccentricity": (0.0, 0.0)}
+    grid = {"model.cells_per_pitch": 64, "model.axial_cells": 96}
+    bearing = case("plain_journal", rotor={"mass": 1e-3}, **short, **still, **grid)
     sizes, gas = bearing.bearing, bearing.gas
-    frequency = float(row["sigma"]) * gas.ambient_pressure * sizes.clearance**2 / (12.0 * gas.viscosity * sizes.length**2)
+    frequency = (
+        float(row["sigma"]) * gas.ambient_pressure * sizes.clearance**2 / (12.0 * gas.viscosity * sizes.length**2)
+    )
     stiffness = 0.5 * math.pi * gas.ambient_pressure * sizes.length * 2.0 * sizes.journal_radius / sizes.clearance
     expected = stiffness * complex(float(row["Sk"]), float(row["Sd"]))
-    natural = math.sqrt(expected.real / 1e-3)
     turn = 2.0 * math.pi / frequency
-    start = Orbit(bearing, Course(duration=turn))
-    longest = 0.05 * start.system.rotor.clock.rate / frequency
+    longest = 0.05 * Orbit(bearing, Course(duration=turn)).system.rotor.clock.rate / frequency
     course = Course(duration=12.0 * turn, tolerance=1e-7, longest=longest)
-    found = measured_impedance(bearing, 1e-4 * abs(expected - 1e-3 * frequency**2) * 1e-6, frequency, course, [])
-    assert natural > 0.0
+    force = 1e-3 * bearing.bearing.clearance * abs(expected - 1e-3 * frequency**2)
+    found = measured_impedance(bearing, force, frequency, course, [])
     assert np.allclose(np.diag(found).real, expected.real, rtol=5e-3, atol=0.0)
     assert np.allclose(np.diag(found).imag, expected.imag, rtol=5e-3, atol=0.0)
 
@@ -177,12 +183,20 @@ def test_squeeze_film_of_a_journal_at_rest(row: dict[str, str]) -> None:
 # ---------------------------------------------------------------------------------------------- the scheme
 
 
-def after(bearing: Case, step: float, end: float) -> Instant:
-    """The state after a motion in equal steps [units of time]."""
+def equal_steps(bearing: Case, step: float, end: float) -> Orbit:
+    """A motion in equal steps [units of time]."""
     orbit = Orbit(bearing, Course(duration=1.0))
     options = MarchOptions(tolerance=1e-5, first=step, longest=step, fixed=True)
-    *_, last = march(orbit.system, orbit.start, end, Work(), options)
-    return last.end
+    for stepped in march(orbit.system, orbit.start, end, Work(), options):
+        orbit.trace.add(stepped.end)
+    return orbit
+
+
+def after(bearing: Case, step: float, end: float) -> Instant:
+    """The state after a motion in equal steps [units of time]."""
+    last = equal_steps(bearing, step, end).trace.last
+    assert last is not None
+    return last
 
 
 def falling() -> Case:
@@ -206,21 +220,21 @@ def test_audits_close_to_second_order() -> None:
     """Gas and energy: a quarter of the defect at half the step, for a plain bearing and for petals."""
     for bearing, least in ((falling(), 1e-9), (petals(rotor={"mass": 1.0, "unbalance": 2e-6}), 1e-9)):
         defects = []
-        for longest in (0.1, 0.05):
-            record = run(bearing, Course(revolutions=1.0, tolerance=1e-4, longest=longest))
-            defects.append([record.scalars["mass_defect"], record.scalars["energy_defect"]])
+        for step in (0.04, 0.02):
+            scalars = equal_steps(bearing, step, 2.0).record().scalars
+            defects.append([scalars["mass_defect"], scalars["energy_defect"]])
         coarse, fine = np.array(defects, dtype=float)
         assert np.all((fine <= 0.35 * coarse) | (fine <= least)), (coarse, fine)
-        assert np.all(fine <= 1e-4)
+        assert np.all(fine <= 1e-3)
 
 
 def test_steps_adapt_to_the_tolerance() -> None:
     """A hundredth of the tolerance: smaller error, more steps."""
     bearing = falling()
-    best = run(bearing, Course(revolutions=1.0, tolerance=1e-8, longest=0.02))
+    best = run(bearing, Course(revolutions=0.5, tolerance=1e-6, longest=0.02))
     ends, steps = [], []
-    for tolerance in (1e-3, 1e-5):
-        record = run(bearing, Course(revolutions=1.0, tolerance=tolerance, longest=10.0))
+    for tolerance in (1e-2, 1e-4):
+        record = run(bearing, Course(revolutions=0.5, tolerance=tolerance, longest=10.0))
         ends.append(abs(np.asarray(record.fields["x"])[-1] - np.asarray(best.fields["x"])[-1]))
         steps.append(int(record.scalars["steps"]))
     assert ends[1] < 0.2 * ends[0]

@@ -38,8 +38,9 @@ def orbit(  # noqa: PLR0913 - the options of the verb
         Turns of the shaft to follow; by default to the end of `speeds`, else 20.
     duration : float or str, optional
         Time to follow instead [s].
-    initial : pair of float or str, optional
-        Displacement (x, y) that the journal is let go from, at rest, instead of the case's eccentricity [m].
+    initial : pair of float or str, or "balance", optional
+        Displacement (x, y) that the journal is let go from, at rest, instead of the case's eccentricity [m]; "balance"
+        is where the constant load is balanced.
     speeds : sequence of (time, speed), or str, optional
         Speed that changes [s, rad/s], straight lines between; as a text a ramp, ``"0 rpm : 60000 rpm : 2 s"``. Time
         counts from the start of the motion, also in a restart.
@@ -75,7 +76,7 @@ def orbit(  # noqa: PLR0913 - the options of the verb
     course = analysis.Course(
         revolutions=revolutions,
         duration=None if duration is None else parse_quantity(duration, "s"),
-        initial=position_of(initial, "initial"),
+        initial="balance" if initial == "balance" else position_of(initial, "initial"),
         speeds=speeds_of(speeds),
         load=load_of(load),
         tolerance=parse_quantity(tolerance, "1"),

@@ -88,7 +88,9 @@ Duration: TypeAlias = Annotated[
 Initial: TypeAlias = Annotated[
     str | None,
     typer.Option(
-        metavar="X,Y", help='Where the journal is let go, instead of the case\'s eccentricity: "10 um, 0 um".'
+        metavar="X,Y",
+        help='Where the journal is let go, instead of the case\'s eccentricity: "10 um, 0 um", or balance for where '
+        "the constant load is balanced.",
     ),
 ]
 Ramp: TypeAlias = Annotated[

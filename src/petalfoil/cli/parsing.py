@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Literal, TypeVar
 
 from petalfoil import units
 from petalfoil.errors import UnitError, UsageError
@@ -60,8 +60,10 @@ def mass(text: str | None) -> float | None:
     return None if text is None else _named("--mass", units.parse_quantity, text, "kg")
 
 
-def initial(text: str | None) -> tuple[float, float] | None:
-    """Displacement (x, y) [m] of ``--initial``; None where the case decides."""
+def initial(text: str | None) -> tuple[float, float] | Literal["balance"] | None:
+    """Displacement (x, y) [m] of ``--initial``, or "balance"; None where the case decides."""
+    if text is not None and text.strip() == "balance":
+        return "balance"
     return None if text is None else _named("--initial", units.parse_pair, text, "m")
 
 
