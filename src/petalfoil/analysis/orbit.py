@@ -23,6 +23,7 @@ from petalfoil.problem.balance import FilmForce
 from petalfoil.problem.build import build_problem
 from petalfoil.problem.film_rows import FilmState
 from petalfoil.problem.moving import StepProblem
+from petalfoil.problem.sliding import Rubbed, friction_of
 from petalfoil.results.motion import figures_of
 from petalfoil.results.record import Record
 from petalfoil.transient.march import MarchOptions, march
@@ -247,7 +248,7 @@ def system_of(case: Case, schedule: Schedule, load: Load | None) -> System:
     problem = build_problem(case)
     rotor = RotorMotion.of(case, problem.layout.scales, schedule, load)
     still = StepProblem(problem.layout, 0.0, problem.displacement, rotor.clock.bearing_number)
-    return System(still, rotor, FilmForce.of(problem))
+    return System(still, rotor, FilmForce.of(problem), friction_of(case, problem.layout))
 
 
 def at_rest(case: Case, system: System, tau: float, work: Work) -> Instant:
@@ -269,7 +270,8 @@ def released(
         outflow[0] = 0.0  # the content stands in place of this balance
     force = journal_force(problem, x[problem.positive], lam) + rotor.outside(tau)
     change = Moving(-outflow, v, force / rotor.inertia)
-    return Instant(tau, x, lam, closed, Moving(problem.stored(x), e, v), change)
+    rubbed = None if system.friction is None else Rubbed.fresh(system.friction, x)
+    return Instant(tau, x, lam, closed, Moving(problem.stored(x), e, v), change, rubbed)
 
 
 def end_state(last: Instant, system: System) -> dict[str, Array]:

@@ -14,6 +14,7 @@ from petalfoil.analysis.extremes import highest, lowest
 from petalfoil.case import Case
 from petalfoil.physics.forces import node_area, viscous_torque
 from petalfoil.problem.film_rows import FilmState
+from petalfoil.problem.sliding import energy_lost
 from petalfoil.structure.petals import build_mesh, petals_of
 from petalfoil.transient.scheme import System
 from petalfoil.transient.state import Instant
@@ -125,7 +126,7 @@ class Trace:
         """Work of film and loads on rotor and petals since the latest instant, by the trapezium rule [J]."""
         before = self.last
         if before is None:
-            return {"film_step": 0.0, "load_step": 0.0}
+            return {"film_step": 0.0, "load_step": 0.0, "petals_step": 0.0}
         length, _, force, _ = self._units
         layout, system = self.system.problem.layout, self.system
         kept, n = system.problem.positive, layout.n_wall
@@ -133,8 +134,11 @@ class Trace:
         pushed = 0.5 * layout.push @ (before.x[kept] + instant.x[kept] - 2.0)
         loads = 0.5 * (system.rotor.outside(before.tau) + system.rotor.outside(instant.tau))
         moved, bent = instant.e - before.e, instant.x[:n] - before.x[:n]
-        unit = force * length
-        return {"film_step": float(by_film @ moved + pushed @ bent) * unit, "load_step": float(loads @ moved) * unit}
+        unit, friction, worn = force * length, system.friction, 0.0
+        if friction is not None and before.rubbed is not None and instant.rubbed is not None:
+            worn = energy_lost(friction, before.rubbed, instant.rubbed)
+        done = float(by_film @ moved + pushed @ bent)
+        return {"film_step": done * unit, "load_step": float(loads @ moved) * unit, "petals_step": worn * unit}
 
     def column(self, name: str) -> Array:
         """One figure over all steps."""
@@ -148,6 +152,7 @@ class Trace:
         over["elastic_energy"] = elastic - elastic[0]
         over["load_work"] = np.cumsum(self.column("load_step"))
         over["film_work"] = np.cumsum(self.column("film_step"))
+        over["petal_friction_work"] = np.cumsum(self.column("petals_step"))
         for work, torque in (("shaft_work", "friction_torque"), ("rubbing_work", "rubbing_torque")):
             over[work] = cumulative_trapezoid(self.column(torque) * speed, time, initial=0.0)
         return time, over
@@ -158,7 +163,7 @@ class Trace:
         gained = gas - gas[0] + cumulative_trapezoid(outflow, time, initial=0.0)
         _, over = self.histories()
         energy = over["kinetic_energy"] + over["elastic_energy"] - over["kinetic_energy"][0]
-        missing = energy - over["load_work"] - over["film_work"]
+        missing = energy - over["load_work"] - over["film_work"] + over["petal_friction_work"]
         exchanged = np.sum(np.abs(self.column("load_step"))) + np.sum(np.abs(self.column("film_step")))
         return {
             "mass_defect": float(np.max(np.abs(gained)) / gas[0]) if gas[0] else 0.0,

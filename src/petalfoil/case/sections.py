@@ -46,6 +46,20 @@ class Surface(Definition):
     friction_coefficient: Annotated[
         float, Quantity(unit="1", meaning="dry friction coefficient", symbol="mu_f", at_least=0.0, at_most=5.0)
     ] = 0.3
+    petal_friction: Annotated[
+        float,
+        Quantity(
+            unit="1",
+            meaning="dry friction coefficient between petals and on the bushing",
+            symbol="mu_p",
+            at_least=0.0,
+            at_most=5.0,
+        ),
+    ] = 0.0
+    friction_width: Annotated[
+        float,
+        Quantity(unit="m", meaning="slip within which friction builds up", symbol="s_f", above=0.0, at_most=1e-3),
+    ] = 1e-9
 
 
 _Displacement = Annotated[

@@ -1,6 +1,6 @@
 """The coupled system within an implicit step in time: the film stores gas, the wall has no mass.
 
-wall   K w - A (P - 1) - G^T lam = 0                          (C1)
+wall   K w - A (P - 1) + B^T T - G^T lam = 0                  (C1), friction (D2)
 film   net outflow + rate (m(P, H) - m_held) = 0,  m = 2 Lam_t P H dA      (O2)
 gaps   as at rest                                             (C3)
 
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from petalfoil.problem.coupled import CoupledProblem, Linearization
 from petalfoil.problem.film_rows import FilmRows, FilmState
+from petalfoil.problem.sliding import Rubbing, held_together
 
 Array = NDArray[np.float64]
 
@@ -34,11 +35,14 @@ class StepProblem(CoupledProblem):
         One over the implicit part of the step [1 / unit of time].
     held : (n_film,) array
         Mass that the step starts from, explicit part included [1].
+    rubbing : Rubbing or None
+        Friction of the petals in the step.
     """
 
     clock: float = 0.0
     rate: float = 0.0
     held: Array = field(default_factory=lambda: np.zeros(0))
+    rubbing: Rubbing | None = None
 
     def stored(self, x: Array) -> Array:
         """Mass in the cell of each pressure unknown (F5), (n_film,) [1]."""
@@ -48,7 +52,7 @@ class StepProblem(CoupledProblem):
         """Residual, tangent and row sizes at `x`, storage included."""
         rows = self.layout.film_rows
         film = StoringFilm(rows, self.pressure(x), self.film(x, shift), self.bearing_number, self.clock)
-        return StepLine(self.layout, x, film, fine, self.rate, self.held)
+        return StepLine(self.layout, x, film, fine, self.rate, self.held, self.rubbing)
 
 
 @dataclass(frozen=True)
@@ -75,17 +79,29 @@ class StepLine(Linearization):
     film: StoringFilm
     rate: float = 0.0
     held: Array = field(default_factory=lambda: np.zeros(0))
+    rubbing: Rubbing | None = None
+
+    @cached_property
+    def _law(self) -> tuple[Array, Array, Array]:
+        """Slip, friction and its derivative, none where there is no friction."""
+        none = np.zeros(0)
+        return (none, none, none) if self.rubbing is None else self.rubbing.law(self.x)
 
     @cached_property
     def residual(self) -> Array:
         """(C1) without reactions, then (O2); (n,) [1]."""
-        steady = Linearization(self.layout, self.x, self.film, self.fine).residual
-        gained = self.rate * (self.film.mass - self.held)
-        return np.concatenate([steady[: self.layout.n_wall], steady[self.layout.n_wall :] + gained])
+        out, n_wall = super().residual.copy(), self.layout.n_wall
+        out[n_wall:] += self.rate * (self.film.mass - self.held)
+        if self.rubbing is not None:
+            out[:n_wall] += self.rubbing.friction.slip.T @ self._law[1]
+        return out
 
     def matrix(self, theta: Array, rate: float = 0.0) -> sp.csc_array:
         """Tangent plus `G^T diag(theta) G`, (n, n)."""
-        return super().matrix(theta, self.rate + rate)
+        smooth = super().matrix(theta, self.rate + rate)
+        if self.rubbing is None:
+            return smooth
+        return sp.csc_array(smooth + held_together(self.rubbing.friction, self._law[2], len(self.x)))
 
     def by_shift(self, shift: Array, rate: float = 0.0) -> Array:
         """Derivative of the residual by the shift of the gaps, applied to `shift` (m,); (n,)."""

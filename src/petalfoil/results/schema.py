@@ -152,6 +152,7 @@ HISTORIES: dict[str, Variable] = {
     "film_work": Variable(_TIME, "J", "work of the film on rotor and petals", "W_film"),
     "shaft_work": Variable(_TIME, "J", "work of the shaft against film and dry friction", "W_shaft"),
     "rubbing_work": Variable(_TIME, "J", "work of the shaft against dry friction alone", "W_rub"),
+    "petal_friction_work": Variable(_TIME, "J", "energy lost where petals slide on each other and the bushing", "W_p"),
     "frame_pressure": Variable(("frame", *_FILM), "Pa", "absolute pressure of the film", "p"),
     "frame_film": Variable(("frame", *_FILM), "m", "film thickness between journal and petal", "h"),
     "frame_radius": Variable(("frame", *_PETAL), "m", "radius of the deformed mid-surface of the petal", "r"),

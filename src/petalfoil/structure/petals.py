@@ -9,6 +9,7 @@ from petalfoil.case import Case, Edges, Mount, Package, Petals
 from petalfoil.mesh.package import PackageMesh, package_mesh
 from petalfoil.mesh.strips import exposed_strips
 from petalfoil.physics.contact import package_contacts
+from petalfoil.physics.friction import petal_slip
 from petalfoil.physics.shell import PetalShell
 from petalfoil.structure.axis import axial_grid
 from petalfoil.structure.wall import Elasticity, Wall
@@ -62,6 +63,7 @@ def build(case: Case) -> Wall:
     free = slice(mesh.n_z, None)  # the root row does not move
     shell, every = build_shell(case, mesh), sp.eye_array(mesh.count)
     motions, support = shell.free_motions()
+    slip, share = petal_slip(mesh, 0.5 * petals.total_thickness / r_m, film.unknown.size)
     load_area = r_m * film.arc_weight[:, None] * mesh.axial.weight
     rest = r0[mesh.exposed] - 0.5 * petals.total_thickness - case.bearing.journal_radius
     return Wall(
@@ -75,4 +77,6 @@ def build(case: Case) -> Wall:
         node_area=r_m * 2.0 * np.pi / mesh.count / mesh.cells * float(mesh.axial.weight.max()),
         free_motions=sp.csr_array(sp.kron(every, motions[free], format="csr")),
         support=sp.csr_array(sp.kron(every, support[:, free], format="csr")),
+        slip=slip,
+        share=share,
     )

@@ -30,4 +30,6 @@ def build(case: Case) -> Wall:
         node_area=case.bearing.journal_radius * float(np.diff(film.phi)[0]) * float(axial.weight.max()),
         free_motions=sp.csr_array((0, 0)),
         support=sp.csr_array((0, 0)),
+        slip=sp.csr_array((0, 0)),
+        share=sp.csr_array((0, theta.size)),
     )

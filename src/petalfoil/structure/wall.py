@@ -81,6 +81,8 @@ class Wall:
     support : (k, n) sparse
         Force of the supports in those motions from the deflections [N/m]: loads `f` are balanced when
         `free_motions^T f + support W = 0`.
+    slip, share : (k, n), (k, m) sparse
+        How far petals slide over bushing and neighbours by the deflections, and what presses them there (D1) [1].
     """
 
     name: str
@@ -93,6 +95,8 @@ class Wall:
     node_area: float
     free_motions: sp.csr_array
     support: sp.csr_array
+    slip: sp.csr_array
+    share: sp.csr_array
 
     @property
     def n_unknown(self) -> int:

@@ -13,8 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.physics.friction import Friction
 from petalfoil.problem.balance import FilmForce
 from petalfoil.problem.moving import StepProblem
+from petalfoil.problem.sliding import Rubbing
 from petalfoil.solvers.linear import LinearSolver
 from petalfoil.transient.rotor import RotorMotion
 from petalfoil.transient.stage import Solved, Stage, StageOptions, freely, solve_stage
@@ -40,9 +42,13 @@ class System:
     problem: StepProblem
     rotor: RotorMotion
     film: FilmForce
+    friction: Friction | None = None
 
-    def stage(self, base: Moving, tau: float, step: float) -> Stage:
-        """The implicit stage at `tau` from `base`."""
+    def stage(self, base: Moving, tau: float, step: float, begin: Instant) -> Stage:
+        """The implicit stage at `tau` from `base` in a step from `begin`; friction goes on from there."""
+        rubbing = None
+        if self.friction is not None and begin.rubbed is not None:
+            rubbing = Rubbing(self.friction, begin.rubbed, self.friction.normal(begin.lam))
         problem = StepProblem(
             self.problem.layout,
             self.rotor.bearing_number(tau),
@@ -50,6 +56,7 @@ class System:
             self.problem.clock,
             1.0 / (IMPLICIT * step),
             base.mass,
+            rubbing,
         )
         return Stage(problem, base, self.rotor.inertia, self.rotor.outside(tau), self.film)
 
@@ -97,9 +104,9 @@ def advance(
 ) -> tuple[Instant, Solved] | None:
     """The stage at a share of the step from `base`; None if it has no answer."""
     part, step = share
-    begin = path[-1].tau if part == GAMMA else path[-2].tau
-    tau = begin + part * step
-    stage = system.stage(base, tau, step)
+    begin = path[-1] if part == GAMMA else path[-2]
+    tau = begin.tau + part * step
+    stage = system.stage(base, tau, step, begin)
     usable = tangent if tangent is not None and abs(tangent.rate / stage.rate - 1.0) < 1e-9 else None
     latest = path[-1]
     solved = None
@@ -110,7 +117,7 @@ def advance(
     if solved is None:
         return None
     change = solved.moving.minus(base, stage.rate)
-    return Instant(tau, solved.x, solved.lam, solved.closed, solved.moving, change), solved
+    return Instant(tau, solved.x, solved.lam, solved.closed, solved.moving, change, solved.rubbed), solved
 
 
 def guesses(path: list[Instant], tau: float) -> list[tuple[Array, Array]]:
@@ -146,7 +153,7 @@ def estimate(system: System, instants: tuple[Instant, Instant, Instant], step: f
     residual = np.concatenate([np.zeros(n_wall), rate * wrong.mass])
     base = Moving(wrong.mass, -wrong.e, -wrong.v)
     bare = Stage(
-        system.stage(base, instants[2].tau, step).problem,
+        system.stage(base, instants[2].tau, step, instants[0]).problem,
         base,
         system.rotor.inertia,
         np.zeros(2),

@@ -11,13 +11,14 @@ corrections, stages and steps as it contracts.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.problem.balance import FilmForce
 from petalfoil.problem.moving import StepProblem
+from petalfoil.problem.sliding import Rubbed
 from petalfoil.solvers.active_set import ActiveOptions, revise, searched
 from petalfoil.solvers.active_set import State as SetState
 from petalfoil.solvers.complementarity import solve_lcp
@@ -31,6 +32,12 @@ Mask = NDArray[np.bool_]
 
 SIGNS = ActiveOptions()
 """How far gaps and reactions may miss zero."""
+
+RENEWALS, RENEWALS_RUBBING = 3, 20
+"""Tangents with one contact set; where petals stick and slip, the tangent changes with them."""
+
+CYCLING = 2
+"""Tangents after which sticking and slipping may come back to where they were: secants take the derivatives' place."""
 
 PATIENCE = 2
 """Times that all gaps of wrong sign change at once before the set is searched for."""
@@ -46,6 +53,8 @@ class StageOptions:
     """Most corrections with one contact set."""
     slow: float = 0.2
     """Contraction past which the tangent is renewed."""
+    slow_rubbing: float = 0.6
+    """The same with friction, whose limits follow the reactions a correction late."""
     sets: int = 8
     """Most contact sets tried in a stage."""
 
@@ -85,6 +94,27 @@ class Stage:
         force: Array = self.film.at(P) + reaction + self.outside - self.inertia * self.rate**2 * reached
         return force
 
+    def pressed(self, lam: Array) -> Stage:
+        """The same stage with friction limited by the reactions `lam` (m,)."""
+        rubbing = self.problem.rubbing
+        if rubbing is None:
+            return self
+        normal = replace(rubbing, normal=rubbing.friction.normal(lam))
+        return replace(self, problem=replace(self.problem, rubbing=normal))
+
+    def between(self, state: SetState, x: Array) -> Stage:
+        """The same with secants of the friction between a state and the iterate `x` before it."""
+        pressed = self.pressed(state.lam)
+        rubbing = pressed.problem.rubbing
+        if rubbing is None:
+            return self
+        return replace(pressed, problem=replace(pressed.problem, rubbing=rubbing.between(state.x, x)))
+
+    def rubbed(self, state: SetState) -> Rubbed | None:
+        """Slip and friction at a state."""
+        pressed = self.pressed(state.lam).problem.rubbing
+        return None if pressed is None else pressed.after(state.x)
+
     def moving(self, stored: Array, e: Array) -> Moving:
         """Gas, position and velocity of a state of this stage."""
         return Moving(stored, e, self.rate * (e - self.base.e))
@@ -100,6 +130,7 @@ class Solved:
     moving: Moving
     residual: float
     tangent: Tangent
+    rubbed: Rubbed | None
 
 
 def solve_stage(
@@ -116,7 +147,8 @@ def solve_stage(
         wanted = revise(stage.problem, state, SIGNS)
         if done and np.array_equal(wanted, state.closed):
             stored = stage.problem.at(displacement=e).stored(state.x)
-            return Solved(state.x, state.lam, state.closed, stage.moving(stored, e), state.residual, tangent)
+            rubbed = stage.rubbed(state)
+            return Solved(state.x, state.lam, state.closed, stage.moving(stored, e), state.residual, tangent, rubbed)
         doubt |= wanted != state.closed
         x, closed = state.x, wanted
         if count >= PATIENCE:
@@ -137,16 +169,18 @@ def with_set(
     if tangent is not None and not tangent.serves(closed):
         tangent = tangent.exchanged(closed)
     usable = tangent is not None
-    for renewal in range(3):
+    for renewal in range(RENEWALS if stage.problem.rubbing is None else RENEWALS_RUBBING):
         if not usable or tangent is None:
             tangent = tangent_of(stage.problem.at(displacement=e), x, closed, solver)
             if tangent is None:
                 return None
-        reached = contract(stage, (x, e), tangent, options)
+        once = stage.problem.rubbing is not None and renewal >= CYCLING
+        reached = contract(stage, (x, e), tangent, replace(options, corrections=1) if once else options)
         if reached is not None:
             state, e, done = reached
             if done or np.any(state.gaps < -SIGNS.sign):
                 return state, e, tangent, done
+            stage = stage.between(state, x) if renewal >= CYCLING else stage.pressed(state.lam)
             x = state.x
         elif renewal and not usable:
             return None
@@ -159,21 +193,23 @@ def contract(
 ) -> tuple[SetState, Array, bool] | None:
     """Corrections with one tangent: state, displacement, and whether they are an answer; None if they diverge."""
     (x, e), last, push = start, np.inf, np.zeros(len(tangent.stops))
+    slow = options.slow if stage.problem.rubbing is None else options.slow_rubbing
     for _ in range(options.corrections):
         state = evaluate(stage, (x, e), push, tangent)
         if state is None:
             return None
+        stage = stage.pressed(state.lam)
         found = eliminated(stage, state, tangent, e)
         if found is None:
             return None
         change, de, push = found
         size, reach = measure(change, de), open_share(stage, (state.x, e), (change, de))
         if size > 2.0 * last:
-            return None
+            return None if stage.problem.rubbing is None else (state, e, False)
         slope = size / last if np.isfinite(last) else options.slow
         x, e = state.x + reach * change, e + reach * de
         done = size * min(1.0, slope / max(1.0 - slope, 0.1)) <= options.accuracy and reach == 1.0
-        if done or reach < 1.0 or (np.isfinite(last) and slope > options.slow):
+        if done or reach < 1.0 or (np.isfinite(last) and slope > slow):
             break
         last = size
     end = evaluate(stage, (x, e), push, tangent)

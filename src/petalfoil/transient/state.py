@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.problem.sliding import Rubbed
+
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
@@ -59,6 +61,8 @@ class Instant:
         Gas, position, velocity.
     change : Moving
         Their rates of change.
+    rubbed : Rubbed or None
+        Slip and friction of the petals.
     """
 
     tau: float
@@ -67,6 +71,7 @@ class Instant:
     closed: Mask
     moving: Moving
     change: Moving
+    rubbed: Rubbed | None = None
 
     @property
     def e(self) -> Array:
