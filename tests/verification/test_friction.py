@@ -8,11 +8,14 @@ import scipy.sparse as sp
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
+from petalfoil.analysis import static
 from petalfoil.equilibria.sliding import Slid, slide
+from petalfoil.errors import UsageError
 from petalfoil.physics.friction import Friction, halves, slopes
 from petalfoil.problem.sliding import Rubbed
 from petalfoil.solvers.active_set import ActiveOptions, active_set
 from petalfoil.solvers.linear import LinearSolver
+from tests.cases import case
 from tests.verification.shell_helpers import (
     UNIT,
     ElasticProblem,
@@ -163,7 +166,7 @@ def leaf_loop(cells: int, mu: float, width: float = 1e-5, steps: int = 8) -> tup
 
 
 def test_loop_of_two_leaves() -> None:
-    """A parallelogram: `w = (F -+ mu p delta) l^3 / (6 D)`, its area `2 mu p delta (2 F - 2 mu p delta) l^3 / (6 D)` (D6)."""
+    """A parallelogram (D6): where the leaves slip, `w = (F -+ mu p delta) l^3 / (6 D)`."""
     mu = 0.5
     limit = mu * PRESS * 2.0 * ARM
     exact = 2.0 * limit * (2.0 * TIP - 2.0 * limit) / 6.0
@@ -183,3 +186,49 @@ def test_width_of_the_stick_converges() -> None:
     away = [abs(loss / losses[-1] - 1.0) for loss in losses[:-1]]
     assert away[0] > away[1] > away[2]
     assert away[1] / away[2] == pytest.approx(2.0, rel=0.2)
+
+
+# ------------------------------------------------------------------------------------------ a package
+
+
+def loop_of(mu: float, count: int) -> tuple[Array, Array, float]:
+    """Load and displacement along the closed cycle of eight petals on 16 cells a pitch, and what it loses."""
+    rubbing = case("paper_n8", **{"model.cells_per_pitch": 16, "surface.petal_friction": mu})
+    records = list(static.iterate(rubbing, np.linspace(0.0, 100e-6, count), loop=True))
+    assert all(record.converged for record in records)
+    cycle = [record.scalars for record in records[count - 1 :]]
+    load, down = (np.array([float(s[name]) for s in cycle]) for name in ("force_y", "eccentricity_y"))
+    return load, -down, float(cycle[-1]["petal_friction_work"]) - float(cycle[0]["petal_friction_work"])
+
+
+def test_energy_lost_by_a_package_is_the_area_of_its_loop() -> None:
+    """Work of the journal in a closed cycle, by the trapezium rule, comes to the energy lost as the way is refined."""
+    away = []
+    for count in (5, 17):
+        load, down, lost = loop_of(0.1, count)
+        assert load[-1] == pytest.approx(load[0], rel=1e-3)  # the cycle is closed
+        away.append(abs(float(np.trapezoid(load, down)) / lost - 1.0))
+    assert away[1] < 0.5 * away[0]
+    assert away[1] < 0.15
+
+
+def test_loading_carries_more_than_unloading() -> None:
+    load, _, _ = loop_of(0.1, 5)
+    up, down = load[4:], load[4::-1]
+    assert np.all(up[1:-1] > down[1:-1])
+
+
+def test_little_friction_is_none() -> None:
+    smooth = case("paper_n8", **{"model.cells_per_pitch": 16})
+    without = [float(r.scalars["force_y"]) for r in static.iterate(smooth, (0.0, 50e-6))]
+    rubbing = smooth.replace(**{"surface.petal_friction": 1e-4})
+    with_it = [float(r.scalars["force_y"]) for r in static.iterate(rubbing, (0.0, 50e-6))]
+    assert with_it[1] == pytest.approx(without[1], rel=1e-3)
+    assert with_it[1] > without[1]
+
+
+def test_a_loop_without_friction_is_refused() -> None:
+    with pytest.raises(UsageError, match="petal_friction"):
+        static.iterate(case("paper_n8"), (0.0, 50e-6), loop=True)
+    with pytest.raises(UsageError, match="two displacements"):
+        static.iterate(case("paper_n8", **{"surface.petal_friction": 0.1}), (0.0,), loop=True)

@@ -9,7 +9,8 @@ import numpy as np
 
 from petalfoil.analysis.classic_method import is_classic, rest_by_classic
 from petalfoil.analysis.fields import coordinates, petal_fields
-from petalfoil.analysis.figures import effort, failed_record, forces, given
+from petalfoil.analysis.figures import Named, effort, failed_record, forces, given
+from petalfoil.analysis.hysteresis import follow, legs
 from petalfoil.analysis.load_curve import points
 from petalfoil.analysis.session import Clock, Progress, one_thread, telling_work
 from petalfoil.case import Case
@@ -27,20 +28,43 @@ def iterate(
     eccentricities: Sequence[float] = (0.0,),
     *,
     direction: float = -math.pi / 2.0,
+    loop: bool = False,
     progress: Progress | None = None,
 ) -> Iterator[Record]:
     """Yield the package at rest for each displacement [m] along `direction` [rad].
 
+    With friction between the petals each state comes from the one before, the first from the assembled package; `loop`
+    goes back and there again, so that a closed cycle stands between the ends of the first and of the third leg.
+
     Raises
     ------
     UsageError
-        The case has no petals.
+        The case has no petals; or a loop is asked for where the petals have no friction, or of a single point.
     PackageError
         A displacement leaves the package no room.
     """
     if case.petals is None:
         raise UsageError("a plain bearing has no package: `static` needs a case with [petals]")
-    return _records(points(case, eccentricities, direction, 0.0), progress)
+    cases = points(case, eccentricities, direction, 0.0)
+    if case.surface.petal_friction > 0.0 and not is_classic(case):
+        if loop and len(cases) < 2:
+            raise UsageError("a loop needs at least two displacements")
+        return _with_friction(legs(cases, loop), progress)
+    if loop:
+        raise UsageError("a loop needs friction: give surface.petal_friction, and the default method")
+    return _records(cases, progress)
+
+
+def _with_friction(way: list[tuple[str, Case]], progress: Progress | None) -> Iterator[Record]:
+    for number, point in enumerate(follow(way)):
+        if progress is not None:
+            progress(number / len(way), f"static: {point.leg}")
+        extra: Named = {"leg": point.leg, "petal_friction_work": point.lost}
+        if point.answer is None:
+            status = "not converged: the package did not settle on the way"
+            yield failed_record("static", point.case, status, point.work, {"leg": point.leg})
+        else:
+            yield static_record(point.case, point.answer, point.work, point.seconds, extra)
 
 
 def _records(cases: list[Case], progress: Progress | None) -> Iterator[Record]:
@@ -69,7 +93,7 @@ def at_rest(case: Case, problem: CoupledProblem, work: Work) -> Answer | None:
         return None
 
 
-def static_record(case: Case, answer: Answer, work: Work, seconds: float) -> Record:
+def static_record(case: Case, answer: Answer, work: Work, seconds: float, extra: Named | None = None) -> Record:
     """Reactions of the package; there is no film to speak of."""
     carried = forces(case, answer)
     torque = case.surface.friction_coefficient * case.bearing.journal_radius * float(carried["contact_total"])
@@ -88,6 +112,7 @@ def static_record(case: Case, answer: Answer, work: Work, seconds: float) -> Rec
         "status": "converged",
         "wall_time": seconds,
         **effort(work),
+        **(extra or {}),
     }
     return Record(
         analysis="static",

@@ -163,9 +163,10 @@ def static(
     eccentricities: Sequence[Number] | str = (0.0,),
     *,
     direction: Number = DOWNWARD,
+    loop: bool = False,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Solve the package at rest: preload, static load characteristic, starting torque.
+    """Solve the package at rest: preload, static load characteristic, starting torque, hysteresis.
 
     Parameters
     ----------
@@ -175,6 +176,8 @@ def static(
         Displacements along `direction` [m]; as a text also a range, ``"0 um : 280 um : 15"``.
     direction : float or str
         Direction of the displacements, from x toward y [rad].
+    loop : bool
+        With friction between the petals: there, back and there again; `petal_friction_work` grows by the energy lost.
     progress : callable, optional
         Called with the share done (0 to 1) and a text.
 
@@ -187,7 +190,7 @@ def static(
     from petalfoil.results.dataset import curve_dataset
 
     distances, angle = distances_of(eccentricities), parse_quantity(direction, "rad")
-    records = analysis.iterate(checked(case), distances, direction=angle, progress=progress)
+    records = analysis.iterate(checked(case), distances, direction=angle, loop=loop, progress=progress)
     return curve_dataset(list(records), analysis="static")
 
 

@@ -93,6 +93,9 @@ Initial: TypeAlias = Annotated[
         "the constant load is balanced.",
     ),
 ]
+Loop: TypeAlias = Annotated[
+    bool, typer.Option("--loop", help="There, back and there again: the hysteresis of petals with friction.")
+]
 Ramp: TypeAlias = Annotated[
     str | None,
     typer.Option(

@@ -43,12 +43,15 @@ class Motion:
         Gaps that carry load.
     ties : Ties
         These gaps, eliminated.
+    held : (n, n) sparse or None
+        What friction between petals adds to the tangent, real where they stick (E11).
     """
 
     problem: CoupledProblem
     line: Linearization
     closed: NDArray[np.bool_]
     ties: Ties
+    held: sp.csc_array | None = None
 
     @classmethod
     def about(cls, answer: Answer) -> Motion:
@@ -57,14 +60,19 @@ class Motion:
         return cls(problem, problem.linearize(answer.x), closed, tie(problem.G, closed))
 
     @cached_property
-    def steady(self) -> sp.csc_array:
-        """`J`."""
+    def smooth(self) -> sp.csc_array:
+        """`J` without friction."""
         return self.line.matrix(np.zeros(len(self.closed)))
+
+    @cached_property
+    def steady(self) -> sp.csc_array:
+        """`J`, friction included."""
+        return self.smooth if self.held is None else sp.csc_array(self.smooth + self.held)
 
     @cached_property
     def stored(self) -> sp.csc_array:
         """`M`, the derivative of the stored mass."""
-        return self.line.matrix(np.zeros(len(self.closed)), 1.0) - self.steady
+        return self.line.matrix(np.zeros(len(self.closed)), 1.0) - self.smooth
 
     def respond(self, nu: float, solver: LinearSolver) -> Response:
         """Factorise the response at whirl ratio `nu`; one factorisation."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,14 +15,14 @@ from petalfoil.solvers.linear import LinearSolver, SingularMatrixError
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-AGREE = 1e-10
+AGREE = 1e-9
 """Change of the reactions, over the largest, below which the friction's limits agree with them."""
 
-ROUNDS = 60
-"""Most rounds of friction and reactions; each takes a tenth or less of the difference away."""
+STEPS = 60
+"""Most steps of Newton with one contact set: gaps stick or slip anew on the way, and friction follows the reactions."""
 
-STEPS = 40
-"""Most steps of Newton in which gaps stick or slip anew."""
+CYCLING = 2
+"""Steps after which sticking and slipping may come back to where they were: secants take the derivatives' place."""
 
 SETS = 30
 """Most contact sets of a round."""
@@ -58,54 +58,46 @@ def slide(
 ) -> Slid | None:
     """Equilibrium from the state `before` (unknowns, reactions, closed gaps, friction); None if not found."""
     x, lam, closed, rubbed = before
-    normal, scale = friction.normal(lam), 0.0
-    for _ in range(ROUNDS):
-        sliding = SlidingProblem(problem, Rubbing(friction, rubbed, normal))
-        found = in_contact(sliding, x, closed, solver)
+    rubbing, doubt = Rubbing(friction, rubbed, friction.normal(lam)), np.zeros(len(closed), dtype=bool)
+    for count in range(SETS):
+        found = settled(problem, rubbing, (x, closed), solver)
         if found is None:
             return None
-        pushed = friction.normal(found.lam)
-        scale = max(scale, float(np.max(np.abs(pushed), initial=0.0)))
-        away = float(np.max(np.abs(pushed - normal), initial=0.0))
-        x, closed, normal = found.x, found.closed, pushed
-        if away <= AGREE * max(scale, 1e-300):
-            after = sliding.rubbing.after(found.x)
-            energy = energy_lost(friction, rubbed, after)
-            return Slid(found.x, found.lam, found.closed, found.residual, after, energy)
-    return None
-
-
-def in_contact(problem: SlidingProblem, x: Array, closed: Mask, solver: LinearSolver) -> State | None:
-    """The equilibrium at given limits of friction, its contact set corrected only where forces balance."""
-    doubt = np.zeros(len(closed), dtype=bool)
-    for count in range(SETS):
-        state = settled(problem, x, closed, solver)
-        if state is None:
-            return None
-        wanted = revise(problem, state, SIGNS)
+        state, rubbing = found
+        sliding = SlidingProblem(problem, rubbing)
+        wanted = revise(sliding, state, SIGNS)
         if np.array_equal(wanted, closed):
-            return state
+            after = rubbing.after(state.x)
+            return Slid(state.x, state.lam, closed, state.residual, after, energy_lost(friction, rubbed, after))
         doubt |= wanted != closed
         x, closed = state.x, wanted
-        sought = searched(problem, state, doubt, solver) if count else None
+        sought = searched(sliding, state, doubt, solver) if count else None
         if isinstance(sought, State):
             x, closed = sought.x, sought.closed
     return None
 
 
-def settled(problem: SlidingProblem, x: Array, closed: Mask, solver: LinearSolver) -> State | None:
-    """Newton with the gaps `closed`: which gaps stick and which slip settles on the way; None if it does not."""
-    state = evaluate(problem, x, closed)
-    for _ in range(STEPS):
+def settled(
+    problem: Gapped, rubbing: Rubbing, start: tuple[Array, Mask], solver: LinearSolver
+) -> tuple[State, Rubbing] | None:
+    """Newton with the gaps of `start` closed until forces balance and friction agrees with them; None if it fails."""
+    (x, closed), friction = start, rubbing.friction
+    state, last = evaluate(SlidingProblem(problem, rubbing), x, closed), x
+    for step in range(STEPS):
         if isinstance(state, Outcome):
             return None
-        if state.residual <= SIGNS.tolerance:
-            return state
+        normal = friction.normal(state.lam)
+        away, most = (float(np.max(np.abs(part), initial=0.0)) for part in (normal - rubbing.normal, normal))
+        if state.residual <= SIGNS.tolerance and away <= AGREE * most:
+            return state, rubbing
+        rubbing = replace(rubbing, normal=normal)
+        leading = rubbing.between(state.x, last) if step >= CYCLING else rubbing
+        line = SlidingProblem(problem, leading).linearize(state.x)
         try:
-            factor = solver.factor(state.ties.reduce(state.line.matrix(np.zeros(len(closed)))))
+            factor = solver.factor(state.ties.reduce(line.matrix(np.zeros(len(closed)))))
         except SingularMatrixError:
             return None
-        state = evaluate(
-            problem, state.x + state.ties.spread(factor.solve(-state.ties.gather(state.line.residual))), closed
-        )
+        change = state.ties.spread(factor.solve(-state.ties.gather(line.residual)))
+        last = state.x
+        state = evaluate(SlidingProblem(problem, rubbing), state.x + change, closed)
     return None

@@ -8,8 +8,9 @@ two petals in contact slide over each other by the sum, a petal slides over the 
     force on the petals = -B^T T,  energy lost = int T ds
 
 Coulomb's law where the width `s_f` of the stick goes to zero: the slip in which friction builds up where the contact
-presses with `N_1`, with ambient pressure. `s_0` and `T_0` are slip and force before the step. Slip is taken between nodes (at nodes, by central differences, forces alternate from node to node); a node's reaction presses
-on the cells on both sides of it in halves, the last one's on its only one: `N`.
+presses with `N_1`, with ambient pressure. `s_0` and `T_0` are slip and force before the step. Slip is taken between
+nodes (at nodes, by central differences, forces alternate from node to node); a node's reaction presses on the cells on
+both sides of it in halves, the last one's on its only one: `N`.
 """
 
 from __future__ import annotations
@@ -96,3 +97,25 @@ def halves(n: int) -> sp.csr_array:
     share = sp.lil_array(sp.diags_array([0.5, 0.5], offsets=[0, 1], shape=(n - 1, n)))
     share[0, 0], share[n - 2, n - 1] = 1.0, 1.0
     return sp.csr_array(share)
+
+
+def equivalent_stiffness(stiffness: Array, limit: Array, amplitude: Array) -> NDArray[np.complex128]:
+    """Fundamental harmonic of the friction over that of the slip (E10), (k,).
+
+    Its imaginary part times `pi A^2` is the area of the loop, `4 mu N (A - mu N / k)`.
+
+    Parameters
+    ----------
+    stiffness : (k,) array
+        `k`, of the stick.
+    limit : (k,) array
+        `mu N`, constant over the cycle.
+    amplitude : (k,) array
+        `A`, of the slip.
+    """
+    slid = stiffness * amplitude > limit
+    share = np.divide(limit, stiffness * amplitude, out=np.ones_like(limit), where=slid)  # of the slip that springs
+    turn = np.arccos(1.0 - 2.0 * share)
+    real = (turn - 0.5 * np.sin(2.0 * turn)) / np.pi
+    equivalent: NDArray[np.complex128] = stiffness * (real + 4.0j / np.pi * share * (1.0 - share))
+    return equivalent

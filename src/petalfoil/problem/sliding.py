@@ -84,6 +84,10 @@ def energy_lost(friction: Friction, before: Rubbed, after: Rubbed) -> float:
     return float(0.5 * (before.limit + after.limit) @ for_good)
 
 
+ROUNDING = 1e-11
+"""Slips that differ by less do not tell a slope."""
+
+
 @dataclass(frozen=True)
 class Rubbing:
     """Friction within a step.
@@ -116,7 +120,7 @@ class Rubbing:
         """The same with secants between the iterates `x` and `other`."""
         (slip, force, stiffness), (slip_1, force_1, _) = replace(self, secant=None).law(x), self.law(other)
         apart = slip - slip_1
-        moved = np.abs(apart) > 1e-14
+        moved = np.abs(apart) > ROUNDING * (1.0 + np.abs(slip))
         slope = np.divide(force - force_1, apart, out=stiffness.copy(), where=moved)
         return replace(self, secant=np.clip(slope, 0.0, self.friction.stiffness))
 

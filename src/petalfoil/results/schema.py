@@ -173,7 +173,9 @@ SCALARS: dict[str, Variable] = {
     "eccentricity_y": _given("m", "displacement of the journal's centre along y", "e_y"),
     "load_x": _given("N", "load on the journal along x", "load_x"),
     "load_y": _given("N", "load on the journal along y", "load_y"),
-    "leg": Variable((), "", "up from rest or down to it", "leg", Kind.STR, Role.GIVEN),
+    "leg": Variable(
+        (), "", "part of the way: up or down, loading, unloading or reloading", "leg", Kind.STR, Role.GIVEN
+    ),
     "share": _given("1", "contact share below which the journal floats", "s_f"),
     "rotor_mass": _given("kg", "mass of a rigid rotor on this bearing", "m"),
     "force_x": _answer("N", "force of film and contact on the journal along x", "F_x"),
@@ -196,6 +198,7 @@ SCALARS: dict[str, Variable] = {
     "knudsen_number": _answer("1", "mean free path at ambient pressure over the smallest film", "Kn"),
     "max_pressure": _answer("Pa", "largest absolute pressure of the film", "p_max"),
     "max_pressure_angle": _answer("rad", "bushing angle of the largest pressure", "theta(p_max)"),
+    "petal_friction_work": _answer("J", "energy lost where petals slide on each other and the bushing", "W_p"),
     "friction_torque": _answer("N m", "friction torque on the journal, film and contact", "M"),
     "starting_torque": _answer("N m", "torque of dry friction at rest", "M_0"),
     "power_loss": _answer("W", "friction torque times angular velocity", "M omega"),
