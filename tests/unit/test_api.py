@@ -57,7 +57,7 @@ def test_curve(called: list[Any]) -> None:
 
 def test_static(called: list[Any]) -> None:
     assert petalfoil.static(PLAIN) == (["record"], "static")
-    assert called.pop() == ((PLAIN, [0.0]), {"direction": -math.pi / 2, "progress": None})
+    assert called.pop() == ((PLAIN, [0.0]), {"direction": -math.pi / 2, "loop": False, "progress": None})
 
 
 def test_check(called: list[Any]) -> None:

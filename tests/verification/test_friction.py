@@ -86,7 +86,7 @@ def cycle_of_tip(cells: int, mu: float, steps: int = 16) -> float:
 
 
 def exact_cycle_of_tip(mu: float) -> float:
-    """Area of the loop of tip moment over tip turn (D5): slip, stick, slip back, stick."""
+    """Area of the loop of tip moment over tip turn (D4): slip, stick, slip back, stick."""
     c = mu * ARM
     reaction = {sign: (lambda q, s=sign: 3.0 * (q / 8.0 - GAP) / (1.0 - s * 1.5 * c)) for sign in (1.0, -1.0)}
 
@@ -166,7 +166,7 @@ def leaf_loop(cells: int, mu: float, width: float = 1e-5, steps: int = 8) -> tup
 
 
 def test_loop_of_two_leaves() -> None:
-    """A parallelogram (D6): where the leaves slip, `w = (F -+ mu p delta) l^3 / (6 D)`."""
+    """A parallelogram (D5): where the leaves slip, `w = (F -+ mu p delta) l^3 / (6 D)`."""
     mu = 0.5
     limit = mu * PRESS * 2.0 * ARM
     exact = 2.0 * limit * (2.0 * TIP - 2.0 * limit) / 6.0

@@ -34,7 +34,7 @@ def at(bearing: Case, load: float = 0.0) -> tuple[Motion, Work]:
     """Small motions under a load along -y, or at the case's eccentricity."""
     work = Work()
     answer, _ = operating_point(bearing, (0.0, -load) if load else None, work)
-    return elastic(answer, work), work
+    return elastic(bearing, answer, work), work
 
 
 def modes_of(bearing: Case, masses: Sequence[float], load: float = 0.0) -> list[list[Mode]]:

@@ -64,7 +64,7 @@ def run(
         raise UsageError("the mass of the rotor must be positive")
     with one_thread():
         answer, known = operating_point(case, load, work)
-        motion = elastic(answer, work)
+        motion = elastic(case, answer, work)
         scanned = scan(motion, work)
         whirl = neutral_whirl(motion, case.operation.speed, work, scanned)
         rotor = rotor_mass(case, load, mass)
@@ -135,7 +135,7 @@ def _records(cases: list[Case], loads: list[Load], progress: Progress | None) ->
             try:
                 with one_thread():
                     answer = line.at(case.operation.speed).answer
-                    whirl = neutral_whirl(elastic(answer, work), case.operation.speed, work)
+                    whirl = neutral_whirl(elastic(case, answer, work), case.operation.speed, work)
                     known = about(leading_eigenvalue(answer, work), case, (1, answer.way))
             except ConvergenceError as failure:
                 line.known = None
@@ -205,14 +205,14 @@ def margins(case: Case, load: Load | None, mass: float, work: Work) -> Callable[
 
         def in_place(speed: float) -> float:
             answer, _ = operating_point(positioned(case, speed, None), None, work)
-            return margin(neutral_whirl(elastic(answer, work), speed, work), mass)
+            return margin(neutral_whirl(elastic(case, answer, work), speed, work), mass)
 
         return in_place
     line = SpeedLine(case, loaded(case, load), work)
 
     def under_load(speed: float) -> float:
         answer = line.at(speed).answer
-        return margin(neutral_whirl(elastic(answer, work), speed, work), mass)
+        return margin(neutral_whirl(elastic(case, answer, work), speed, work), mass)
 
     return under_load
 

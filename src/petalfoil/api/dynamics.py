@@ -13,13 +13,14 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def coefficients(
+def coefficients(  # noqa: PLR0913 - the options of the verb
     case: Case,
     frequencies: Sequence[Number] | Number | None = None,
     *,
     load: Sequence[Number] | Number | None = None,
     speed: Number | None = None,
     speeds: Sequence[Number] | str | None = None,
+    amplitude: Number | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Find stiffness and damping at whirl frequencies, at the case's eccentricity or under a load.
@@ -36,6 +37,9 @@ def coefficients(
         Angular speed instead of the case's [rad/s].
     speeds : sequence of float or str, or str, optional
         Several speeds instead of one [rad/s]; as a text also a range.
+    amplitude : float or str, optional
+        Amplitude of the whirl [m] at which petals with friction rub: stiffness and damping of equal force and loss in a
+        cycle, displaced along one axis at a time. Without it they stick, as in the smallest motions.
     progress : callable, optional
         Called with the share done (0 to 1) and a text.
 
@@ -46,6 +50,8 @@ def coefficients(
 
     Raises
     ------
+    UsageError
+        An amplitude where no petals rub (`surface.petal_friction` is 0) or that is not positive, a negative frequency.
     ConvergenceError
         The operating point was not found, or it is pressed solid.
     """
@@ -54,12 +60,14 @@ def coefficients(
 
     whirl = None if frequencies is None else values_of("frequencies", frequencies, "rad/s")
     force, omega = load_of(load), speed_of(speed)
+    size = None if amplitude is None else parse_quantity(amplitude, "m")
     if speeds is None:
-        return to_dataset(analysis.run(checked(case), whirl, load=force, speed=omega, progress=progress))
+        return to_dataset(
+            analysis.run(checked(case), whirl, load=force, speed=omega, amplitude=size, progress=progress)
+        )
     turn = values_of("speeds", speeds, "rad/s")
-    return curve_dataset(
-        list(analysis.iterate(checked(case), turn, whirl, load=force, progress=progress)), analysis="coefficients"
-    )
+    records = analysis.iterate(checked(case), turn, whirl, load=force, amplitude=size, progress=progress)
+    return curve_dataset(list(records), analysis="coefficients")
 
 
 def stability(  # noqa: PLR0913 - the options of the verb
@@ -73,6 +81,8 @@ def stability(  # noqa: PLR0913 - the options of the verb
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Find the smallest mass of a rigid rotor that whirls, its threshold speed and its damped natural frequencies.
+
+    Petals with friction (`surface.petal_friction`) stick, as in the smallest motions.
 
     Parameters
     ----------

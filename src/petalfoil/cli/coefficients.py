@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from petalfoil.cli import parsing
 from petalfoil.cli.autosave import Autosave
 from petalfoil.cli.failures import handled
-from petalfoil.cli.options import CaseFile, Csv, Frequencies, Json, Load, Out, Plot, Ross, Speed, Speeds
+from petalfoil.cli.options import Amplitude, CaseFile, Csv, Frequencies, Json, Load, Out, Plot, Ross, Speed, Speeds
 from petalfoil.cli.outputs import Export, Outputs
 from petalfoil.cli.progress import Report, bar
 from petalfoil.errors import UsageError
@@ -25,6 +25,7 @@ def coefficients(  # noqa: PLR0913 - one argument for each option the user sees
     load: Load = None,
     speed: Speed = None,
     speeds: Speeds = None,
+    amplitude: Amplitude = None,
     as_json: Json = False,
     out: Out = None,
     plot: Plot = None,
@@ -34,7 +35,8 @@ def coefficients(  # noqa: PLR0913 - one argument for each option the user sees
     """Find stiffness and damping at whirl frequencies, at one speed or several.
 
     At the case's eccentricity, or under a load where one is given. Force on
-    the journal: dF = -(K + i W C) de for a whirl de exp(i W t).
+    the journal: dF = -(K + i W C) de for a whirl de exp(i W t). Petals with
+    friction stick, or rub in cycles of the --amplitude.
 
     Example: petalfoil coefficients case.toml --frequency "4000 rad/s, 8000 rad/s"
     """
@@ -43,7 +45,7 @@ def coefficients(  # noqa: PLR0913 - one argument for each option the user sees
         if turn is not None and speed is not None:
             raise UsageError("--speed and --speeds: give one of them")
         outputs = Outputs.checked(as_json=as_json, out=out, plot=plot, exports=_exports(csv, ross, turn, whirl))
-        omega, force = parsing.speed(speed), parsing.load(load)
+        omega, force, size = parsing.speed(speed), parsing.load(load), parsing.amplitude(amplitude)
 
         from petalfoil.case import Case
         from petalfoil.cli.kinds import CoefficientsAnswer
@@ -52,16 +54,16 @@ def coefficients(  # noqa: PLR0913 - one argument for each option the user sees
 
         with bar("coefficients") as report:
             if turn is not None:
-                answer = _over_speeds(definition, (turn, whirl, force), Autosave(out, "coefficients"), report)
+                answer = _over_speeds(definition, (turn, whirl, force, size), Autosave(out, "coefficients"), report)
             else:
                 from petalfoil.analysis import coefficients as impedances
 
-                record = impedances.run(definition, whirl, load=force, speed=omega, progress=report)
+                record = impedances.run(definition, whirl, load=force, speed=omega, amplitude=size, progress=report)
                 answer = CoefficientsAnswer(verb="coefficients", records=(record,))
         outputs.deliver(answer)
 
 
-Asked = tuple[list[float], list[float] | None, tuple[float, float] | None]
+Asked = tuple[list[float], list[float] | None, tuple[float, float] | None, float | None]
 
 
 def _over_speeds(case: Case, asked: Asked, autosave: Autosave, report: Report) -> Answer:
@@ -69,8 +71,8 @@ def _over_speeds(case: Case, asked: Asked, autosave: Autosave, report: Report) -
     from petalfoil.cli.kinds import CoefficientsAnswer
     from petalfoil.cli.series import collect
 
-    turn, whirl, force = asked
-    points = impedances.iterate(case, turn, whirl, load=force, progress=report)
+    turn, whirl, force, size = asked
+    points = impedances.iterate(case, turn, whirl, load=force, amplitude=size, progress=report)
     return collect(points, len(turn), autosave, report, CoefficientsAnswer)
 
 

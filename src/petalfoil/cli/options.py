@@ -62,6 +62,13 @@ Frequencies: TypeAlias = Annotated[
         help='Whirl frequencies: "4000 rad/s, 8000 rad/s", or "0 rad/s : 9000 rad/s : 10"; by default the speed.',
     ),
 ]
+Amplitude: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        metavar="QUANTITY",
+        help='Amplitude of the whirl at which petals with friction rub: "1 um"; by default they stick.',
+    ),
+]
 Speeds: TypeAlias = Annotated[
     str | None,
     typer.Option(metavar="LIST", help='Several speeds instead of one: "20000 rpm : 60000 rpm : 5".'),

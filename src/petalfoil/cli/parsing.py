@@ -60,6 +60,11 @@ def mass(text: str | None) -> float | None:
     return None if text is None else _named("--mass", units.parse_quantity, text, "kg")
 
 
+def amplitude(text: str | None) -> float | None:
+    """Amplitude [m] of ``--amplitude``; None where none is given."""
+    return None if text is None else _named("--amplitude", units.parse_quantity, text, "m")
+
+
 def initial(text: str | None) -> tuple[float, float] | Literal["balance"] | None:
     """Displacement (x, y) [m] of ``--initial``, or "balance"; None where the case decides."""
     if text is not None and text.strip() == "balance":

@@ -31,7 +31,8 @@ def stability(  # noqa: PLR0913 - one argument for each option the user sees
     """Find the smallest mass of a rigid rotor that whirls, threshold speed and damped natural frequencies.
 
     At the case's eccentricity, or under a load where one is given; with
-    --speeds or --loads as a table over load and speed.
+    --speeds or --loads as a table over load and speed. Petals with friction
+    stick, as in the smallest motions.
 
     Example: petalfoil stability case.toml --load "20 N" --mass "2 kg"
     """

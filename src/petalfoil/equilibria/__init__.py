@@ -9,6 +9,7 @@
 `ascent.py`       the branch from rest up to speed
 `stability.py`    does an equilibrium return when it is disturbed?
 `response.py`     what a small motion of the journal does to it
+`harmonic.py`    the same where petals rub: stuck, or in cycles by harmonic balance
 `loaded.py`       an equilibrium under a load, and the force left over
 `balancing.py`    the position under a load, from nothing and from a neighbour
 `solid.py`        a package that a load has pressed solid

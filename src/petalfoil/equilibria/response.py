@@ -5,7 +5,7 @@ Contacts that carry load stay closed, and the wall follows the journal where the
 
     (J + i nu S) dX = -(F_e + i nu S_e) de,     dF = F_P dP + by_e^T dlam        (E4)
 
-A motion that grows or dies out has a complex `s` in place of `i nu`.
+A motion that grows or dies out has a complex `s` in place of `i nu`. Petals that stick to each other add to `J`.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from petalfoil.problem.balance import FilmForce
 from petalfoil.problem.coupled import CoupledProblem, Linearization
 from petalfoil.solvers.linear import Factor, LinearSolver
 from petalfoil.solvers.ties import Ties, tie
+from petalfoil.sparsity import Elimination, TiedOrder
 
 Array = NDArray[np.float64]
 Values = NDArray[Any]
@@ -54,10 +55,10 @@ class Motion:
     held: sp.csc_array | None = None
 
     @classmethod
-    def about(cls, answer: Answer) -> Motion:
+    def about(cls, answer: Answer, held: sp.csc_array | None = None) -> Motion:
         """Small motions about an equilibrium."""
         problem, closed = answer.problem, answer.in_contact
-        return cls(problem, problem.linearize(answer.x), closed, tie(problem.G, closed))
+        return cls(problem, problem.linearize(answer.x), closed, tie(problem.G, closed), held)
 
     @cached_property
     def smooth(self) -> sp.csc_array:
@@ -74,6 +75,11 @@ class Motion:
         """`M`, the derivative of the stored mass."""
         return self.line.matrix(np.zeros(len(self.closed)), 1.0) - self.smooth
 
+    @cached_property
+    def rank(self) -> TiedOrder | None:
+        """Orders of elimination; friction joins unknowns that do not meet otherwise, and has its own."""
+        return self.ties.rank(self.problem.rank if self.held is None else Elimination())
+
     def respond(self, nu: float, solver: LinearSolver) -> Response:
         """Factorise the response at whirl ratio `nu`; one factorisation."""
         return self.growing(1j * nu, solver)
@@ -81,7 +87,7 @@ class Motion:
     def growing(self, s: complex, solver: LinearSolver) -> Response:
         """Factorise the response to a motion in `exp(s tau)`; one factorisation."""
         matrix = self.steady + s * self.stored if s else self.steady
-        factor = solver.factor(self.ties.reduce(matrix.tocsc()), self.ties.rank(self.problem.rank))
+        factor = solver.factor(self.ties.reduce(matrix.tocsc()), self.rank)
         return Response(self, factor, s)
 
 
@@ -129,24 +135,33 @@ class Response:
         change = follow + ties.spread(self.factor.solve(-ties.gather(self.apply(follow) + forcing)))
         return change, ties.reactions(self.apply(change) + forcing)
 
+    def pushed(self, push: Values) -> tuple[Values, Values]:
+        """The same by forces on the unknowns (n,), the journal held."""
+        ties = self.motion.ties
+        change = ties.spread(self.factor.solve(ties.gather(push)))
+        return change, ties.reactions(self.apply(change) - push)
+
+    def force(self, change: Values, reactions: Values) -> Values:
+        """`dF` of film and contacts on the journal by changes of the unknowns and of the closed reactions, (2,) [1]."""
+        problem = self.motion.problem
+        by_e = problem.layout.wall.contacts.by_e[self.motion.closed]
+        force: Values = FilmForce.of(problem).by_P @ change[problem.positive] + by_e.T @ reactions
+        return force
+
     def units(self) -> tuple[Values, Values]:
         """Both unit displacements: changes of the unknowns (n, 2), and `dF/de` (2, 2) of film and contacts (E4) [1]."""
-        problem = self.motion.problem
-        film, by_e = FilmForce.of(problem), problem.layout.wall.contacts.by_e[self.motion.closed]
         both = [self.unit(k) for k in (0, 1)]
-        columns = [film.by_P @ change[problem.positive] + by_e.T @ reaction for change, reaction in both]
+        columns = [self.force(change, reactions) for change, reactions in both]
         return np.column_stack([change for change, _ in both]), np.column_stack(columns)
 
     def slope(self) -> Values:
         """Derivative of `dF/de` by `s`, (2, 2) [1]: with the same factor, from (E4) differentiated."""
-        problem, ties = self.motion.problem, self.motion.ties
-        film, by_e = FilmForce.of(problem), problem.layout.wall.contacts.by_e
+        ties, by_e = self.motion.ties, self.motion.problem.layout.wall.contacts.by_e
         columns = []
         for k in (0, 1):
             stored = self.motion.stored @ self.unit(k)[0] + self.stored_forcing(by_e[:, k])
             change = ties.spread(self.factor.solve(-ties.gather(stored)))
-            reaction = ties.reactions(self.apply(change) + stored)
-            columns.append(film.by_P @ change[problem.positive] + by_e[self.motion.closed].T @ reaction)
+            columns.append(self.force(change, ties.reactions(self.apply(change) + stored)))
         return np.column_stack(columns)
 
     def force_gradient(self) -> Values:

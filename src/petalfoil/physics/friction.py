@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from petalfoil.mesh.package import PackageMesh
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -99,8 +100,8 @@ def halves(n: int) -> sp.csr_array:
     return sp.csr_array(share)
 
 
-def equivalent_stiffness(stiffness: Array, limit: Array, amplitude: Array) -> NDArray[np.complex128]:
-    """Fundamental harmonic of the friction over that of the slip (E10), (k,).
+def equivalent_stiffness(stiffness: Array, limit: Array, amplitude: Array) -> tuple[Complex, Complex]:
+    """Fundamental harmonic of the friction over that of the slip (E10), and its derivative by `ln A`, (k,).
 
     Its imaginary part times `pi A^2` is the area of the loop, `4 mu N (A - mu N / k)`.
 
@@ -114,8 +115,8 @@ def equivalent_stiffness(stiffness: Array, limit: Array, amplitude: Array) -> ND
         `A`, of the slip.
     """
     slid = stiffness * amplitude > limit
-    share = np.divide(limit, stiffness * amplitude, out=np.ones_like(limit), where=slid)  # of the slip that springs
+    share = np.divide(limit, stiffness * amplitude, out=np.ones_like(limit), where=slid)  # of the slip, springs back
     turn = np.arccos(1.0 - 2.0 * share)
-    real = (turn - 0.5 * np.sin(2.0 * turn)) / np.pi
-    equivalent: NDArray[np.complex128] = stiffness * (real + 4.0j / np.pi * share * (1.0 - share))
-    return equivalent
+    equivalent = (turn - 0.5 * np.sin(2.0 * turn)) / np.pi + 4.0j / np.pi * share * (1.0 - share)
+    by_share = 8.0 / np.pi * np.sqrt(share * (1.0 - share)) + 4.0j / np.pi * (1.0 - 2.0 * share)
+    return stiffness * equivalent, np.where(slid, -stiffness * share * by_share, 0.0)

@@ -158,7 +158,10 @@ def _exchanged(ds: xr.Dataset) -> Iterator[tuple[Floats, str, str, str]]:
     yield loads, style.BLUE, "work of the loads", "-"
     yield film, style.GREEN, "work of the film", "-"
     yield gained, style.INK, "gained by rotor and petals", "-"
-    yield gained - loads - film, style.VERMILLION, "defect", "--"
+    lost = array(ds, "petal_friction_work") if "petal_friction_work" in ds else np.zeros_like(gained)
+    if np.any(lost):
+        yield lost, style.ORANGE, "lost between petals", "-"
+    yield gained + lost - loads - film, style.VERMILLION, "defect", "--"
 
 
 def _range(columns: list[Floats]) -> tuple[float, float]:

@@ -177,6 +177,7 @@ SCALARS: dict[str, Variable] = {
         (), "", "part of the way: up or down, loading, unloading or reloading", "leg", Kind.STR, Role.GIVEN
     ),
     "share": _given("1", "contact share below which the journal floats", "s_f"),
+    "whirl_amplitude": _given("m", "amplitude of the whirl at which petals rub", "a"),
     "rotor_mass": _given("kg", "mass of a rigid rotor on this bearing", "m"),
     "force_x": _answer("N", "force of film and contact on the journal along x", "F_x"),
     "force_y": _answer("N", "force of film and contact on the journal along y", "F_y"),

@@ -37,6 +37,7 @@ _SHOWN: dict[str, _Show] = {
     "speed": _Show("speed", "rpm", _RPM),
     "load_x": _Show("load x", "N"),
     "load_y": _Show("load y", "N"),
+    "whirl_amplitude": _Show("amplitude of the whirl", "µm", 1e6),
     "share": _Show("floats below", "%", 100.0),
     "liftoff_speed": _Show("lift-off speed", "rpm", _RPM),
     "touchdown_speed": _Show("touch-down speed", "rpm", _RPM),

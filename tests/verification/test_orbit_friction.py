@@ -1,0 +1,67 @@
+"""Friction between petals in motion: it takes energy, all of it accounted for, and damps what hardly damps itself."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from petalfoil.analysis.orbit import Course, run
+from petalfoil.case import Case
+from petalfoil.results.record import Record
+from tests.cases import case
+
+
+def rubbing(mu: float, **changes: object) -> Case:
+    """Eight petals on 16 cells a pitch under a rotor of 3 kg."""
+    grid = {"model.cells_per_pitch": 16, "surface.petal_friction": mu}
+    return case("paper_n8", rotor={"mass": 3.0}, **grid, **changes)
+
+
+def bounce(mu: float) -> Record:
+    """Let go 20 um above its balance, two thirds of an oscillation long."""
+    return run(rubbing(mu, **{"operation.eccentricity": (0.0, -260e-6)}), Course(revolutions=30.0))
+
+
+def swing(record: Record) -> float:
+    """Kinetic energy at its largest in the second half [J]."""
+    energy = np.asarray(record.fields["kinetic_energy"])
+    return float(energy[len(energy) // 2 :].max())
+
+
+def test_energy_that_friction_takes_is_accounted_for() -> None:
+    """Loss grows only; gained by rotor and petals is what loads and film gave, less the loss."""
+    record = bounce(0.2)
+    lost = np.asarray(record.fields["petal_friction_work"])
+    kinetic = np.asarray(record.fields["kinetic_energy"])
+    assert record.scalars["failed_steps"] == 0
+    assert np.all(np.diff(lost) >= 0.0)
+    assert lost[-1] > 0.02 * kinetic.max()
+    assert float(record.scalars["energy_defect"]) < 2e-2
+    defect = float(record.scalars["energy_defect"])
+    assert defect * (np.abs(np.asarray(record.fields["film_work"])).max() + kinetic.max()) < 0.2 * lost[-1]
+
+
+@pytest.mark.slow
+def test_friction_damps_the_swing() -> None:
+    """The more of it, the less is left of the motion."""
+    left = [swing(bounce(mu)) for mu in (0.0, 0.1, 0.2)]
+    assert left[2] < left[1] < left[0]
+
+
+def test_without_friction_nothing_is_lost() -> None:
+    record = run(rubbing(0.0), Course(revolutions=1.0, initial="balance"))
+    assert not np.any(np.asarray(record.fields["petal_friction_work"]))
+
+
+@pytest.mark.slow
+def test_the_motion_does_not_hang_on_the_width_of_the_stick() -> None:
+    """Half the width, a loss that differs by a few per cent at most."""
+    losses = []
+    for width in (4e-9, 2e-9, 1e-9):
+        record = run(
+            rubbing(0.2, **{"surface.friction_width": width, "operation.eccentricity": (0.0, -260e-6)}),
+            Course(revolutions=20.0),
+        )
+        losses.append(float(np.asarray(record.fields["petal_friction_work"])[-1]))
+    assert abs(losses[1] / losses[2] - 1.0) < 0.05
+    assert abs(losses[1] / losses[2] - 1.0) < abs(losses[0] / losses[2] - 1.0) + 1e-3
