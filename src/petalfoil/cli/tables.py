@@ -33,6 +33,7 @@ COLUMNS = {
     "friction_torque": "torque",
     "starting_torque": "starting torque",
     "max_stress": "stress",
+    "petal_friction_work": "lost",
 }
 OWN_COLUMNS = {
     "liftoff": {

@@ -8,6 +8,7 @@ In the order data flows:
 - ``profiles``  pressure and film over one petal, for a family (`petal_profiles`)
 - ``unrolled``  pressure and film over angle and length (`maps`)
 - ``curves``    characteristics against displacement (`load_characteristic`, `static`)
+- ``loops``     hysteresis of a package with friction (`hysteresis`)
 - ``speeds``    over the speed under a load (`runup`), lift-off over the load (`liftoff`)
 - ``impedance`` stiffness and damping over whirl frequency (`coefficients`)
 - ``whirl``     stability of a rigid rotor over speed and load (`stability`)
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from petalfoil.plot.files import save
     from petalfoil.plot.histories import orbit_energy, orbit_histories
     from petalfoil.plot.impedance import coefficients
+    from petalfoil.plot.loops import hysteresis
     from petalfoil.plot.orbits import orbit
     from petalfoil.plot.overview import summary
     from petalfoil.plot.paths import orbit_path
@@ -56,6 +58,7 @@ __all__ = [
     "coefficients",
     "convergence",
     "cross_section",
+    "hysteresis",
     "liftoff",
     "load_characteristic",
     "maps",
@@ -80,6 +83,7 @@ _HOME = {
     "coefficients": "impedance",
     "convergence": "refinement",
     "cross_section": "section",
+    "hysteresis": "loops",
     "liftoff": "speeds",
     "load_characteristic": "curves",
     "maps": "unrolled",

@@ -11,6 +11,7 @@ from petalfoil.plot.around import draw_film, draw_pressure, plane_fact
 from petalfoil.plot.assembly import package
 from petalfoil.plot.curves import load_characteristic, static
 from petalfoil.plot.impedance import coefficients
+from petalfoil.plot.loops import hysteresis, is_loop
 from petalfoil.plot.orbits import orbit
 from petalfoil.plot.reading import is_spatial, one_point
 from petalfoil.plot.refinement import convergence
@@ -49,7 +50,7 @@ def summary(ds: xr.Dataset) -> Figure:
     if analysis == "converge":
         return convergence(ds)
     if analysis == "static":
-        return cross_section(ds) if single else static(ds)
+        return cross_section(ds) if single else hysteresis(ds) if is_loop(ds) else static(ds)
     if analysis in ("solve", "curve", "balance"):
         return _state(ds) if single else load_characteristic([("", ds)])
     if analysis in DYNAMIC:

@@ -1,0 +1,200 @@
+"""Friction between petals in small motions: stuck against equilibria, in cycles by harmonic balance."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from numpy.typing import NDArray
+
+from petalfoil.analysis import coefficients, stability
+from petalfoil.analysis.coefficients import elastic, impedance, operating_point, sliding_at
+from petalfoil.case import Case
+from petalfoil.equilibria.answer import Answer
+from petalfoil.equilibria.harmonic import Cycle
+from petalfoil.equilibria.loaded import journal_force
+from petalfoil.equilibria.response import Motion
+from petalfoil.equilibria.sliding import slide
+from petalfoil.equilibria.work import Work
+from petalfoil.errors import UsageError
+from petalfoil.physics.friction import equivalent_stiffness
+from petalfoil.problem.balance import FilmForce
+from petalfoil.problem.sliding import Rubbed, friction_of, held_together
+from petalfoil.results.record import Record
+from petalfoil.solvers.linear import LinearSolver
+from tests.cases import case
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+LOAD, MICRON = (0.0, -20.0), 1e-6
+
+
+def bearing(friction: float = 0.3, width: float = 1e-9, speed: float = 8000.0) -> Case:
+    changes = {"surface.petal_friction": friction, "surface.friction_width": width, "operation.speed": speed}
+    return case("paper_n8", **{"model.cells_per_pitch": 24, **changes})
+
+
+@cache
+def answer_of(speed: float = 8000.0) -> Answer:
+    """The equilibrium under the load; friction has no force there."""
+    answer, _ = operating_point(bearing(speed=speed), LOAD, Work())
+    return answer
+
+
+def run(rubs: Case, **asked: float) -> Record:
+    return coefficients.run(rubs, [2000.0, 8000.0], load=LOAD, **asked)
+
+
+def impedances(record: Record) -> Complex:
+    Omega = record.coords["whirl_frequency"].astype(float)[:, None, None]
+    return record.fields["stiffness"].astype(complex) + 1j * Omega * record.fields["damping"].astype(complex)
+
+
+def assert_near(found: Complex, wanted: Complex, rtol: float) -> None:
+    assert_allclose(found, wanted, rtol=0.0, atol=rtol * float(np.max(np.abs(wanted))))
+
+
+# ------------------------------------------------------------------------------------------ petals that stick
+
+
+@pytest.mark.parametrize(("speed", "touching"), [(8000.0, False), (1500.0, True)])
+def test_stiffness_of_stuck_petals_is_the_slope_of_equilibria_with_friction(speed: float, touching: bool) -> None:
+    """Within 1e-5 of its size; friction is strong and soft, so that nothing slips in a step of 1 nm."""
+    rubs, answer = bearing(5.0, 5e-9 / 0.3, speed), answer_of(speed)
+    assert bool(answer.in_contact[answer.problem.layout.wall.contacts.journal].any()) == touching
+    K, _ = impedance(elastic(rubs, answer, Work()), 0.0, speed, Work())
+    free, _ = impedance(Motion.about(answer), 0.0, speed, Work())
+    slope = differences(rubs, answer, 1e-4)
+    assert_allclose(K, slope, rtol=0.0, atol=1e-5 * float(np.max(np.abs(slope))))
+    assert K[0, 0] > 2.0 * free[0, 0]
+
+
+def differences(rubs: Case, answer: Answer, step: float) -> Array:
+    """`-dF/de` [N/m] from equilibria with friction on either side, reached from `answer` where it has no force yet."""
+    layout = answer.problem.layout
+    friction, columns = friction_of(rubs, layout), []
+    assert friction is not None
+    before = answer.x, answer.lam, answer.in_contact, Rubbed.fresh(friction, answer.x)
+    for k in (0, 1):
+        forces = []
+        for side in (-step, step):
+            moved = answer.problem.displacement.copy()
+            moved[k] += side
+            problem = answer.problem.at(displacement=moved)
+            near = slide(problem, friction, before, LinearSolver())
+            assert near is not None
+            assert np.array_equal(near.closed, answer.in_contact)
+            forces.append(journal_force(problem, near.x[problem.positive], near.lam))
+        columns.append(-(forces[1] - forces[0]) / (2.0 * step))
+    return np.column_stack(columns) * layout.scales.force / layout.scales.length
+
+
+def test_stability_is_that_of_stuck_petals() -> None:
+    """The critical mass is neutral in the coefficients without an amplitude (E6)."""
+    rubs = bearing()
+    found = stability.run(rubs, load=LOAD).scalars
+    without = stability.run(bearing(0.0), load=LOAD).scalars
+    ratio, mass = float(found["whirl_ratio"]), float(found["critical_mass"])
+    Omega = ratio * 8000.0
+    Z = impedances(coefficients.run(rubs, [Omega], load=LOAD))[0]
+    assert abs(np.linalg.det(Z - mass * Omega**2 * np.eye(2))) < 1e-6 * abs(np.linalg.det(Z))
+    assert mass != pytest.approx(float(without["critical_mass"]), rel=1e-2)
+
+
+# ------------------------------------------------------------------------------------------ cycles
+
+
+def cycle(amplitude: float, nu: float = 0.7) -> tuple[Cycle, Complex]:
+    """A cycle at a whirl ratio, and its slips by a unit displacement along x, (k,)."""
+    answer = answer_of()
+    sliding = sliding_at(bearing(), answer)
+    assert sliding is not None
+    response = Motion.about(answer).respond(nu, LinearSolver())
+    whirl = Cycle(sliding, response, amplitude / answer.problem.layout.scales.length)
+    free = sliding.slips(response.unit(0)[0])
+    return whirl, whirl.settled(free, whirl.compliance(), Work())
+
+
+@pytest.mark.parametrize("amplitude", [0.3e-6, 1e-6, 3e-6, 30e-6])
+def test_cycles_are_motions_with_their_equivalent_stiffness_in_the_tangent(amplitude: float) -> None:
+    """What Newton found in the slips alone solves the whole linear system; some contacts slip and, below 30 µm, some stick."""
+    whirl, slip = cycle(amplitude)
+    stiffness, _ = whirl.sliding.equivalent(slip, whirl.amplitude)
+    slips = stiffness.imag > 0.0
+    assert slips.any()
+    assert slips.all() == (amplitude > 1e-5)
+    n = len(answer_of().x)
+    held = held_together(whirl.sliding.friction, stiffness, n)
+    whole = replace(whirl.response.motion, held=held).respond(0.7, LinearSolver())
+    change, reactions = whole.unit(0)
+    assert_near(whirl.sliding.slips(change), slip, 1e-9)
+    assert_near(whirl.force_gradient(Work())[:, 0], whole.force(change, reactions), 1e-9)
+
+
+def test_what_a_cycle_takes_is_the_area_of_its_loops_and_the_work_of_the_film() -> None:
+    """To rounding: `pi Omega C a^2` against `4 mu N (A - mu N / k)` over the contacts that slip, and `int p dV`."""
+    whirl, slip = cycle(MICRON)
+    sliding, a, problem = whirl.sliding, whirl.amplitude, answer_of().problem
+    size = np.abs(slip) * a
+    loops = np.sum(4.0 * sliding.limit * np.maximum(size - sliding.limit / sliding.friction.stiffness, 0.0))
+    n, layout = len(answer_of().x), problem.layout
+    held = held_together(sliding.friction, sliding.equivalent(slip, a)[0], n)
+    change, reactions = replace(whirl.response.motion, held=held).respond(0.7, LinearSolver()).unit(0)
+    w, P = change[: layout.n_wall], change[problem.positive]
+    film = -np.pi * a**2 * np.imag(np.conj(w) @ (layout.push @ P) + (FilmForce.of(problem).by_P @ P)[0])
+    taken = -np.pi * a**2 * whirl.force_gradient(Work())[0, 0].imag
+    assert loops > 0.5 * taken > 0.0
+    assert_allclose(taken, loops + film, rtol=1e-9)
+    assert len(reactions) == int(answer_of().in_contact.sum())
+
+
+def test_small_cycles_stick_and_large_ones_do_not_feel_friction() -> None:
+    rubs, free = bearing(), bearing(0.0)
+    assert_near(impedances(run(rubs, amplitude=1e-15)), impedances(run(rubs)), 1e-6)
+    assert_near(impedances(run(rubs, amplitude=100.0)), impedances(run(free)), 1e-6)
+    assert_near(impedances(run(bearing(1e-9), amplitude=MICRON)), impedances(run(free)), 1e-6)
+
+
+def test_friction_damps_both_ways_and_most_where_it_neither_sticks_nor_is_small() -> None:
+    rubs = bearing()
+    none, *rubbing = (run(case_, **asked).fields["damping"][:, (0, 1), (0, 1)] for case_, asked in (
+        (bearing(0.0), {}), (rubs, {"amplitude": 0.2e-6}), (rubs, {"amplitude": 3e-6}), (rubs, {"amplitude": 100e-6}),
+    ))  # fmt: skip
+    assert np.all(rubbing[1] > 0.0)
+    assert np.all(rubbing[1] > rubbing[0])
+    assert np.all(rubbing[1] > rubbing[2])
+    assert np.all(rubbing[1] > 5.0 * none)
+
+
+def test_a_frequency_costs_one_factorisation() -> None:
+    counts = [
+        int(coefficients.run(bearing(), np.linspace(1e3, 9e3, n).tolist(), load=LOAD, amplitude=MICRON).scalars[
+            "probe_factorizations"
+        ])
+        for n in (1, 5)
+    ]  # fmt: skip
+    assert counts[1] - counts[0] == 4
+
+
+def test_where_little_gives_way_newton_still_arrives() -> None:
+    """Friction that is a thousand times as steep, and strong."""
+    for amplitude in (0.1e-6, 1e-6, 10e-6):
+        record = run(bearing(1.0, 1e-12), amplitude=amplitude)
+        assert record.scalars["whirl_amplitude"] == amplitude
+        assert np.all(record.fields["damping"][:, (0, 1), (0, 1)] > 0.0)
+
+
+def test_what_cannot_be_asked() -> None:
+    for amplitude in (0.0, -MICRON, float("nan"), float("inf")):
+        with pytest.raises(UsageError, match="amplitude must be positive"):
+            run(bearing(), amplitude=amplitude)
+    with pytest.raises(UsageError, match="petal_friction is 0"):
+        run(bearing(0.0), amplitude=MICRON)
+    with pytest.raises(UsageError, match="no petals"):
+        coefficients.run(case("plain_journal", **{"surface.petal_friction": 0.3}), [1.0], amplitude=MICRON)
+    with pytest.raises(UsageError, match="above zero"):
+        coefficients.iterate(bearing(), [8000.0], [0.0, 100.0], amplitude=MICRON)
