@@ -1,14 +1,13 @@
 """A motion by explicit steps, with the loops of the paper's method: what a revolution of it costs.
 
-petalfoil's classic method has no motion in time. This is the one that its parts give: each step marches the gas by one
+petalfoil's classic method knows no motion; this is the one that its parts give. Each step marches the gas by one
 explicit step as long as (59) allows, moves the rotor by its forces, and settles the package by the projected descent
-from where it was. Its path is followed for a stretch, from a state of petalfoil's own orbit; only counts are taken from
-there. Times are those of the bare loops, in runs of many steps: what film and columns ask for anew with each step (their
-coefficients, in Python here) is not charged.
+from where it was.
 """
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass
 
@@ -16,130 +15,173 @@ import numpy as np
 from measure import in_turn
 from numpy.typing import NDArray
 
+from petalfoil.analysis.orbit import Orbit
 from petalfoil.classic.columns import columns
 from petalfoil.classic.descent import PackageDescent
-from petalfoil.classic.film_cells import film_cells
+from petalfoil.classic.film_cells import FilmCells, film_cells
 from petalfoil.classic.kernels import Descent, Engine, March, kernels
 from petalfoil.classic.numpy_kernels import exponential_fit, inflow, largest_rate
 from petalfoil.classic.options import ClassicOptions
 from petalfoil.classic.relaxation import pressure_unknowns
-from petalfoil.problem.moving import StepProblem
-from petalfoil.transient.scheme import System
+from petalfoil.problem.coupled import CoupledProblem
 from petalfoil.transient.state import Instant
 
 Array = NDArray[np.float64]
 
+NUMBERS = ClassicOptions()
+ENDLESS = -1.0
+"""A tolerance that is never met."""
 CHUNK = 2000
 """Descent steps between looks at the clock."""
+LOST = 1.0
+"""Petals that move so far within a step of petalfoil's, where they move by hundredths, are lost [reference films]."""
 
 
-@dataclass(frozen=True)
-class Stretch:
-    """What a stretch of the motion took.
+def placed(orbit: Orbit, at: Instant, e: Array | None = None) -> CoupledProblem:
+    """The bearing at the speed of an instant of `orbit`, and at its position or at `e`."""
+    speed = orbit.system.rotor.bearing_number(at.tau)
+    return orbit.system.problem.at(displacement=at.e if e is None else e, bearing_number=speed)
 
-    Attributes
-    ----------
-    film_steps, package_steps : int
-        Explicit steps of the film; steps of the descent in all.
-    tau : float
-        How far it got [units of time].
-    e, w : arrays
-        Where journal and package are then [1].
-    broke : str
-        Why it ended before its time; empty if it did not.
+
+def cells_at(problem: CoupledProblem, w: Array, P: Array) -> FilmCells:
+    """Cells of the film at deflections `w` and pressure unknowns `P`."""
+    return film_cells(problem.layout.balance, problem.film(np.concatenate([w, P])), problem.bearing_number)
+
+
+def turn(orbit: Orbit) -> float:
+    """Film steps of a revolution: the longest stable ones (59) at the state the orbit began with."""
+    start = orbit.start
+    problem = placed(orbit, start)
+    cells = cells_at(problem, *np.split(start.x, [problem.layout.n_wall]))
+    step = NUMBERS.time_share / largest_rate(problem.pressure(start.x).reshape(-1), cells)
+    return 2.0 * math.pi / (2.0 * orbit.system.problem.clock * step)
+
+
+def costs(orbit: Orbit, engine: Engine, steps: int) -> tuple[float, float]:
+    """Time of a film step and of a descent step in the bare loops, of `steps` together, after a first call [s]."""
+    start, inner = orbit.start, kernels(engine)
+    problem = placed(orbit, start)
+    package = PackageDescent(problem, NUMBERS, engine)
+    w, unknowns = np.split(start.x, [problem.layout.n_wall])
+    P, cells, load = (
+        problem.pressure(start.x).reshape(-1).copy(),
+        cells_at(problem, w, unknowns),
+        package.load(unknowns),
+    )
+    shell, held, w = package.shell, package.columns, w.copy()
+    march, descent = March(NUMBERS.time_share, 1.0, ENDLESS, 32), Descent(package.step, False, ENDLESS, 20)
+    inner.march(P, cells, march)  # compiles, where something compiles
+    inner.descend(w, load, shell, held, descent)
+    steps = 160 * max(1, steps // 160)  # whole rounds of both
+    best = in_turn(
+        {
+            "film": lambda: inner.march(P, cells, march._replace(max_steps=steps)),
+            "package": lambda: inner.descend(w, load, shell, held, descent._replace(max_steps=steps)),
+        },
+        3,
+    )
+    return best["film"] / steps, best["package"] / steps
+
+
+# ---------------------------------------------------------------------------------------------- counts on a given path
+
+
+def settlings(orbit: Orbit, pair: tuple[Instant, Instant], tolerance: float, seconds: float) -> tuple[int, int]:
+    """Film steps between two instants of a motion, and the descent steps they ask for; as many as time permits.
+
+    Pressure and journal go from one instant to the other evenly; the package follows, each time from where it was.
     """
+    begin, end = pair
+    steps, start = math.ceil(turn(orbit) * (end.tau - begin.tau) / (2.0 * math.pi)), time.process_time()
+    problem = placed(orbit, begin)
+    package, w, total = PackageDescent(problem, NUMBERS), begin.x[: problem.layout.n_wall].copy(), 0
+    drive = Descent(package.step, False, tolerance, NUMBERS.max_package_steps)
+    for step in range(1, steps + 1):
+        share = step / steps
+        x, e = begin.x + share * (end.x - begin.x), begin.e + share * (end.e - begin.e)
+        held = columns(placed(orbit, begin, e))
+        total += kernels().descend(w, package.load(x[problem.layout.n_wall :]), package.shell, held, drive)[0]
+        if time.process_time() - start > seconds:
+            return step, total
+    return steps, total
 
-    film_steps: int
-    package_steps: int
-    tau: float
-    e: Array
-    w: Array
-    broke: str = ""
+
+# ---------------------------------------------------------------------------------------------- a march of its own
 
 
 @dataclass
 class ExplicitMotion:
-    """The motion from an instant on.
+    """The motion from an instant of an orbit on, by explicit steps alone.
 
     Parameters
     ----------
-    system : System
+    orbit : Orbit
         Bearing and rotor.
     start : Instant
-        A state of the motion.
+        Where it begins.
     tolerance : float
         Force that may be left on a node of the package, over ambient pressure on it [1].
     every : int
         Film steps, the film's thickness frozen, between settlings of the package.
     """
 
-    system: System
+    orbit: Orbit
     start: Instant
     tolerance: float
     every: int = 1
 
     def __post_init__(self) -> None:
-        start, rotor = self.start, self.system.rotor
-        self.problem = self.system.problem.at(
-            displacement=start.e, bearing_number=rotor.bearing_number(start.tau)
-        )
-        self.package = PackageDescent(self.problem, ClassicOptions())
+        start = self.start
+        self.problem = placed(self.orbit, start)
+        self.package = PackageDescent(self.problem, NUMBERS)
         self.w = start.x[: self.problem.layout.n_wall].copy()
         self.e, self.v, self.tau = start.e.copy(), start.moving.v.copy(), start.tau
         self.P = self.problem.pressure(start.x).reshape(-1).copy()
-        self.hold = self.cells().hold
+        self.hold = cells_at(self.problem, self.w, self.unknowns).hold
         self.film_steps = self.package_steps = 0
 
-    def follow(self, end: float, seconds: float) -> Stretch:
-        """Steps until time `end` [units of time], for at most so many seconds of processor time."""
-        begin, why = time.process_time(), ""
-        while self.tau < end and not why and time.process_time() - begin < seconds:
-            self.film_and_rotor()
-            if not self.settled(begin + seconds):
-                break
-            why = self.broken()
-        return Stretch(self.film_steps, self.package_steps, self.tau, self.e, self.w, why)
-
-    def film_and_rotor(self) -> None:
-        """Explicit steps of the gas in the cells, as long as (59) allows, then one of the rotor."""
-        cells = self.cells()
-        self.P *= np.where(cells.moves > 0.0, self.hold / cells.hold, 1.0)  # the gas stays, its room has changed
-        self.hold = cells.hold
-        share, fit = ClassicOptions().time_share, exponential_fit(self.P, cells)
-        dt = share / largest_rate(self.P, cells)
-        for _ in range(self.every):
-            self.P += dt * inflow(self.P, cells, fit) / cells.hold
-        step, rotor = self.every * 2.0 * self.problem.clock * dt, self.system.rotor
-        self.tau += step
-        force = self.system.film.at(self.unknowns()) + rotor.outside(self.tau)
-        self.v = self.v + step * force / rotor.inertia
-        self.e = self.e + step * self.v
-        self.problem = self.problem.at(displacement=self.e)
-        self.film_steps += self.every
-
-    def settled(self, until: float) -> bool:
-        """Bring the package to rest under the pressures; False if the time was up before."""
-        load, shell, held = self.package.load(self.unknowns()), self.package.shell, columns(self.problem)
-        drive = Descent(self.package.step, False, self.tolerance, CHUNK)
-        while time.process_time() < until:
-            steps, left = kernels().descend(self.w, load, shell, held, drive)
-            self.package_steps += steps
-            if left <= self.tolerance:
-                return True
-        return False
-
-    def broken(self) -> str:
-        """Why it cannot go on; empty if it can."""
-        film = self.problem.film(np.concatenate([self.w, self.unknowns()]))
-        if not (np.all(np.isfinite(self.P)) and np.all(np.isfinite(film))):
-            return "not finite"
-        return "a film without thickness" if film.min() <= 0.0 else "a vacuum" if self.P.min() <= 0.0 else ""
-
+    @property
     def unknowns(self) -> Array:
         """Pressure unknowns."""
         return pressure_unknowns(self.problem, self.P.reshape(self.problem.layout.balance.mesh.shape))
 
-    def cells(self):  # noqa: ANN201
-        """Cells of the film as it is."""
-        H = self.problem.film(np.concatenate([self.w, self.unknowns()]))
-        return film_cells(self.problem.layout.balance, H, self.problem.bearing_number)
+    def follow(self, end: float, seconds: float) -> str:
+        """Steps until time `end` [units of time], for so many seconds at most; how it went."""
+        until = time.process_time() + seconds
+        while self.tau < end and time.process_time() < until:
+            with np.errstate(all="ignore"):  # a film that blows up
+                self.film_and_rotor()
+                self.settle(until)
+            if self.lost:
+                return f"blew up after {self.film_steps} film steps"
+        return f"went on for {self.film_steps} film steps"
+
+    def film_and_rotor(self) -> None:
+        """Explicit steps of the gas in the cells, as long as (59) allows, then one of the rotor."""
+        cells, rotor = cells_at(self.problem, self.w, self.unknowns), self.orbit.system.rotor
+        self.P *= np.where(cells.moves > 0.0, self.hold / cells.hold, 1.0)  # the gas stays while its room changes
+        self.hold, fit = cells.hold, exponential_fit(self.P, cells)
+        dt = NUMBERS.time_share / largest_rate(self.P, cells)
+        for _ in range(self.every):
+            self.P += dt * inflow(self.P, cells, fit) / cells.hold
+        step = self.every * 2.0 * self.orbit.system.problem.clock * dt
+        self.tau += step
+        force = self.orbit.system.film.at(self.unknowns) + rotor.outside(self.tau)
+        self.v = self.v + step * np.linalg.solve(rotor.inertia * np.eye(2), force)  # no gyroscopic forces: two axes
+        self.e = self.e + step * self.v
+        self.problem = self.problem.at(displacement=self.e)
+        self.film_steps += self.every
+
+    def settle(self, until: float) -> None:
+        """Bring the package to rest under the pressures, unless it gets lost or time is up."""
+        load, shell, held = self.package.load(self.unknowns), self.package.shell, columns(self.problem)
+        drive, left = Descent(self.package.step, False, self.tolerance, CHUNK), math.inf
+        while not left <= self.tolerance and not self.lost and time.process_time() < until:
+            steps, left = kernels().descend(self.w, load, shell, held, drive)
+            self.package_steps += steps
+
+    @property
+    def lost(self) -> bool:
+        """Film or package have left the motion."""
+        moved = self.w - self.start.x[: len(self.w)]
+        return not (np.all(np.isfinite(self.P)) and np.max(np.abs(moved), initial=0.0) < LOST)

@@ -22,6 +22,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import growth
 import numpy as np
+import orbit
 import others
 import plain_journal
 import race
@@ -31,7 +32,7 @@ from measure import Row
 
 import petalfoil
 
-GROUPS = ("race", "point", "growth", "journal", "others")
+GROUPS = ("race", "point", "growth", "journal", "orbit", "others")
 
 
 def groups(quick: bool, classic_seconds: float) -> dict[str, Callable[[], list[Row]]]:
@@ -42,6 +43,7 @@ def groups(quick: bool, classic_seconds: float) -> dict[str, Callable[[], list[R
             "point": lambda: spatial_point.rows(spatial_point.Grid(12, 6), 3, 2),
             "growth": lambda: growth.rows((growth.Grid(8, 4), growth.Grid(14, 8)), None),
             "journal": lambda: plain_journal.rows(((48, 16),), 2),
+            "orbit": lambda: orbit.rows(orbit.QUICK),
             "others": lambda: others.rows(1),
         }
     return {
@@ -49,6 +51,7 @@ def groups(quick: bool, classic_seconds: float) -> dict[str, Callable[[], list[R
         "point": lambda: spatial_point.rows(spatial_point.Grid(), 9, 7),
         "growth": lambda: growth.rows(growth.SIZES, growth.LARGEST),
         "journal": lambda: plain_journal.rows(plain_journal.GRIDS, 7),
+        "orbit": lambda: orbit.rows(orbit.FULL),
         "others": lambda: others.rows(2),
     }
 

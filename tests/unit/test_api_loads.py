@@ -17,6 +17,7 @@ from petalfoil.results.store import load, save
 from tests.cases import case
 
 BEARING = case("paper_n8", **{"model.cells_per_pitch": 12})
+RUBBING = BEARING.replace(**{"surface.petal_friction": 0.2})
 PLAIN = case("plain_journal", **{"model.cells_per_pitch": 16, "model.axial_cells": 4})
 
 
@@ -59,7 +60,7 @@ def test_loads(called: list[Any], given: Any, force: tuple[float, float] | None)
     petalfoil.runup(PLAIN, given, to=100.0)
     assert called.pop() == ((PLAIN, force, 100.0), {"points": 25, "progress": None})
     petalfoil.coefficients(PLAIN, load=given)
-    assert called.pop() == ((PLAIN, None), {"load": force, "speed": None, "progress": None})
+    assert called.pop() == ((PLAIN, None), {"load": force, "speed": None, "amplitude": None, "progress": None})
     petalfoil.stability(PLAIN, load=given, mass="500 g")
     assert called.pop() == ((PLAIN,), {"load": force, "mass": 0.5, "speed": None, "progress": None})
 
@@ -73,7 +74,11 @@ def test_lists(called: list[Any]) -> None:
         [("leg", "record")],
         "coefficients",
     )
-    assert called.pop()[0] == (PLAIN, [1.0, 2.0], [1.0, 2.0])
+    assert called.pop() == ((PLAIN, [1.0, 2.0], [1.0, 2.0]), {"load": None, "amplitude": None, "progress": None})
+    petalfoil.coefficients(PLAIN, amplitude="2 um", speeds=[1.0])
+    assert called.pop()[1]["amplitude"] == 2e-6
+    petalfoil.coefficients(PLAIN, amplitude=1e-6)
+    assert called.pop()[1]["amplitude"] == 1e-6
     assert petalfoil.stability(PLAIN, loads="1 N, 2 N", speed=3.0) == ("chart", [("leg", "record")])
     assert called.pop()[0] == (PLAIN, [3.0], [1.0, 2.0])
     petalfoil.stability(PLAIN, speeds=(1, 2), load=7)
@@ -89,6 +94,7 @@ def test_lists(called: list[Any]) -> None:
         ("liftoff", (PLAIN, []), {}, UsageError, "loads: give at least one"),
         ("runup", (PLAIN, 5.0), {"to": "5 N"}, UnitError, "angular speed"),
         ("coefficients", (PLAIN, []), {}, UsageError, "frequencies: give at least one"),
+        ("coefficients", (PLAIN,), {"amplitude": "5 N"}, UnitError, "a length"),
         ("stability", (PLAIN,), {"mass": "5 N"}, UnitError, "a mass"),
         ("stability", (PLAIN,), {"speeds": "1 : 2"}, UsageError, "start : stop : count"),
     ],
@@ -111,6 +117,7 @@ ASKED: dict[str, Any] = {
     "liftoff": lambda: petalfoil.liftoff(BEARING, [400.0]),
     "runup": lambda: petalfoil.runup(BEARING, 20.0, to=3000.0, points=3),
     "coefficients": lambda: petalfoil.coefficients(PLAIN, [0.0, 500.0], load=5.0),
+    "coefficients where petals rub": lambda: petalfoil.coefficients(RUBBING, [500.0], load=5.0, amplitude="1 um"),
     "coefficients over speeds": lambda: petalfoil.coefficients(PLAIN, speeds=[500.0, 1000.0]),
     "stability": lambda: petalfoil.stability(PLAIN, load=5.0, mass=0.1),
     "stability chart": lambda: petalfoil.stability(PLAIN, speeds=[500.0, 1000.0], loads=[5.0, 10.0]),

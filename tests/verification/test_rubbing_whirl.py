@@ -20,7 +20,6 @@ from petalfoil.equilibria.response import Motion
 from petalfoil.equilibria.sliding import slide
 from petalfoil.equilibria.work import Work
 from petalfoil.errors import UsageError
-from petalfoil.physics.friction import equivalent_stiffness
 from petalfoil.problem.balance import FilmForce
 from petalfoil.problem.sliding import Rubbed, friction_of, held_together
 from petalfoil.results.record import Record
@@ -93,16 +92,20 @@ def differences(rubs: Case, answer: Answer, step: float) -> Array:
     return np.column_stack(columns) * layout.scales.force / layout.scales.length
 
 
-def test_stability_is_that_of_stuck_petals() -> None:
-    """The critical mass is neutral in the coefficients without an amplitude (E6)."""
-    rubs = bearing()
-    found = stability.run(rubs, load=LOAD).scalars
-    without = stability.run(bearing(0.0), load=LOAD).scalars
-    ratio, mass = float(found["whirl_ratio"]), float(found["critical_mass"])
-    Omega = ratio * 8000.0
-    Z = impedances(coefficients.run(rubs, [Omega], load=LOAD))[0]
-    assert abs(np.linalg.det(Z - mass * Omega**2 * np.eye(2))) < 1e-6 * abs(np.linalg.det(Z))
-    assert mass != pytest.approx(float(without["critical_mass"]), rel=1e-2)
+def test_natural_modes_are_those_of_stuck_petals(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They solve (E7) with sticking contacts in the tangent, and are stiffer."""
+    monkeypatch.setattr(stability, "RANGE", 1.0)  # no search for a threshold speed
+    mass, bearings = 0.05, [bearing(mu).replace(**{"model.cells_per_pitch": 12}) for mu in (0.3, 0.0)]
+    stuck, free = (stability.run(one, load=LOAD, mass=mass).fields for one in bearings)
+    assert np.all(stuck["natural_frequency"][-1] > 1.3 * free["natural_frequency"])
+    answer, _ = operating_point(bearings[0], LOAD, Work())
+    scales = answer.problem.layout.scales
+    s = (stuck["mode_growth_rate"] + 1j * stuck["natural_frequency"]) / 8000.0
+    for value in s:
+        gradient = elastic(bearings[0], answer, Work()).growing(value, LinearSolver()).force_gradient()
+        inertia = mass * (8000.0 * value) ** 2 * np.eye(2)
+        sizes = np.linalg.svd(inertia - gradient * scales.force / scales.length, compute_uv=False)
+        assert sizes[1] < 1e-6 * abs(inertia[0, 0])
 
 
 # ------------------------------------------------------------------------------------------ cycles
@@ -121,12 +124,11 @@ def cycle(amplitude: float, nu: float = 0.7) -> tuple[Cycle, Complex]:
 
 @pytest.mark.parametrize("amplitude", [0.3e-6, 1e-6, 3e-6, 30e-6])
 def test_cycles_are_motions_with_their_equivalent_stiffness_in_the_tangent(amplitude: float) -> None:
-    """What Newton found in the slips alone solves the whole linear system; some contacts slip and, below 30 µm, some stick."""
+    """What Newton found in the slips alone solves the whole linear system; most of the contacts slip, or few."""
     whirl, slip = cycle(amplitude)
     stiffness, _ = whirl.sliding.equivalent(slip, whirl.amplitude)
-    slips = stiffness.imag > 0.0
-    assert slips.any()
-    assert slips.all() == (amplitude > 1e-5)
+    assert (np.mean(stiffness.imag > 0.0) > 0.6) == (amplitude > 2e-6)
+    assert np.any(stiffness.imag > 0.0)
     n = len(answer_of().x)
     held = held_together(whirl.sliding.friction, stiffness, n)
     whole = replace(whirl.response.motion, held=held).respond(0.7, LinearSolver())
@@ -150,6 +152,34 @@ def test_what_a_cycle_takes_is_the_area_of_its_loops_and_the_work_of_the_film() 
     assert loops > 0.5 * taken > 0.0
     assert_allclose(taken, loops + film, rtol=1e-9)
     assert len(reactions) == int(answer_of().in_contact.sum())
+
+
+@pytest.mark.parametrize("amplitude", [1e-6, 3e-6])
+def test_cycles_are_near_those_that_the_bearing_is_led_through(amplitude: float) -> None:
+    """A slow cycle in equilibria whose reactions and contacts change: stiffness within 2 %, loss within 10 %."""
+    rubs, answer = bearing(), answer_of()
+    scales, sliding = answer.problem.layout.scales, sliding_at(rubs, answer)
+    assert sliding is not None
+    a = amplitude / scales.length
+    balanced = Cycle(sliding, Motion.about(answer).respond(1e-6, LinearSolver()), a).force_gradient(Work())[0, 0]
+    led = slow_cycle(rubs, answer, a)
+    assert led.real == pytest.approx(balanced.real, rel=2e-2)
+    assert led.imag == pytest.approx(balanced.imag, rel=1e-1)
+
+
+def slow_cycle(rubs: Case, answer: Answer, a: float, steps: int = 32) -> complex:
+    """First harmonic of the force along x over a displacement of `a` there, in the second cycle."""
+    friction, forces = friction_of(rubs, answer.problem.layout), []
+    assert friction is not None
+    phase = 2.0 * np.pi * np.arange(1, 2 * steps + 1) / steps
+    before = answer.x, answer.lam, answer.in_contact, Rubbed.fresh(friction, answer.x)
+    for angle in phase:
+        problem = answer.problem.at(displacement=answer.problem.displacement + np.array([a * np.sin(angle), 0.0]))
+        near = slide(problem, friction, before, LinearSolver())
+        assert near is not None
+        before = near.x, near.lam, near.closed, near.rubbed
+        forces.append(journal_force(problem, near.x[problem.positive], near.lam)[0])
+    return complex(2j / steps * np.exp(-1j * phase[steps:]) @ np.array(forces[steps:]) / a)
 
 
 def test_small_cycles_stick_and_large_ones_do_not_feel_friction() -> None:

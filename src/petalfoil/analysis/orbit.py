@@ -16,11 +16,13 @@ from petalfoil.analysis.figures import effort, given
 from petalfoil.analysis.session import Clock, Progress, one_thread
 from petalfoil.analysis.trace import Trace
 from petalfoil.case import Case
+from petalfoil.equilibria.cold import solve_cold
 from petalfoil.equilibria.loaded import journal_force
 from petalfoil.equilibria.work import Work
 from petalfoil.errors import UsageError
 from petalfoil.problem.balance import FilmForce
-from petalfoil.problem.build import build_problem
+from petalfoil.problem.build import build_pair, build_problem
+from petalfoil.problem.coupled import CoupledProblem
 from petalfoil.problem.film_rows import FilmState
 from petalfoil.problem.moving import StepProblem
 from petalfoil.problem.sliding import Rubbed, friction_of
@@ -58,6 +60,8 @@ class Course:
         Speed of the shaft [s, rad/s]; by default the case's.
     load : (2,) or None
         Constant load [N]; by default the case's, without one the weight.
+    slope : (2,)
+        Slopes that a shaft in two bearings is released with [rad].
     tolerance : float
         Local error of a step in reference films and ambient pressures.
     longest : float
@@ -71,6 +75,7 @@ class Course:
     load: Load | None = None
     tolerance: float = TOLERANCE
     longest: float = MarchOptions.longest
+    slope: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         """Refuse what has no meaning.
@@ -140,7 +145,7 @@ class Orbit:
             self.system = system_of(self.case, schedule, course.load)
             tau = begin * self.system.rotor.clock.rate
             if restart is None:
-                self.start = at_rest(self.case, self.system, tau, self.work)
+                self.start = at_rest(self.case, self.system, tau, course.slope, self.work)
             else:
                 self.start = instant_of(restart, self.system, tau)
         self.end = begin + course.lasts(schedule, begin)
@@ -236,6 +241,8 @@ def first_position(case: Case, course: Course, work: Work) -> Load | None:
     if course.initial != "balance":
         return course.initial
     load = constant_load(case, course.load)
+    if case.rotor is not None and case.rotor.span:
+        load = (0.5 * load[0], 0.5 * load[1])  # the bearings share it
     there = positioned(case, course.schedule(case).speed(0.0), (0.0, 0.0))
     with one_thread():
         found, _ = settled(there, load, work)
@@ -245,15 +252,25 @@ def first_position(case: Case, course: Course, work: Work) -> Load | None:
 
 def system_of(case: Case, schedule: Schedule, load: Load | None) -> System:
     """The bearing of `case` and its rotor in the units of the problem."""
-    problem = build_problem(case)
+    problem = build_pair(case) if case.rotor is not None and case.rotor.span else build_problem(case)
+    if problem.layout.film_rows.content is not None and len(problem.displacement) > 2:
+        raise UsageError(
+            "two flat films without ends hold no gas of their own: take the spatial model or ambient edges"
+        )
     rotor = RotorMotion.of(case, problem.layout.scales, schedule, load)
     still = StepProblem(problem.layout, 0.0, problem.displacement, rotor.clock.bearing_number)
     return System(still, rotor, FilmForce.of(problem), friction_of(case, problem.layout))
 
 
-def at_rest(case: Case, system: System, tau: float, work: Work) -> Instant:
+def at_rest(case: Case, system: System, tau: float, slope: tuple[float, float], work: Work) -> Instant:
     """The journal held where it is, film and petals in equilibrium, and let go."""
     speed = system.rotor.schedule.speed(tau / system.rotor.clock.rate)
+    if len(system.problem.displacement) > 2:
+        lever = 0.0 if case.rotor is None else case.rotor.lever / system.problem.layout.scales.length
+        place = system.problem.displacement + lever * np.array([0.0, 0.0, *slope])
+        both = system.problem.at(bearing_number=system.rotor.bearing_number(tau), displacement=place)
+        at = solve_cold(CoupledProblem(both.layout, both.bearing_number, both.displacement), work)
+        return released(system, tau, (at.x, at.lam, at.in_contact), (both.displacement, np.zeros(4)))
     answer, _ = chosen(case.replace(**{"operation.speed": speed}), work)
     return released(system, tau, (answer.x, answer.lam, answer.in_contact), (answer.problem.displacement, np.zeros(2)))
 
@@ -268,8 +285,9 @@ def released(
     outflow = film.residual.copy()
     if problem.layout.film_rows.content is not None:
         outflow[0] = 0.0  # the content stands in place of this balance
-    force = journal_force(problem, x[problem.positive], lam) + rotor.outside(tau)
-    change = Moving(-outflow, v, force / rotor.inertia)
+    force = journal_force(problem, x[problem.positive], lam) + rotor.outside(tau) - rotor.gyroscopic(tau) @ v
+    speeding = np.asarray(np.linalg.solve(rotor.inertia, force), dtype=np.float64)
+    change = Moving(-outflow, v, speeding)
     rubbed = None if system.friction is None else Rubbed.fresh(system.friction, x)
     return Instant(tau, x, lam, closed, Moving(problem.stored(x), e, v), change, rubbed)
 
@@ -287,7 +305,7 @@ def end_state(last: Instant, system: System) -> dict[str, Array]:
 
 def end_coordinates(last: Instant) -> dict[str, NDArray[np.generic]]:
     """Coordinates of the state at the end."""
-    return {"unknown": np.arange(len(last.x)), "gap": np.arange(len(last.lam)), "axis": np.arange(2)}
+    return {"unknown": np.arange(len(last.x)), "gap": np.arange(len(last.lam)), "axis": np.arange(len(last.e))}
 
 
 def instant_of(result: xr.Dataset, system: System, tau: float) -> Instant:

@@ -157,7 +157,7 @@ def rotor_mass(case: Case, load: Load | None, mass: float | None) -> float:
     if mass is not None:
         return mass
     if case.rotor is not None:
-        return case.rotor.mass
+        return case.rotor.mass_on_bearing
     if load is None and case.operation.load is None:
         return math.nan
     return float(np.hypot(*loaded(case, load))) / GRAVITY

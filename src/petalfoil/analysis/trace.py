@@ -34,6 +34,9 @@ AS_THEY_ARE = (
 )
 """Figures of the steps that are kept as they are."""
 
+TILT = ("slope_x", "slope_y")
+"""The same of a shaft that tilts."""
+
 
 @dataclass
 class Trace:
@@ -73,6 +76,12 @@ class Trace:
         scales = self.system.problem.layout.scales
         return scales.length, scales.pressure, scales.force, self.system.rotor.clock.rate
 
+    def _tilt(self, e: Array) -> dict[str, float]:
+        """Slopes of the shaft in two bearings [rad]."""
+        if len(e) == 2 or self.case.rotor is None:
+            return {}
+        return {"slope_x": float(e[2]) / self.case.rotor.lever, "slope_y": float(e[3]) / self.case.rotor.lever}
+
     @cached_property
     def _area(self) -> Array:
         return node_area(self.system.problem.layout.wall.film, self.case.bearing.journal_radius)
@@ -83,7 +92,8 @@ class Trace:
         layout, rotor = self.system.problem.layout, self.system.rotor
         t, (e, v) = instant.tau / rate, (instant.moving.e * length, instant.moving.v * length * rate)
         w = instant.x[: layout.n_wall]
-        inertia = rotor.inertia * force / (length * rate**2)
+        kinetic = 0.5 * float(instant.moving.v @ rotor.inertia @ instant.moving.v) * force * length
+        tilt = self._tilt(e)
         return {
             "time": t,
             "x": float(e[0]),
@@ -92,7 +102,8 @@ class Trace:
             "velocity_y": float(v[1]),
             "shaft_speed": rotor.schedule.speed(t),
             "shaft_angle": rotor.schedule.angle(t),
-            "kinetic_energy": 0.5 * inertia * float(v @ v),
+            "kinetic_energy": kinetic,
+            **tilt,
             "elastic_energy": 0.5 * float(w @ layout.elastic_force(w)) * force * length,
         }
 
@@ -147,7 +158,7 @@ class Trace:
     def histories(self) -> tuple[Array, Named]:
         """Time [s] and everything over it."""
         time, speed = self.column("time"), self.column("shaft_speed")
-        over = {name: self.column(name) for name in AS_THEY_ARE}
+        over = {name: self.column(name) for name in (*AS_THEY_ARE, *(n for n in TILT if n in self.rows[0]))}
         elastic = self.column("elastic_energy")
         over["elastic_energy"] = elastic - elastic[0]
         over["load_work"] = np.cumsum(self.column("load_step"))
@@ -176,31 +187,45 @@ class Trace:
         problem = self.system.problem
         mesh = problem.layout.wall.film
         whole, instants = mesh.axial.whole, list(self.frames)
+        first = len(mesh.theta) // (1 if len(problem.displacement) == 2 else 2)  # of two bearings the first is shown
         coords: dict[str, NDArray[np.generic]] = {
             "frame": np.array([instant.tau for instant in instants]) / rate,
-            "petal": np.arange(len(mesh.theta)),
-            "root_angle": mesh.theta[:, 0] - mesh.phi[0],
+            "petal": np.arange(first),
+            "root_angle": mesh.theta[:first, 0] - mesh.phi[0],
             "phi_exposed": mesh.phi,
             "z": mesh.axial.whole_z,
         }
         films = [problem.at(displacement=instant.e).film(instant.x) * length for instant in instants]
         fields: Named = {
-            "frame_pressure": np.array([whole(problem.pressure(instant.x) * ambient) for instant in instants]),
-            "frame_film": np.array([whole(film) for film in films]),
-            "frame_x": np.array([instant.e[0] * length for instant in instants]),
-            "frame_y": np.array([instant.e[1] * length for instant in instants]),
+            "frame_pressure": np.array([whole(problem.pressure(at.x)[:first] * ambient) for at in instants]),
+            "frame_film": np.array([whole(film[:first]) for film in films]),
+            "frame_x": np.array([self._at_first(instant)[0] for instant in instants]),
+            "frame_y": np.array([self._at_first(instant)[1] for instant in instants]),
         }
         if self.case.petals is not None:
-            package = build_mesh(self.case)
+            package = build_mesh(self._whole)
             coords["phi"] = package.phi
             free = petals_of(self.case)[1].free_radius(package.phi)
             fields["frame_radius"] = np.array([self._radii(instant, package.shape, free) for instant in instants])
         return coords, fields
 
+    @cached_property
+    def _whole(self) -> Case:
+        """The case on the grid that is solved: of a shaft that tilts the whole length."""
+        return (
+            self.case if len(self.system.problem.displacement) == 2 else self.case.replace(**{"model.symmetry": False})
+        )
+
+    def _at_first(self, instant: Instant) -> Array:
+        """Displacement of the journal in the (first) bearing [m]."""
+        e = instant.e * self._units[0]
+        return e if len(e) == 2 else e[:2] - e[2:]
+
     def _radii(self, instant: Instant, shape: tuple[int, ...], free: Array) -> Array:
         """Mid-surfaces of the petals at an instant, (petal, node, axial) [m]."""
         layout = self.system.problem.layout
         W = np.zeros(shape)
-        W[:, 1:] = instant.x[: layout.n_wall].reshape(shape[0], -1, shape[2]) * layout.scales.length
+        n = int(np.prod(W[:, 1:].shape))  # of two bearings the first
+        W[:, 1:] = instant.x[:n].reshape(shape[0], -1, shape[2]) * layout.scales.length
         radii: Array = layout.wall.film.axial.whole(free[None, :, None] + W)
         return radii

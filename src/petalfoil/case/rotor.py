@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Self
+
+from pydantic import model_validator
 
 from petalfoil.case.definition import Definition
-from petalfoil.case.fields import Quantity
+from petalfoil.case.fields import VALUE_PROBLEM, Quantity, refuse
 from petalfoil.case.sections import MAX_SPEED
 
 
 class Rotor(Definition):
-    """A rigid rotor: the part of its mass that this bearing carries, and what turns with it."""
+    """A rigid rotor: its mass, what turns with it, and the second bearing if it has one.
+
+    Without `span` the rotor moves parallel to its axis, and `mass` is the part of it on this bearing. With `span` it
+    runs in two of these bearings, as far to the left as to the right of its mass centre, and may tilt; `mass` is then
+    all of it.
+    """
 
     section: ClassVar[str] = "rotor"
 
@@ -21,6 +28,26 @@ class Rotor(Definition):
     ] = 0.0
     rotating_load: Annotated[
         float, Quantity(unit="N", meaning="rotating load", symbol="F_r", at_least=0.0, at_most=1e9)
+    ] = 0.0
+    span: (
+        Annotated[
+            float, Quantity(unit="m", meaning="distance of two equal bearings", symbol="2 l", above=0.0, at_most=1e3)
+        ]
+        | None
+    ) = None
+    transverse_inertia: Annotated[
+        float,
+        Quantity(unit="kg*m^2", meaning="moment of inertia about a diameter", symbol="I_t", at_least=0.0, at_most=1e9),
+    ] = 0.0
+    polar_inertia: Annotated[
+        float,
+        Quantity(unit="kg*m^2", meaning="moment of inertia about the axis", symbol="I_p", at_least=0.0, at_most=1e9),
+    ] = 0.0
+    skew: Annotated[
+        float,
+        Quantity(
+            unit="rad", meaning="angle of the principal axis to the axis", symbol="chi", at_least=-0.1, at_most=0.1
+        ),
     ] = 0.0
     rotating_speed: (
         Annotated[
@@ -35,3 +62,29 @@ class Rotor(Definition):
         ]
         | None
     ) = None
+
+    @property
+    def lever(self) -> float:
+        """Half the distance of two bearings [m]; 0 for one."""
+        return 0.5 * self.span if self.span else 0.0
+
+    @property
+    def mass_on_bearing(self) -> float:
+        """Mass that a bearing carries [kg]."""
+        return 0.5 * self.mass if self.span else self.mass
+
+    @model_validator(mode="after")
+    def _tilts_as_a_body(self) -> Self:
+        """Refuse inertias without a second bearing, a second bearing without, and more than a body can have."""
+        if self.span is None and (self.transverse_inertia or self.polar_inertia or self.skew):
+            text = "inertias and skew move only a rotor in two bearings: give their span, or leave them out"
+            raise refuse(VALUE_PROBLEM, text, "together with span")
+        if self.span is not None and not self.transverse_inertia > 0.0:
+            text = "a rotor in two bearings (span) may tilt: give its transverse_inertia, greater than 0 kg*m^2"
+            raise refuse(VALUE_PROBLEM, text, "transverse_inertia greater than 0 kg*m^2")
+        if self.polar_inertia > 2.0 * self.transverse_inertia:
+            text = (
+                f"polar_inertia {self.polar_inertia:g} kg*m^2 is more than a body of this transverse_inertia can have"
+            )
+            raise refuse(VALUE_PROBLEM, text, "at most twice transverse_inertia")
+        return self

@@ -11,7 +11,7 @@ by Newton's method, in as many unknowns as contacts slide under load.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -31,8 +31,15 @@ Complex = NDArray[np.complex128]
 AGREE = 1e-11
 """Residual of the slips, over the largest slip without friction, below which they agree with their friction."""
 
+NEAR = 1e-3
+"""The same while contacts are softened."""
+
+EASY, STIFFEN = 10.0, 10.0
+"""Stiffness of the contacts, over that of what they hold, with which Newton's method has no trouble; factor from one
+stiffness to the next."""
+
 STEPS = 200
-"""Most steps of Newton: friction has a kink where slipping begins."""
+"""Most steps of Newton with one stiffness: friction has a kink where slipping begins."""
 
 SHORTEST = 1e-3
 """Shortest step, over Newton's: one is taken that does not lessen the residual rather than none."""
@@ -138,25 +145,60 @@ class Cycle:
     def settled(self, free: Complex, compliance: Complex, work: Work) -> Complex:
         """Slips by a unit displacement (k,) that agree with their friction, from those without it.
 
+        Contacts much stiffer than what they hold leave Newton's method little way between sticking and slipping: they
+        are stiffened by and by.
+
         Raises
         ------
         ConvergenceError
-            They did not.
+            They did not agree.
         """
-        enough = AGREE * float(np.max(np.abs(free), initial=0.0))
-        sticking = np.eye(len(free)) + compliance * self.sliding.friction.stiffness
+        stiffness, largest = self.sliding.friction.stiffness, float(np.max(np.abs(free), initial=0.0))
+        size = float(np.linalg.norm(compliance * stiffness, 2)) if len(free) else 0.0
+        softer, steps = max(1.0, size / EASY), 0
+        here = self.softened(softer)
+        sticking = np.eye(len(free)) + compliance * here.sliding.friction.stiffness
         slip = np.asarray(np.linalg.solve(sticking, free), dtype=np.complex128)
-        left = self.left(slip, free, compliance)
+        while True:
+            slip, count = here.solved(slip, (free, compliance), (AGREE if softer == 1.0 else NEAR) * largest, work)
+            steps += count
+            slipping = here.slipping(slip)
+            if softer == 1.0:
+                work.note("harmonic balance", steps=steps, contacts=len(slip), slipping=int(np.sum(slipping)))
+                return slip
+            ahead = max(1.0, softer / STIFFEN)
+            slip = np.where(slipping, slip, slip * ahead / softer)  # what sticks holds with about the same force
+            softer, here = ahead, self.softened(ahead)
+
+    def softened(self, times: float) -> Cycle:
+        """The same with softer sticks."""
+        friction = replace(self.sliding.friction, stiffness=self.sliding.friction.stiffness / times)
+        return replace(self, sliding=replace(self.sliding, friction=friction))
+
+    def slipping(self, slip: Complex) -> NDArray[np.bool_]:
+        """Contacts that slip, (k,)."""
+        slipping: NDArray[np.bool_] = (
+            self.sliding.friction.stiffness * np.abs(slip) * self.amplitude > self.sliding.limit
+        )
+        return slipping
+
+    def solved(self, slip: Complex, system: tuple[Complex, Complex], enough: float, work: Work) -> tuple[Complex, int]:
+        """Slips whose residual is at most `enough`, and the steps it took from `slip`.
+
+        Raises
+        ------
+        ConvergenceError
+            There were too many.
+        """
+        left = self.left(slip, *system)
         for count in range(STEPS):
             if np.max(np.abs(left), initial=0.0) <= enough:
-                slides = self.sliding.friction.stiffness * np.abs(slip) * self.amplitude > self.sliding.limit
-                work.note("harmonic balance", steps=count, contacts=len(slip), slipping=int(np.sum(slides)))
-                return slip
-            slip, left = self.improved(slip, left, (free, compliance))
+                return slip, count
+            slip, left = self.improved(slip, left, system)
         raise ConvergenceError(
             f"friction between petals does not agree with their slips in {STEPS} steps",
             history=work.history,
-            advice="ask for a larger amplitude, or for the stuck limit without one; a wider friction_width is smoother",
+            advice="ask for another amplitude, or for the stuck limit without one; a wider friction_width is smoother",
         )
 
     def left(self, slip: Complex, free: Complex, compliance: Complex) -> Complex:

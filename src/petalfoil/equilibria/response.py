@@ -150,7 +150,7 @@ class Response:
 
     def units(self) -> tuple[Values, Values]:
         """Both unit displacements: changes of the unknowns (n, 2), and `dF/de` (2, 2) of film and contacts (E4) [1]."""
-        both = [self.unit(k) for k in (0, 1)]
+        both = [self.unit(k) for k in range(self.motion.problem.layout.wall.contacts.by_e.shape[1])]
         columns = [self.force(change, reactions) for change, reactions in both]
         return np.column_stack([change for change, _ in both]), np.column_stack(columns)
 

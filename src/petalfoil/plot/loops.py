@@ -51,9 +51,7 @@ def hysteresis(ds: xr.Dataset) -> Figure:
     style.dress(above, "", "reaction against the displacement [N]")
     style.dress(below, "eccentricity  e [µm]", "less the mean of both ways [N]")
     style.legend(above, loc="upper left")
-    style.set_title(
-        fig, ds, "friction between petals", f"a cycle loses {cycle(ds):.3g} µJ", style.grid_fact(ds)
-    )
+    style.set_title(fig, ds, "friction between petals", f"a cycle loses {cycle(ds):.3g} µJ", style.grid_fact(ds))
     return fig
 
 

@@ -41,9 +41,9 @@ class FilmForce:
         mesh, balance = layout.wall.film, layout.balance
         area = balance.area * balance.radius**2 * layout.scales.pressure / layout.scales.force
         numbers = np.where(mesh.unknown >= 0, mesh.unknown, mesh.n_unknown).ravel()
+        normals = layout.wall.contacts.by_e[layout.wall.contacts.journal].T  # a gap narrows where the film pushes
         parts = [
-            add_up(numbers, np.broadcast_to(-area * n[:, :, None], mesh.shape).ravel(), mesh.n_unknown + 1)[:-1]
-            for n in (np.cos(mesh.theta), np.sin(mesh.theta))
+            add_up(numbers, np.broadcast_to(area, mesh.shape).ravel() * n, mesh.n_unknown + 1)[:-1] for n in normals
         ]
         return cls(np.array(parts))
 

@@ -136,6 +136,8 @@ HISTORIES: dict[str, Variable] = {
     "y": Variable(_TIME, "m", "displacement of the journal's centre along y", "e_y"),
     "velocity_x": Variable(_TIME, "m s-1", "velocity of the journal's centre along x", "v_x"),
     "velocity_y": Variable(_TIME, "m s-1", "velocity of the journal's centre along y", "v_y"),
+    "slope_x": Variable(_TIME, "rad", "slope of the shaft's axis along x", "a_x"),
+    "slope_y": Variable(_TIME, "rad", "slope of the shaft's axis along y", "a_y"),
     "shaft_speed": Variable(_TIME, "rad s-1", "angular velocity of the shaft", "omega"),
     "shaft_angle": Variable(_TIME, "rad", "angle that the shaft has turned", "theta_s"),
     "min_film": Variable(_TIME, "m", "smallest film thickness", "min h"),

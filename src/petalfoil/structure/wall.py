@@ -104,8 +104,14 @@ class Wall:
         return int(self.elasticity.difference.shape[1])
 
     def film_thickness(self, W: Array, e: Array) -> Array:
-        """Film over deflections `W` (n,) and journal displacement `e` (2,), shape of the film mesh [m]."""
-        normal = self.film.theta
-        displaced = self.rest_film - (e[0] * np.cos(normal) + e[1] * np.sin(normal))[:, :, None]
+        """Film over deflections `W` (n,) and journal displacement `e`, shape of the film mesh [m].
+
+        `e` is (2,), or (4,) where the shaft tilts (`pair`).
+        """
+        if len(e) == 2:  # the same along the shaft
+            normal = self.film.theta
+            displaced = self.rest_film - (e[0] * np.cos(normal) + e[1] * np.sin(normal))[:, :, None]
+        else:
+            displaced = self.rest_film + (self.contacts.by_e[self.contacts.journal] @ e).reshape(self.rest_film.shape)
         thickness: Array = displaced + np.append(W, 0.0)[self.film_unknown]
         return thickness

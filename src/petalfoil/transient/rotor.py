@@ -3,7 +3,10 @@
     M e'' = F_film + F_contact + load + rotating load + unbalance      (O1)
 
 A rigid rotor whose mass centre is `u` off the axis: the unbalance is `m u (omega^2 n - alpha t)` with `n` the direction
-of the mass centre and `t` across it, turned with the shaft.
+of the mass centre and `t` across it, turned with the shaft. In two equal bearings, `l` to both sides of the mass
+centre, the shaft's slopes `a` move too, as `l a`, with the moments over `l`:
+
+    I_t a_x'' + I_p omega a_y' = M_x + (I_t - I_p) chi omega^2 n_x,  I_t a_y'' - I_p omega a_x' = M_y + ...        (O5)
 """
 
 from __future__ import annotations
@@ -49,16 +52,18 @@ class Clock:
 
 @dataclass(frozen=True)
 class RotorMotion:
-    """Mass and loads of the rotor.
+    """Masses and loads of the rotor; `d` is 2, or 4 for two bearings on a shaft that tilts.
 
     Attributes
     ----------
-    inertia : float
-        `M = m h_ref rate^2 / F_ref` [1].
-    load : (2,) array
+    inertia : (d, d) array
+        `M`: masses times `h_ref rate^2 / F_ref` [1].
+    turning : (d, d) array
+        Gyroscopic matrix at one unit of speed, `rate` [1].
+    load : (d,) array
         Constant load over the unit of force [1].
-    unbalance : float
-        `m u / F_ref` [s^2].
+    unbalance : (along, tilt)
+        `m u / F_ref`, and `(I_t - I_p) chi / (l F_ref)` of a shaft whose principal axis is askew by `chi` [s^2].
     rotating : (force, speed)
         Rotating load over the unit of force [1] and its speed [rad/s]; None turns with the shaft.
     schedule : Schedule
@@ -67,9 +72,10 @@ class RotorMotion:
         Units of time.
     """
 
-    inertia: float
+    inertia: Array
+    turning: Array
     load: Array
-    unbalance: float
+    unbalance: tuple[float, float]
     rotating: tuple[float, float | None]
     schedule: Schedule
     clock: Clock
@@ -86,25 +92,41 @@ class RotorMotion:
         if case.rotor is None:
             raise UsageError(NO_ROTOR)
         rotor, clock, given = case.rotor, Clock.of(case, scales, schedule), constant_load(case, load)
+        unit, lever = scales.length * clock.rate**2 / scales.force, rotor.lever
+        masses, turning, force = [rotor.mass, rotor.mass], np.zeros((2, 2)), np.array(given) / scales.force
+        askew = 0.0
+        if lever:
+            masses += [rotor.transverse_inertia / lever**2] * 2
+            turning = np.zeros((4, 4))
+            turning[2, 3], turning[3, 2] = (sign * rotor.polar_inertia / lever**2 * unit for sign in (1.0, -1.0))
+            force = np.append(force, [0.0, 0.0])
+            askew = (rotor.transverse_inertia - rotor.polar_inertia) * rotor.skew / (lever * scales.force)
         return cls(
-            inertia=rotor.mass * scales.length * clock.rate**2 / scales.force,
-            load=np.array(given) / scales.force,
-            unbalance=rotor.mass * rotor.unbalance / scales.force,
+            inertia=unit * np.diag(masses),
+            turning=turning,
+            load=force,
+            unbalance=(rotor.mass * rotor.unbalance / scales.force, askew),
             rotating=(rotor.rotating_load / scales.force, rotor.rotating_speed),
             schedule=schedule,
             clock=clock,
         )
 
+    def gyroscopic(self, tau: float) -> Array:
+        """Gyroscopic matrix at time `tau`, (d, d) [1]."""
+        return self.turning * (self.schedule.speed(tau / self.clock.rate) / self.clock.rate)
+
     def outside(self, tau: float) -> Array:
-        """All that acts on the rotor but the bearing, at time `tau` [units of time], (2,) [1]."""
+        """All that acts on the rotor but the bearings, at time `tau` [units of time], (d,) [1]."""
         t = tau / self.clock.rate
         omega, alpha, angle = self.schedule.speed(t), self.schedule.acceleration(t), self.schedule.angle(t)
         along, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
-        off_centre = self.unbalance * (omega**2 * along - alpha * across)
+        turning = omega**2 * along - alpha * across
         force, speed = self.rotating
         turned = angle if speed is None else speed * t
-        rotating = force * np.array([np.cos(turned), np.sin(turned)])
-        total: Array = self.load + rotating + off_centre
+        total: Array = self.load.copy()
+        total[:2] += force * np.array([np.cos(turned), np.sin(turned)]) + self.unbalance[0] * turning
+        if len(total) > 2:
+            total[2:] += self.unbalance[1] * turning
         return total
 
     def bearing_number(self, tau: float) -> float:

@@ -58,7 +58,8 @@ class System:
             base.mass,
             rubbing,
         )
-        return Stage(problem, base, self.rotor.inertia, self.rotor.outside(tau), self.film)
+        rotor = self.rotor
+        return Stage(problem, base, rotor.inertia, rotor.gyroscopic(tau), rotor.outside(tau), self.film)
 
 
 @dataclass(frozen=True)
@@ -147,7 +148,8 @@ def estimate(system: System, instants: tuple[Instant, Instant, Instant], step: f
 
     The difference to the formula of third order, passed through the tangent: what is stiff must not be overestimated.
     """
-    nothing = Moving(np.zeros_like(instants[0].moving.mass), np.zeros(2), np.zeros(2))
+    still = np.zeros_like(instants[0].e)
+    nothing = Moving(np.zeros_like(instants[0].moving.mass), still, still)
     wrong = nothing.plus(step, *zip(ERROR, (instant.change for instant in instants), strict=True))
     rate, n_wall = tangent.rate, system.problem.layout.n_wall
     residual = np.concatenate([np.zeros(n_wall), rate * wrong.mass])
@@ -156,11 +158,12 @@ def estimate(system: System, instants: tuple[Instant, Instant, Instant], step: f
         system.stage(base, instants[2].tau, step, instants[0]).problem,
         base,
         system.rotor.inertia,
-        np.zeros(2),
+        system.rotor.gyroscopic(instants[2].tau),
+        still,
         system.film,
     )
-    settle, de, _ = freely(bare, residual, tangent, (np.ones(system.film.by_P.shape[1]), np.zeros(2)))
+    settle, de, _ = freely(bare, residual, tangent, (np.ones(system.film.by_P.shape[1]), still))
     change = settle + tangent.units @ de
     pressures = change[n_wall:]
     spread = float(np.sqrt(np.mean(pressures**2))) if len(pressures) else 0.0
-    return max(float(np.hypot(*de)), spread)
+    return max(float(np.linalg.norm(de)), spread)

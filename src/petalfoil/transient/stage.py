@@ -69,8 +69,8 @@ class Stage:
         Film and wall with the stage's base mass, speed and rate; its displacement does not matter.
     base : Moving
         Where the rates lead from.
-    inertia : float
-        `M` [1].
+    inertia, gyroscopic : (d, d) array
+        `M`, and what turns velocities across [1].
     outside : (2,) array
         Loads at the stage's time over the unit of force [1].
     film : FilmForce
@@ -79,7 +79,8 @@ class Stage:
 
     problem: StepProblem
     base: Moving
-    inertia: float
+    inertia: Array
+    gyroscopic: Array
     outside: Array
     film: FilmForce
 
@@ -91,7 +92,8 @@ class Stage:
     def left(self, P: Array, reaction: Array, e: Array) -> Array:
         """Force that is left over for acceleration at `e` (O3), (2,) [1]; `reaction` is the contacts' force."""
         reached = e - self.base.e - self.base.v / self.rate
-        force: Array = self.film.at(P) + reaction + self.outside - self.inertia * self.rate**2 * reached
+        turned = self.gyroscopic @ (self.rate * (e - self.base.e))
+        force: Array = self.film.at(P) + reaction + self.outside - self.inertia @ (self.rate**2 * reached) - turned
         return force
 
     def pressed(self, lam: Array) -> Stage:
@@ -249,7 +251,7 @@ def freely(stage: Stage, residual: Array, tangent: Tangent, at: tuple[Array, Arr
     (P, e), (settle, lam) = at, tangent.settle(residual)
     reaction = stage.problem.layout.wall.contacts.by_e.T @ lam
     left = stage.left(P + settle[stage.problem.positive], reaction, e)
-    stiffness: Array = stage.inertia * stage.rate**2 * np.eye(2) - tangent.gradient
+    stiffness: Array = stage.inertia * stage.rate**2 + stage.gyroscopic * stage.rate - tangent.gradient
     return settle, np.asarray(np.linalg.solve(stiffness, left), dtype=np.float64), stiffness
 
 

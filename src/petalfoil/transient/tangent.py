@@ -184,7 +184,7 @@ def bordered(rate: float, response: Response, gaps: tuple[Mask, Ties, Index], ex
     """The factor with both displacements of the journal."""
     problem = response.motion.problem
     by_e, film = problem.layout.wall.contacts.by_e, FilmForce.of(problem)
-    both = [everything(response, exchange, response.unit(k), by_e[:, k]) for k in (0, 1)]
+    both = [everything(response, exchange, response.unit(k), by_e[:, k]) for k in range(by_e.shape[1])]
     gradient = [film.by_P @ change[problem.positive] + by_e.T @ lam for change, lam in both]
     units = np.column_stack([change for change, _ in both])
     return Tangent(rate, response, *gaps, exchange, units, np.column_stack(gradient))

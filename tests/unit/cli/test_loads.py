@@ -268,6 +268,13 @@ def test_coefficients_over_speeds(cli, loads, case) -> None:
     assert [point["stiffness"] is None for point in points] == [False, True, False]
 
 
+def test_petals_rub_at_the_amplitude_asked_for(cli, loads, case) -> None:
+    cli("coefficients", case, "--amplitude", "2 um")
+    cli("coefficients", case, "--speeds", "100, 200", "--amplitude", "2 um")
+    cli("coefficients", case)
+    assert [options["amplitude"] for _, _, options in loads.calls] == [2e-6, 2e-6, None]
+
+
 def test_csv_has_its_units_in_the_header(cli, loads, case, tmp_path: Path) -> None:
     path = tmp_path / "k.csv"
     assert cli("coefficients", case, "--speeds", "100, 200", "--frequency", "10, 20", "--csv", str(path)).exit_code == 0
@@ -367,6 +374,7 @@ REFUSED = {
     "a top speed in newtons": (("runup", "--load", "1 N", "--to", "1 N"), "--to"),
     "points that are no number": (("runup", "--to", "1 rpm", "--points", "many"), "--points"),
     "a frequency in newtons": (("coefficients", "--frequency", "1 N"), "--frequency"),
+    "an amplitude in newtons": (("coefficients", "--amplitude", "1 N"), "--amplitude"),
     "one speed and several": (("coefficients", "--speed", "1", "--speeds", "1, 2"), "--speeds"),
     "no speeds for ROSS": (("coefficients", "--ross", "b.toml"), "--ross"),
     "few frequencies for ROSS": (("coefficients", *AXES[:2], "--frequency", "1", "--ross", "b.toml"), "--ross"),
