@@ -145,7 +145,7 @@ class Orbit:
             self.system = system_of(self.case, schedule, course.load)
             tau = begin * self.system.rotor.clock.rate
             if restart is None:
-                self.start = at_rest(self.case, self.system, tau, course.slope, self.work)
+                self.start = at_rest(self.case, self.system, course, self.work)
             else:
                 self.start = instant_of(restart, self.system, tau)
         self.end = begin + course.lasts(schedule, begin)
@@ -247,7 +247,7 @@ def first_position(case: Case, course: Course, work: Work) -> Load | None:
     with one_thread():
         found, _ = settled(there, load, work)
     x, y = found.answer.problem.displacement * found.answer.problem.layout.scales.length
-    return float(x), float(y)
+    return float(x) - (0.0 if case.rotor is None else case.rotor.unbalance), float(y)
 
 
 def system_of(case: Case, schedule: Schedule, load: Load | None) -> System:
@@ -262,17 +262,25 @@ def system_of(case: Case, schedule: Schedule, load: Load | None) -> System:
     return System(still, rotor, FilmForce.of(problem), friction_of(case, problem.layout))
 
 
-def at_rest(case: Case, system: System, tau: float, slope: tuple[float, float], work: Work) -> Instant:
-    """The journal held where it is, film and petals in equilibrium, and let go."""
-    speed = system.rotor.schedule.speed(tau / system.rotor.clock.rate)
-    if len(system.problem.displacement) > 2:
-        lever = 0.0 if case.rotor is None else case.rotor.lever / system.problem.layout.scales.length
-        place = system.problem.displacement + lever * np.array([0.0, 0.0, *slope])
-        both = system.problem.at(bearing_number=system.rotor.bearing_number(tau), displacement=place)
-        at = solve_cold(CoupledProblem(both.layout, both.bearing_number, both.displacement), work)
-        return released(system, tau, (at.x, at.lam, at.in_contact), (both.displacement, np.zeros(4)))
-    answer, _ = chosen(case.replace(**{"operation.speed": speed}), work)
-    return released(system, tau, (answer.x, answer.lam, answer.in_contact), (answer.problem.displacement, np.zeros(2)))
+def at_rest(case: Case, system: System, course: Course, work: Work) -> Instant:
+    """The journal held where it is, film and petals in equilibrium, and let go at time zero.
+
+    From a balance its mass centre rests, and the shaft turns about that: a start without a blow.
+    """
+    rotor, scales = case.rotor, system.problem.layout.scales
+    speed, place = system.rotor.schedule.speed(0.0), system.problem.displacement
+    off = np.zeros_like(place)  # of the axis from the mass centre, over the reference length
+    if rotor is not None and course.initial == "balance":
+        off[:2] = [-rotor.unbalance / scales.length, 0.0]
+    if rotor is None or len(place) == 2:
+        answer, _ = chosen(case.replace(**{"operation.speed": speed}), work)
+    else:
+        place = place + rotor.lever / scales.length * np.array([0.0, 0.0, *course.slope])
+        both = system.problem.at(bearing_number=system.rotor.bearing_number(0.0), displacement=place)
+        answer = solve_cold(CoupledProblem(both.layout, both.bearing_number, both.displacement), work)
+    turning = np.zeros_like(place)
+    turning[:2] = np.array([-off[1], off[0]]) * speed / system.rotor.clock.rate
+    return released(system, 0.0, (answer.x, answer.lam, answer.in_contact), (place, turning))
 
 
 def released(

@@ -40,7 +40,7 @@ def orbit(  # noqa: PLR0913 - the options of the verb
         Time to follow instead [s].
     initial : pair of float or str, or "balance", optional
         Displacement (x, y) that the journal is let go from, at rest, instead of the case's eccentricity [m]; "balance"
-        is where the constant load is balanced.
+        is where the constant load is balanced, the shaft turning about its mass centre.
     speeds : sequence of (time, speed), or str, optional
         Speed that changes [s, rad/s], straight lines between; as a text a ramp, ``"0 rpm : 60000 rpm : 2 s"``. Time
         counts from the start of the motion, also in a restart.
