@@ -34,7 +34,7 @@ ENDLESS = -1.0
 CHUNK = 2000
 """Descent steps between looks at the clock."""
 LOST = 1.0
-"""Petals that move so far within a step of petalfoil's, where they move by hundredths, are lost [reference films]."""
+"""Petals that move so far within a step of petalfoil's, where they move by a tenth, are lost [reference films]."""
 
 
 def placed(orbit: Orbit, at: Instant, e: Array | None = None) -> CoupledProblem:
@@ -121,14 +121,11 @@ class ExplicitMotion:
         Where it begins.
     tolerance : float
         Force that may be left on a node of the package, over ambient pressure on it [1].
-    every : int
-        Film steps, the film's thickness frozen, between settlings of the package.
     """
 
     orbit: Orbit
     start: Instant
     tolerance: float
-    every: int = 1
 
     def __post_init__(self) -> None:
         start = self.start
@@ -154,23 +151,22 @@ class ExplicitMotion:
                 self.settle(until)
             if self.lost:
                 return f"blew up after {self.film_steps} film steps"
-        return f"went on for {self.film_steps} film steps"
+        return f"{self.film_steps} film steps until {'its time was up' if self.tau < end else 'the end'}"
 
     def film_and_rotor(self) -> None:
-        """Explicit steps of the gas in the cells, as long as (59) allows, then one of the rotor."""
+        """An explicit step of the gas in the cells, as long as (59) allows, then one of the rotor."""
         cells, rotor = cells_at(self.problem, self.w, self.unknowns), self.orbit.system.rotor
         self.P *= np.where(cells.moves > 0.0, self.hold / cells.hold, 1.0)  # the gas stays while its room changes
         self.hold, fit = cells.hold, exponential_fit(self.P, cells)
         dt = NUMBERS.time_share / largest_rate(self.P, cells)
-        for _ in range(self.every):
-            self.P += dt * inflow(self.P, cells, fit) / cells.hold
-        step = self.every * 2.0 * self.orbit.system.problem.clock * dt
+        self.P += dt * inflow(self.P, cells, fit) / cells.hold
+        step = 2.0 * self.orbit.system.problem.clock * dt
         self.tau += step
         force = self.orbit.system.film.at(self.unknowns) + rotor.outside(self.tau)
         self.v = self.v + step * np.linalg.solve(rotor.inertia * np.eye(2), force)  # no gyroscopic forces: two axes
         self.e = self.e + step * self.v
         self.problem = self.problem.at(displacement=self.e)
-        self.film_steps += self.every
+        self.film_steps += 1
 
     def settle(self, until: float) -> None:
         """Bring the package to rest under the pressures, unless it gets lost or time is up."""
@@ -183,5 +179,9 @@ class ExplicitMotion:
     @property
     def lost(self) -> bool:
         """Film or package have left the motion."""
-        moved = self.w - self.start.x[: len(self.w)]
-        return not (np.all(np.isfinite(self.P)) and np.max(np.abs(moved), initial=0.0) < LOST)
+        return not (np.all(np.isfinite(self.P)) and self.moved < LOST)
+
+    @property
+    def moved(self) -> float:
+        """How far the petals have moved at most since the start [reference films]."""
+        return float(np.max(np.abs(self.w - self.start.x[: len(self.w)]), initial=0.0))

@@ -23,7 +23,7 @@ STEPS = 8192
 def cycle() -> tuple[Array, Array, Array]:
     """Phase, slip and friction (D2) over the second of two cycles of the slip, (steps, k)."""
     count = len(LIMIT)
-    law = Friction(1.0, STIFFNESS, sp.csr_array((count, count)), sp.csr_array((count, count)))
+    law = Friction(1.0, STIFFNESS, sp.csr_array((count, count)), sp.csr_array((count, count)), 1.0)
     phase = 2.0 * np.pi * np.arange(2 * STEPS) / STEPS
     slip = AMPLITUDE * np.cos(phase)[:, None]
     forces, before = [], (np.zeros(count), np.zeros(count))

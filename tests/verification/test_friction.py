@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 
 ARM = 0.01
 """Half a thickness of strips of unit length."""
-WIDTH = 3e-5
+WIDTH = 3e-4
 """Slip within which friction builds up [UNIT]; the slips of these tests are of the order of 1."""
 
 
@@ -41,7 +41,7 @@ def start(
     """The equilibrium without friction, from which a path begins."""
     found, outcome = active_set(problem, np.zeros(problem.n), closed, LinearSolver(), ActiveOptions(max_steps=40))
     assert found is not None, outcome
-    return found.x, found.lam, found.closed, Rubbed.fresh(friction, found.x)
+    return found.x, found.lam, found.closed, Rubbed.fresh(friction, found.x, found.lam)
 
 
 def follow(
@@ -72,7 +72,7 @@ def propped(cells: int, mu: float) -> tuple[ElasticProblem, Array, Friction]:
         [shell], [uniform_load(shell)[1:, 0]], rows_of(cells, ([cells - 1], -1.0)), np.array([GAP])
     )
     slip = sp.csr_array(ARM * slopes(phi)[[cells - 1], 1:])
-    return problem, problem.force.copy(), Friction(mu, np.full(1, mu / WIDTH), slip, sp.csr_array(np.ones((1, 1))))
+    return problem, problem.force.copy(), Friction(mu, np.zeros(1), slip, sp.csr_array(np.ones((1, 1))), WIDTH)
 
 
 def cycle_of_tip(cells: int, mu: float, steps: int = 16) -> float:
@@ -150,7 +150,7 @@ def leaves(cells: int, mu: float, width: float = WIDTH) -> tuple[ElasticProblem,
     tip[[cells - 1, 2 * cells - 1]] = 0.5 * cells
     turn = slopes(phi)[:, 1:]
     slip = sp.csr_array(ARM * sp.hstack([turn, turn], format="csr"))
-    return problem, tip, Friction(mu, np.full(cells, mu / width), slip, halves(cells + 1)[:, 1:])
+    return problem, tip, Friction(mu, np.zeros(cells), slip, halves(cells + 1)[:, 1:], width)
 
 
 def leaf_loop(cells: int, mu: float, width: float = 1e-5, steps: int = 8) -> tuple[Array, Array, float]:

@@ -95,7 +95,8 @@ def assembled(friction: Friction, problem: CoupledProblem, work: Work) -> Slid |
     closed, _ = active_set(unloaded(problem), *found, work.package_solver, ActiveOptions())
     if closed is None:
         return None
-    return Slid(closed.x, closed.lam, closed.closed, closed.residual, Rubbed.fresh(friction, closed.x), 0.0)
+    rubbed = Rubbed.fresh(friction, closed.x, closed.lam)
+    return Slid(closed.x, closed.lam, closed.closed, closed.residual, rubbed, 0.0)
 
 
 def moved(

@@ -296,7 +296,7 @@ def released(
     force = journal_force(problem, x[problem.positive], lam) + rotor.outside(tau) - rotor.gyroscopic(tau) @ v
     speeding = np.asarray(np.linalg.solve(rotor.inertia, force), dtype=np.float64)
     change = Moving(-outflow, v, speeding)
-    rubbed = None if system.friction is None else Rubbed.fresh(system.friction, x)
+    rubbed = None if system.friction is None else Rubbed.fresh(system.friction, x, lam)
     return Instant(tau, x, lam, closed, Moving(problem.stored(x), e, v), change, rubbed)
 
 

@@ -69,7 +69,8 @@ class Sliding:
         normal = friction.normal(answer.lam)
         kept = np.flatnonzero(normal > 0.0)
         slip, share = friction.slip[kept], friction.share[kept]
-        law = Friction(friction.coefficient, friction.stiffness[kept], slip, share)
+        stick = friction.sticking(answer.lam).stiffness[kept]
+        law = Friction(friction.coefficient, stick, slip, share, friction.width)
         return cls(law, law.coefficient * normal[kept])
 
     def slips(self, change: NDArray[Any]) -> NDArray[Any]:

@@ -58,6 +58,7 @@ def slide(
 ) -> Slid | None:
     """Equilibrium from the state `before` (unknowns, reactions, closed gaps, friction); None if not found."""
     x, lam, closed, rubbed = before
+    friction = friction.sticking(lam)
     rubbing, doubt = Rubbing(friction, rubbed, friction.normal(lam)), np.zeros(len(closed), dtype=bool)
     for count in range(SETS):
         found = settled(problem, rubbing, (x, closed), solver)

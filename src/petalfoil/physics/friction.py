@@ -4,18 +4,18 @@ A petal that bends turns, and its faces, half a thickness from the middle, move 
 two petals in contact slide over each other by the sum, a petal slides over the bushing by its own part.
 
     s = B W                                                            slip                         (D1)
-    T = clip(T_0 + mu N_1 / s_f (s - s_0), -mu N, mu N)                force against it             (D2)
+    T = clip(T_0 + mu N_0 / s_f (s - s_0), -mu N, mu N)                force against it             (D2)
     force on the petals = -B^T T,  energy lost = int T ds
 
-Coulomb's law where the width `s_f` of the stick goes to zero: the slip in which friction builds up where the contact
-presses with `N_1`, with ambient pressure. `s_0` and `T_0` are slip and force before the step. Slip is taken between
-nodes (at nodes, by central differences, forces alternate from node to node); a node's reaction presses on the cells on
-both sides of it in halves, the last one's on its only one: `N`.
+Coulomb's law where the width `s_f` of the stick goes to zero, the slip in which friction builds up, the same on any grid.
+`s_0`, `T_0` and `N_0` are slip, force and reaction before the step. Slip is taken between nodes (at nodes, by central
+differences, forces alternate from node to node); a node's reaction presses on the cells on both sides of it in halves,
+the last one's on its only one: `N`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -36,17 +36,24 @@ class Friction:
     coefficient : float
         `mu` [1].
     stiffness : (k,) array
-        `mu N_1 / s_f`, of the stick.
+        `mu N_0 / s_f`, of the stick, in this step.
     slip : (k, n) sparse
         `B`, slip by the deflection unknowns [1].
     share : (k, m) sparse
         Share of each gap's reaction that presses where it slides [1].
+    width : float
+        `s_f`, in the unit of deflection.
     """
 
     coefficient: float
     stiffness: Array
     slip: sp.csr_array
     share: sp.csr_array
+    width: float
+
+    def sticking(self, lam: Array) -> Friction:
+        """The law in a step that begins with the reactions `lam` (m,)."""
+        return replace(self, stiffness=self.coefficient * self.normal(lam) / self.width)
 
     def normal(self, lam: Array) -> Array:
         """`N` from all reactions, (k,)."""

@@ -72,15 +72,17 @@ class Rubbed:
     limit: Array
 
     @classmethod
-    def fresh(cls, friction: Friction, x: Array) -> Rubbed:
+    def fresh(cls, friction: Friction, x: Array, lam: Array) -> Rubbed:
         """No force yet, wherever the petals are."""
         slip = friction.slip @ x[: friction.slip.shape[1]]
-        return cls(slip, np.zeros(len(slip)), np.zeros(len(slip)))
+        return cls(slip, np.zeros(len(slip)), friction.coefficient * friction.normal(lam))
 
 
 def energy_lost(friction: Friction, before: Rubbed, after: Rubbed) -> float:
-    """Energy lost between two states: the mean of the limits times what has slipped and does not spring back (D3)."""
-    for_good = np.abs(after.slip - before.slip - (after.force - before.force) / friction.stiffness)
+    """Energy lost in a step of `friction`: the mean of the limits times what has slipped and does not spring back (D3)."""
+    sticks = friction.stiffness > 0.0  # none in the step that a contact closes in
+    sprung = np.divide(after.force - before.force, friction.stiffness, out=np.zeros_like(after.force), where=sticks)
+    for_good = np.where(sticks, np.abs(after.slip - before.slip - sprung), 0.0)
     return float(0.5 * (before.limit + after.limit) @ for_good)
 
 
@@ -220,7 +222,5 @@ def friction_of(case: Case, layout: Layout) -> Friction | None:
     surface, wall = case.surface, layout.wall
     if not surface.petal_friction or not wall.slip.shape[0]:
         return None
-    width = surface.friction_width / layout.scales.length
-    pressed = wall.share @ layout.weight  # by ambient pressure
-    stiffness = surface.petal_friction * pressed / width
-    return Friction(surface.petal_friction, stiffness, wall.slip, wall.share)
+    width, none = surface.friction_width / layout.scales.length, np.zeros(wall.slip.shape[0])
+    return Friction(surface.petal_friction, none, wall.slip, wall.share, width)

@@ -48,7 +48,7 @@ class System:
         """The implicit stage at `tau` from `base` in a step from `begin`; friction goes on from there."""
         rubbing = None
         if self.friction is not None and begin.rubbed is not None:
-            rubbing = Rubbing(self.friction, begin.rubbed, self.friction.normal(begin.lam))
+            rubbing = Rubbing(self.friction.sticking(begin.lam), begin.rubbed, self.friction.normal(begin.lam))
         problem = StepProblem(
             self.problem.layout,
             self.rotor.bearing_number(tau),
