@@ -7,7 +7,7 @@ two petals in contact slide over each other by the sum, a petal slides over the 
     T = clip(T_0 + mu N_0 / s_f (s - s_0), -mu N, mu N)                force against it             (D2)
     force on the petals = -B^T T,  energy lost = int T ds
 
-Coulomb's law where the width `s_f` of the stick goes to zero, the slip in which friction builds up, the same on any grid.
+Coulomb's law where the width `s_f` of the stick goes to zero, the slip in which friction builds up on any grid.
 `s_0`, `T_0` and `N_0` are slip, force and reaction before the step. Slip is taken between nodes (at nodes, by central
 differences, forces alternate from node to node); a node's reaction presses on the cells on both sides of it in halves,
 the last one's on its only one: `N`.

@@ -79,7 +79,7 @@ class Rubbed:
 
 
 def energy_lost(friction: Friction, before: Rubbed, after: Rubbed) -> float:
-    """Energy lost in a step of `friction`: the mean of the limits times what has slipped and does not spring back (D3)."""
+    """Energy lost in a step: the mean of the limits times what has slipped and does not spring back (D3)."""
     sticks = friction.stiffness > 0.0  # none in the step that a contact closes in
     sprung = np.divide(after.force - before.force, friction.stiffness, out=np.zeros_like(after.force), where=sticks)
     for_good = np.where(sticks, np.abs(after.slip - before.slip - sprung), 0.0)
