@@ -1,15 +1,21 @@
-"""A package with friction, moved a step further: what it does depends on what it did."""
+"""A problem with friction between its petals, moved a step further: what it does depends on what it did.
+
+F(x) + B^T T = G^T lam,  gaps as without friction       (C1) with (D2)
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.physics.friction import Friction
-from petalfoil.problem.sliding import Gapped, Rubbed, Rubbing, SlidingProblem, energy_lost
+from petalfoil.problem.sliding import Rubbed, Rubbing, energy_lost, held_together
 from petalfoil.solvers.active_set import ActiveOptions, Outcome, State, evaluate, revise, searched
+from petalfoil.solvers.cone import ConeProblem, Linearized
 from petalfoil.solvers.linear import LinearSolver, SingularMatrixError
 
 Array = NDArray[np.float64]
@@ -29,6 +35,84 @@ SETS = 30
 
 SIGNS = ActiveOptions()
 """Residual and signs of an answer."""
+
+
+@dataclass(frozen=True)
+class SlidingProblem:
+    """A problem with friction on some of its gaps.
+
+    Attributes
+    ----------
+    base : ConeProblem
+        The problem without friction; its first unknowns are the deflections.
+    rubbing : Rubbing
+        Friction in this step.
+    """
+
+    base: ConeProblem
+    rubbing: Rubbing
+    rank: None = field(default=None, init=False)
+
+    @property
+    def G(self) -> sp.csr_array:
+        """Derivative of the gaps, (m, n)."""
+        return self.base.G
+
+    @property
+    def weight(self) -> Array:
+        """Weights of the gaps, (m,)."""
+        return self.base.weight
+
+    @property
+    def positive(self) -> slice:
+        """Unknowns that must stay positive."""
+        return self.base.positive
+
+    def gaps(self, x: Array) -> Array:
+        """Gaps at `x`, (m,)."""
+        return self.base.gaps(x)
+
+    def admits(self, x: Array) -> bool:
+        """The equations can be evaluated at `x`."""
+        return self.base.admits(x)
+
+    def linearize(self, x: Array, shift: Array | None = None) -> SlidingLine:
+        """The equations at `x`."""
+        return SlidingLine(self.base.linearize(x, shift), self.rubbing, x)
+
+
+@dataclass(frozen=True)
+class SlidingLine:
+    """The equations with friction at one point."""
+
+    line: Linearized
+    rubbing: Rubbing
+    x: Array
+
+    @cached_property
+    def _law(self) -> tuple[Array, Array, Array]:
+        return self.rubbing.law(self.x)
+
+    @cached_property
+    def residual(self) -> Array:
+        """`F(x) + B^T T`, (n,)."""
+        out, B = self.line.residual.copy(), self.rubbing.friction.slip
+        out[: B.shape[1]] += B.T @ self._law[1]
+        return out
+
+    @property
+    def size(self) -> Array:
+        """What each row's residual is measured by, (n,)."""
+        return self.line.size
+
+    def matrix(self, theta: Array, rate: float = 0.0) -> sp.csc_array:
+        """Tangent with `B^T (dT/ds) B`, (n, n)."""
+        held = held_together(self.rubbing.friction, self._law[2], len(self.x))
+        return sp.csc_array(self.line.matrix(theta, rate) + held)
+
+    def by_shift(self, shift: Array, rate: float = 0.0) -> Array:
+        """Friction reads slips, not gaps."""
+        return self.line.by_shift(shift, rate)
 
 
 @dataclass(frozen=True)
@@ -54,7 +138,7 @@ class Slid:
 
 
 def slide(
-    problem: Gapped, friction: Friction, before: tuple[Array, Array, Mask, Rubbed], solver: LinearSolver
+    problem: ConeProblem, friction: Friction, before: tuple[Array, Array, Mask, Rubbed], solver: LinearSolver
 ) -> Slid | None:
     """Equilibrium from the state `before` (unknowns, reactions, closed gaps, friction); None if not found."""
     x, lam, closed, rubbed = before
@@ -79,7 +163,7 @@ def slide(
 
 
 def settled(
-    problem: Gapped, rubbing: Rubbing, start: tuple[Array, Mask], solver: LinearSolver
+    problem: ConeProblem, rubbing: Rubbing, start: tuple[Array, Mask], solver: LinearSolver
 ) -> tuple[State, Rubbing] | None:
     """Newton with the gaps of `start` closed until forces balance and friction agrees with them; None if it fails."""
     (x, closed), friction = start, rubbing.friction

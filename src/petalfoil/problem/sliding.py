@@ -1,13 +1,12 @@
-"""Any problem with gaps, and friction on some of them: `F(x) + B^T T = G^T lam`.
+"""Friction of the petals in the units of the problem, from one state to the next.
 
-The reactions that limit the friction are those of a step before; whoever solves repeats until they agree.
+The reactions that limit it are those of a correction before; whoever solves goes on until they agree.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from functools import cached_property
-from typing import Any, Protocol
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -18,49 +17,6 @@ from petalfoil.physics.friction import Friction
 from petalfoil.problem.coupled import Layout
 
 Array = NDArray[np.float64]
-
-
-class Line(Protocol):
-    """Equations at one point."""
-
-    @property
-    def residual(self) -> Array:
-        """`F(x)`, (n,)."""
-
-    @property
-    def size(self) -> Array:
-        """What each row's residual is measured by, (n,)."""
-
-    def matrix(self, theta: Array, rate: float = 0.0) -> sp.csc_array:
-        """`dF/dx + G^T diag(theta) G`, (n, n)."""
-
-    def by_shift(self, shift: Array, rate: float = 0.0) -> Array:
-        """Derivative by a shift of the gaps, applied to it, (n,)."""
-
-
-class Gapped(Protocol):
-    """Equations with gaps."""
-
-    @property
-    def G(self) -> sp.csr_array:
-        """Derivative of the gaps, (m, n)."""
-
-    @property
-    def weight(self) -> Array:
-        """Weights of the gaps, (m,)."""
-
-    @property
-    def positive(self) -> slice:
-        """Unknowns that must stay positive."""
-
-    def gaps(self, x: Array) -> Array:
-        """Gaps at `x`, (m,)."""
-
-    def admits(self, x: Array) -> bool:
-        """The equations can be evaluated at `x`."""
-
-    def linearize(self, x: Array, shift: Array | None = None) -> Line:
-        """The equations at `x`."""
 
 
 @dataclass(frozen=True)
@@ -130,84 +86,6 @@ class Rubbing:
         """Slip and force at `x`."""
         slip, force, _ = self.law(x)
         return Rubbed(slip, force, self.friction.coefficient * self.normal)
-
-
-@dataclass(frozen=True)
-class SlidingProblem:
-    """A problem with friction on some of its gaps.
-
-    Attributes
-    ----------
-    base : Gapped
-        The problem without friction; its first unknowns are the deflections.
-    rubbing : Rubbing
-        Friction in this step.
-    """
-
-    base: Gapped
-    rubbing: Rubbing
-    rank: None = field(default=None, init=False)
-
-    @property
-    def G(self) -> sp.csr_array:
-        """Derivative of the gaps, (m, n)."""
-        return self.base.G
-
-    @property
-    def weight(self) -> Array:
-        """Weights of the gaps, (m,)."""
-        return self.base.weight
-
-    @property
-    def positive(self) -> slice:
-        """Unknowns that must stay positive."""
-        return self.base.positive
-
-    def gaps(self, x: Array) -> Array:
-        """Gaps at `x`, (m,)."""
-        return self.base.gaps(x)
-
-    def admits(self, x: Array) -> bool:
-        """The equations can be evaluated at `x`."""
-        return self.base.admits(x)
-
-    def linearize(self, x: Array, shift: Array | None = None) -> SlidingLine:
-        """The equations at `x`."""
-        return SlidingLine(self.base.linearize(x, shift), self.rubbing, x)
-
-
-@dataclass(frozen=True)
-class SlidingLine:
-    """The equations with friction at one point."""
-
-    line: Line
-    rubbing: Rubbing
-    x: Array
-
-    @cached_property
-    def _law(self) -> tuple[Array, Array, Array]:
-        return self.rubbing.law(self.x)
-
-    @cached_property
-    def residual(self) -> Array:
-        """`F(x) + B^T T`, (n,)."""
-        out, B = self.line.residual.copy(), self.rubbing.friction.slip
-        out[: B.shape[1]] += B.T @ self._law[1]
-        return out
-
-    @property
-    def size(self) -> Array:
-        """What each row's residual is measured by, (n,)."""
-        return self.line.size
-
-    def matrix(self, theta: Array, rate: float = 0.0) -> sp.csc_array:
-        """Tangent with `B^T (dT/ds) B`, (n, n)."""
-        held = held_together(self.rubbing.friction, self._law[2], len(self.x))
-        return sp.csc_array(self.line.matrix(theta, rate) + held)
-
-    def by_shift(self, shift: Array, rate: float = 0.0) -> Array:
-        """Friction reads slips, not gaps."""
-        return self.line.by_shift(shift, rate)
 
 
 def held_together(friction: Friction, stiffness: NDArray[Any], n: int) -> sp.csc_array:
