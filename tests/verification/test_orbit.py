@@ -262,8 +262,9 @@ def test_an_unstable_orbit_grows_to_the_wall_and_stays_within() -> None:
     record = run(bearing, Course(revolutions=15.0))
     radius = np.hypot(np.asarray(record.fields["x"]), np.asarray(record.fields["y"]))
     room = bearing.bearing.clearance - bearing.surface.film_floor
+    corner = room / math.cos(math.pi / bearing.cells_per_pitch)  # contact is at nodes: the room is a polygon
     assert radius.max() > 0.98 * room
-    assert radius.max() <= room * (1.0 + 1e-9)
+    assert radius.max() <= corner * (1.0 + 1e-9)
     assert np.asarray(record.fields["contact_share"]).max() > 0.0
 
 
