@@ -277,3 +277,12 @@ def test_speed_may_rise_from_rest() -> None:
     assert turned == pytest.approx(0.5 * 2e-3 * 8000.0, rel=1e-9)
     assert np.asarray(record.fields["shaft_speed"])[-1] == pytest.approx(8000.0)
     assert replace(course, speeds=None).schedule(bearing).top == bearing.operation.speed
+
+
+def test_a_released_rotor_on_petals_ends_where_its_load_balances() -> None:
+    """Petals hardly damp: steps too long to follow the swing, which an L-stable scheme takes out, lead there."""
+    loaded, (x, y) = under(petals(), 1e-3, 20.0)
+    course = Course(revolutions=40.0, initial=(x + 2e-6, y + 5e-6), tolerance=1e3, longest=3.0)
+    record = run(loaded, course)
+    end = np.asarray(record.fields["x"])[-1], np.asarray(record.fields["y"])[-1]
+    assert math.hypot(end[0] - x, end[1] - y) <= 1e-9
