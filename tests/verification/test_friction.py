@@ -129,6 +129,7 @@ def test_loss_goes_with_friction_where_it_slips_and_vanishes_where_it_sticks() -
     assert abs(cycle_of_tip(32, stuck)) < 1e-6 * few
 
 
+@pytest.mark.slow
 def test_loss_does_not_depend_on_the_steps_of_the_path() -> None:
     assert cycle_of_tip(32, 0.2, steps=23) == pytest.approx(cycle_of_tip(32, 0.2), rel=2e-3)
 
@@ -180,6 +181,7 @@ def test_loop_of_two_leaves() -> None:
     assert orders(errors).min() > 0.9
 
 
+@pytest.mark.slow
 def test_width_of_the_stick_converges() -> None:
     """Coulomb's loss is approached as the width goes to zero, in proportion to it."""
     losses = [leaf_loop(16, 0.5, width)[2] for width in (4e-1, 2e-1, 1e-1, 1e-5)]
@@ -201,6 +203,7 @@ def loop_of(mu: float, count: int) -> tuple[Array, Array, float]:
     return load, -down, float(cycle[-1]["petal_friction_work"]) - float(cycle[0]["petal_friction_work"])
 
 
+@pytest.mark.slow
 def test_energy_lost_by_a_package_is_the_area_of_its_loop() -> None:
     """Work of the journal in a closed cycle, by the trapezium rule, comes to the energy lost as the way is refined."""
     away = []
@@ -212,6 +215,7 @@ def test_energy_lost_by_a_package_is_the_area_of_its_loop() -> None:
     assert away[1] < 0.15
 
 
+@pytest.mark.slow
 def test_loading_carries_more_than_unloading() -> None:
     load, _, _ = loop_of(0.1, 5)
     up, down = load[4:], load[4::-1]

@@ -244,6 +244,7 @@ def test_steps_adapt_to_the_tolerance() -> None:
 # ---------------------------------------------------------------------------------------------- contact
 
 
+@pytest.mark.slow
 def test_touching_rubbing_and_lifting_off_without_a_failed_step() -> None:
     """A large unbalance throws the journal onto the petals and off again."""
     record = run(petals(rotor={"mass": 3.0, "unbalance": 30e-6}), Course(revolutions=6.0))

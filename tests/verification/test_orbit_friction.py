@@ -28,6 +28,7 @@ def swing(record: Record) -> float:
     return float(energy[len(energy) // 2 :].max())
 
 
+@pytest.mark.slow
 def test_energy_that_friction_takes_is_accounted_for() -> None:
     """Loss grows only; gained by rotor and petals is what loads and film gave, less the loss."""
     record = bounce(0.2)

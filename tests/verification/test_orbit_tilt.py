@@ -66,6 +66,7 @@ def test_conical_motion_is_that_of_one_bearing_too() -> None:
         assert np.max(np.abs(lever * at(two, slope, time) - at(one, name, time))) < 2e-3 * 25e-6
 
 
+@pytest.mark.slow
 def test_nutation_of_a_rotor_that_hardly_feels_its_film() -> None:
     """A skew principal axis drives a precession at `I_p / I_t` of the speed (O5), in closed form."""
     inertia, polar, skew = 1e4, 0.3e4, 1e-8
