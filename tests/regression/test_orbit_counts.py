@@ -32,6 +32,7 @@ def test_a_factorisation_serves_many_steps() -> None:
     assert found["failed_steps"] == 0
 
 
+@pytest.mark.slow
 def test_steps_and_factorisations_do_not_grow_with_the_grid() -> None:
     coarse, fine = counts(32), counts(64)
     assert fine["failed_steps"] == 0

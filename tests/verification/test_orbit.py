@@ -65,7 +65,7 @@ def eigenvalue(tau: Array, path: Array, guess: complex) -> complex:
 # ---------------------------------------------------------------------------------------------- free motions
 
 
-@pytest.mark.parametrize("share", [0.6, 2.0])
+@pytest.mark.parametrize("share", [pytest.param(0.6, marks=pytest.mark.slow), 2.0])
 def test_free_orbit_grows_or_dies_out_as_its_natural_mode(share: float) -> None:
     """Growth rate and whirl frequency within 1 %, on both sides of the critical mass."""
     load = 15.0
@@ -216,6 +216,7 @@ def test_second_order_in_time() -> None:
     assert np.all(np.abs(slopes - 2.0) <= 0.1)
 
 
+@pytest.mark.slow
 def test_audits_close_to_second_order() -> None:
     """Gas and energy: a quarter of the defect at half the step, for a plain bearing and for petals."""
     for bearing, least in ((falling(), 1e-9), (petals(rotor={"mass": 1.0, "unbalance": 2e-6}), 1e-9)):
@@ -228,6 +229,7 @@ def test_audits_close_to_second_order() -> None:
         assert np.all(fine <= 1e-3)
 
 
+@pytest.mark.slow
 def test_steps_adapt_to_the_tolerance() -> None:
     """A hundredth of the tolerance: smaller error, more steps."""
     bearing = falling()

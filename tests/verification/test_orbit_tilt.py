@@ -49,6 +49,7 @@ def test_parallel_motion_is_that_of_one_bearing() -> None:
     assert np.max(np.abs(path(two, "slope_x", "slope_y"))) < 1e-12
 
 
+@pytest.mark.slow
 def test_conical_motion_is_that_of_one_bearing_too() -> None:
     """Far apart, bearings feel no tilt: the slope moves as a mass `I_t / (2 l^2)` in one bearing."""
     span, mass = 50.0, 0.2
