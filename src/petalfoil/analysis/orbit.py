@@ -182,7 +182,7 @@ class Orbit:
         refused = [row.get("outcome") for row in self.work.history if row["phase"] == "motion"]
         scalars: Named = {
             **{key: value for key, value in given(self.case).items() if key not in HERE},
-            **self.trace.audits(),
+            **self.trace.audits(over),
             **figures_of(time, over),
             "revolutions": float(over["shaft_angle"][-1] - over["shaft_angle"][0]) / (2.0 * np.pi),
             "tolerance": self.course.tolerance,

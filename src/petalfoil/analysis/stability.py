@@ -24,9 +24,7 @@ from petalfoil.equilibria.stability import leading_eigenvalue
 from petalfoil.equilibria.work import Work
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.record import Array, Record
-
-GRAVITY = 9.80665
-"""Standard gravity [m/s^2]: a load without a mass is taken for a weight."""
+from petalfoil.transient.rotor import GRAVITY
 
 RANGE, FACTOR = 16.0, 1.3
 """Speeds between which the threshold is looked for, over the case's, and the factor between looks."""
@@ -160,7 +158,7 @@ def rotor_mass(case: Case, load: Load | None, mass: float | None) -> float:
         return case.rotor.mass_on_bearing
     if load is None and case.operation.load is None:
         return math.nan
-    return float(np.hypot(*loaded(case, load))) / GRAVITY
+    return float(np.hypot(*loaded(case, load))) / GRAVITY  # a load without a mass is taken for a weight
 
 
 def margin(whirl: Whirl, mass: float) -> float:

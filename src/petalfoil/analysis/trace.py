@@ -168,11 +168,10 @@ class Trace:
             over[work] = cumulative_trapezoid(self.column(torque) * speed, time, initial=0.0)
         return time, over
 
-    def audits(self) -> dict[str, float]:
-        """Defects of gas and energy over the whole motion [1]: both fall as the square of the steps."""
+    def audits(self, over: Named) -> dict[str, float]:
+        """Defects of gas and energy over the histories `over` [1]: both fall as the square of the steps."""
         gas, outflow, time = self.column("gas"), self.column("outflow"), self.column("time")
         gained = gas - gas[0] + cumulative_trapezoid(outflow, time, initial=0.0)
-        _, over = self.histories()
         energy = over["kinetic_energy"] + over["elastic_energy"] - over["kinetic_energy"][0]
         missing = energy - over["load_work"] - over["film_work"] + over["petal_friction_work"]
         exchanged = np.sum(np.abs(self.column("load_step"))) + np.sum(np.abs(self.column("film_step")))

@@ -22,6 +22,7 @@ from petalfoil.problem.sliding import Rubbed
 from petalfoil.solvers.active_set import ActiveOptions, revise, searched
 from petalfoil.solvers.active_set import State as SetState
 from petalfoil.solvers.complementarity import solve_lcp
+from petalfoil.solvers.cone import scaled_residual
 from petalfoil.solvers.interior_point import room
 from petalfoil.solvers.linear import LinearSolver
 from petalfoil.transient.state import Moving
@@ -229,8 +230,9 @@ def evaluate(stage: Stage, at: tuple[Array, Array], push: Array, tangent: Tangen
     line = problem.linearize(x)
     lam = np.zeros(len(closed))
     lam[tangent.stops] = push
-    lam[closed] = ties.reactions(line.residual - problem.G.T @ lam)
-    residual = float(np.max(np.abs(line.residual - problem.G.T @ lam) / line.size, initial=0.0))
+    back = problem.G.T
+    lam[closed] = ties.reactions(line.residual - back @ lam if len(push) else line.residual)
+    residual = scaled_residual(line, back @ lam)
     closed[tangent.stops] = push > 0.0
     return SetState(x, lam, closed, residual, ties, line, problem.gaps(x))
 
