@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from petalfoil.analysis.orbit import Course, run
+from petalfoil.analysis.orbit import Course, Orbit, run
 from petalfoil.case import Case
+from petalfoil.results.dataset import to_dataset
 from petalfoil.results.record import Record
 from tests.cases import case
 
@@ -66,3 +67,16 @@ def test_the_motion_does_not_hang_on_the_width_of_the_stick() -> None:
         losses.append(float(np.asarray(record.fields["petal_friction_work"])[-1]))
     assert abs(losses[1] / losses[2] - 1.0) < 0.05
     assert abs(losses[1] / losses[2] - 1.0) < abs(losses[0] / losses[2] - 1.0) + 1e-3
+
+
+def test_a_restart_goes_on_with_the_friction_that_was_there() -> None:
+    bearing = rubbing(0.2, **{"operation.eccentricity": (0.0, -260e-6)})
+    half, whole = Course(revolutions=1.0), Course(revolutions=2.0)
+    first = to_dataset(run(bearing, half))
+    assert np.any(first["last_friction"].to_numpy())
+    second, once = run(bearing, half, first), run(bearing, whole)
+    begin = Orbit(bearing, half, first).start
+    assert begin.rubbed is not None
+    assert np.array_equal(begin.rubbed.force, first["last_friction"].to_numpy())
+    for name in ("x", "y"):
+        assert np.asarray(second.fields[name])[-1] == pytest.approx(np.asarray(once.fields[name])[-1], abs=1e-8)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -308,12 +308,15 @@ def end_state(last: Instant, system: System) -> dict[str, Array]:
         "last_reactions": last.lam,
         "last_position": last.moving.e * length,
         "last_velocity": last.moving.v * length * rate,
+        "last_friction": np.zeros(0) if last.rubbed is None else last.rubbed.force,
     }
 
 
 def end_coordinates(last: Instant) -> dict[str, NDArray[np.generic]]:
     """Coordinates of the state at the end."""
-    return {"unknown": np.arange(len(last.x)), "gap": np.arange(len(last.lam)), "axis": np.arange(len(last.e))}
+    slides = 0 if last.rubbed is None else len(last.rubbed.force)
+    sizes = {"unknown": len(last.x), "gap": len(last.lam), "axis": len(last.e), "slide": slides}
+    return {name: np.arange(size) for name, size in sizes.items()}
 
 
 def instant_of(result: xr.Dataset, system: System, tau: float) -> Instant:
@@ -321,7 +324,10 @@ def instant_of(result: xr.Dataset, system: System, tau: float) -> Instant:
     length, rate = system.problem.layout.scales.length, system.rotor.clock.rate
     x, lam = result["last_state"].to_numpy(), result["last_reactions"].to_numpy()
     e, v = result["last_position"].to_numpy() / length, result["last_velocity"].to_numpy() / (length * rate)
-    return released(system, tau, (x, lam, lam > 0.0), (e, v))
+    start = released(system, tau, (x, lam, lam > 0.0), (e, v))
+    if start.rubbed is None:
+        return start
+    return replace(start, rubbed=replace(start.rubbed, force=result["last_friction"].to_numpy()))
 
 
 def continued(case: Case, schedule: Schedule, result: xr.Dataset) -> float:

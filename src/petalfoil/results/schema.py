@@ -103,6 +103,7 @@ COORDINATES: dict[str, Variable] = {
     "frame": Variable(("frame",), "s", "time of a picture of film and petals", "t", role=Role.GEOMETRY),
     "unknown": Variable(("unknown",), "1", "number of an unknown of film and petals", "i", Kind.INT, Role.GEOMETRY),
     "gap": Variable(("gap",), "1", "number of a gap between journal, petals and bushing", "j", Kind.INT, Role.GEOMETRY),
+    "slide": Variable(("slide",), "1", "number of a place where petals slide", "i", Kind.INT, Role.GEOMETRY),
     "axis": Variable(("axis",), "1", "direction: 0 along x, 1 along y", "i", Kind.INT, Role.GEOMETRY),
 }
 
@@ -162,6 +163,7 @@ HISTORIES: dict[str, Variable] = {
     "frame_y": Variable(("frame",), "m", "displacement of the journal's centre along y", "e_y"),
     "last_state": Variable(("unknown",), "1", "deflections and pressures at the end, in the units of the problem", "X"),
     "last_reactions": Variable(("gap",), "1", "contact reactions at the end, in the units of the problem", "lambda"),
+    "last_friction": Variable(("slide",), "1", "friction of the petals at the end, in the units of the problem", "T"),
     "last_position": Variable(("axis",), "m", "displacement of the journal's centre at the end", "e"),
     "last_velocity": Variable(("axis",), "m s-1", "velocity of the journal's centre at the end", "v"),
 }
