@@ -37,7 +37,7 @@ def measured(path: Path, *options: str) -> list[dict[str, Any]]:
 def test_a_quick_run_of_the_plain_journal(tmp_path: Path) -> None:
     rows = {row["name"]: row for row in measured(tmp_path / "rows.json", "--only", "journal", "others")}
     error = rows["journal_48x16_error"]["ratio"]
-    assert 5e-3 < error < 2e-2  # of second order: 0.3 % on 120 cells
+    assert 1e-3 < error < 7e-3  # of second order: 0.08 % on 120 cells
     times = rows["journal_48x16"]["details"]
     assert rows["journal_48x16"]["ratio"] == times["seconds_solution"] / times["seconds_yardstick"]
     for name in ("openairbearing", "ross"):
@@ -54,7 +54,7 @@ def test_a_quick_run_has_all_rows(tmp_path: Path) -> None:
     assert min(shares) > 0.0
     assert_allclose(rows["warm_total"]["ratio"] * rows["warm_factorisation"]["ratio"], 1.0, rtol=1e-12)
     assert rows["warm_count"]["ratio"] >= 2.0
-    assert rows["race_n8_17_e0_numpy"]["details"]["apart at 1e-05"] < 1e-4
+    assert rows["race_n8_14_e0_numpy"]["details"]["apart at 1e-05"] < 1e-4
     again = run("benchmarks/run.py", "--quick", "--only", "point", "--against", str(before)).stdout
     assert again.count("(was ") == len([name for name in rows if name.startswith(("warm", "factor"))])
 

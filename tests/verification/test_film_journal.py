@@ -9,8 +9,7 @@ import scipy.sparse.linalg as spla
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from petalfoil.mesh.axial import AxialGrid, flat_axis
-from petalfoil.mesh.package import trapezoid
+from petalfoil.mesh.axial import AxialGrid, flat_axis, trapezoid
 from petalfoil.mesh.strips import whole_circle
 from petalfoil.physics.balance import FilmBalance
 from petalfoil.physics.forces import attitude_angle, viscous_torque
@@ -66,10 +65,10 @@ def small_displacement(row: Row, grid: Grid) -> Array:
 
 
 def check_small_displacement(row: Row) -> None:
-    """Within 0.1 % of the load on 256 × 128 cells (0.055 % where L/D is 1 or more), second order."""
+    """Within 0.09 % of the load on 256 × 128 cells (0.015 % where L/D is 1 or more), second order."""
     found = [small_displacement(row, grid) for grid in GRIDS]
     errors = [relative(w, row, ("Wr/eps", "Wt/eps")) for w in found]
-    assert errors[-1] <= (1e-3 if float(row["L/D"]) < 1.0 else 5.5e-4)
+    assert errors[-1] <= (9e-4 if float(row["L/D"]) < 1.0 else 1.5e-4)
     assert np.all(orders(errors) >= LEAST_ORDER)
     attitude = np.degrees(np.arctan2(found[-1][1], found[-1][0]))
     assert_allclose(attitude, float(row["attitude_deg"]), rtol=0.0, atol=0.06)
@@ -93,12 +92,12 @@ def test_small_displacement_at_other_speeds(row: Row) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("row", [row for row in FIRST_ORDER if float(row["Lam"]) > 20.0], ids=name)
 def test_small_displacement_at_high_speed(row: Row) -> None:
-    """Within 0.05 % on 512 × 256 cells; layers at the ends, and the cell's Peclet number, ask for more cells."""
+    """Within 0.02 % on 768 × 384 cells; layers at the ends, and the cell's Peclet number, ask for more cells."""
     errors = [
         relative(small_displacement(row, grid), row, ("Wr/eps", "Wt/eps"))
-        for grid in ((128, 64), (256, 128), (512, 256))
+        for grid in ((192, 96), (384, 192), (768, 384))
     ]
-    assert errors[-1] <= 5e-4
+    assert errors[-1] <= 2e-4
     assert errors[0] > errors[1] > errors[2]
     assert orders(errors)[-1] >= LEAST_ORDER  # the coarsest grid does not resolve the layers yet
 
@@ -146,18 +145,24 @@ def displaced(row: Row, grid: Grid) -> tuple[Array, float, float]:
 
 @pytest.mark.parametrize("row", table("a2_journal_finite_LD1.csv"), ids=name)
 def test_journal(row: Row) -> None:
-    """On 256 × 128 cells: load within 0.06 %, attitude within 0.02°, torque within 0.01 %; second order."""
+    """On 256 × 128 cells: load within 0.02 %, attitude within 0.02°, torque within 0.01 %; second order."""
     found = [displaced(row, grid) for grid in GRIDS]
     load = [relative(w, row, ("Wr", "Wt")) for w, _, _ in found]
     torque = [t / float(row["torque/(mu om R^3 L/c)"]) - 1.0 for _, _, t in found]
     attitude = found[-1][1]
-    assert load[-1] <= 6e-4
+    assert load[-1] <= 2e-4
     assert abs(torque[-1]) <= 1e-4
     assert 0.0 < attitude < 90.0
     assert_allclose(attitude, float(row["attitude_deg"]), rtol=0.0, atol=0.02)
     # between the two finer grids: 64 × 32 cells leave the film of eps = 0.8 at Lam = 10 unresolved (1.88 from there)
     assert orders(load)[-1] >= LEAST_ORDER
     assert orders(torque)[-1] >= LEAST_ORDER
+
+
+@pytest.mark.parametrize("row", table("a2_journal_finite_LD1.csv"), ids=name)
+def test_journal_on_a_working_grid(row: Row) -> None:
+    """Load within 0.1 % on 120 × 40 cells (0.08 % at worst, where the film is thinnest and fastest)."""
+    assert relative(displaced(row, (120, 40))[0], row, ("Wr", "Wt")) <= 1e-3
 
 
 def film_over(eccentricity: Array, Lam: float, grid: Grid = (48, 12)) -> tuple[FilmBalance, Array, Array]:

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
+from scipy.integrate import quad
 
+from petalfoil.physics.film import axial_flux, circumferential_flux
 from petalfoil.physics.forces import viscous_torque
 from tests.verification.film_helpers import orders, slider, solve_film, stepped_slider, table
 
@@ -46,6 +48,18 @@ def test_taper_slider(row: dict[str, str]) -> None:
     assert np.all(orders(errors[:, 2]) >= DECLARED_ORDER - MARGIN), "friction"
     # the peak's error changes sign with Lam, so that it has no clean order: it is bounded on the finest grid
     assert_allclose(errors[2, 1], 0.0, rtol=0.0, atol=1e-3 / 2.0 ** (2.0 * (DECLARED_ORDER - MARGIN)))
+
+
+@pytest.mark.parametrize("ratio", [0.02, 0.5, 1.0, 1.7, 40.0])
+def test_one_cell_lets_as_much_pass_as_a_linear_film(ratio: float) -> None:
+    """Under pressure alone `(P0^2 - P1^2) / 2` over the integral of `H^-3`, whatever the thicknesses; both ways."""
+    (H0, H1), (P0, P1), width = (0.7, 0.7 * ratio), (1.0, 1.6), 0.3
+    resistance = quad(lambda x: (H0 + (H1 - H0) * x) ** -3, 0.0, 1.0, epsabs=0.0, epsrel=1e-12)[0] * width
+    passes = 0.5 * (P0**2 - P1**2) / resistance
+    P, H = np.array([P0, P1]), np.array([H0, H1])
+    along = circumferential_flux(P[None, :, None], H[None, :, None], 0.0, np.array([[width]]))
+    across = axial_flux(P[None, None, :], H[None, None, :], np.array([width]))
+    assert_allclose([along.value.item(), across.value.item()], passes, rtol=1e-11)
 
 
 def step(row: dict[str, str], refine: int) -> Array:

@@ -17,7 +17,7 @@ from petalfoil.equilibria.cold import solve_cold
 from petalfoil.equilibria.work import Work
 from petalfoil.mesh.axial import spatial_axis
 from petalfoil.physics.balance import FilmBalance
-from petalfoil.physics.film import axial_flux, circumferential_flux
+from petalfoil.physics.film import axial_flux, circumferential_flux, mean_cube
 from petalfoil.physics.forces import viscous_torque
 from petalfoil.problem.build import build_problem
 from tests.cases import case
@@ -111,7 +111,7 @@ def test_no_slip_is_left_as_it_was() -> None:
     P, H = rng.uniform(0.5, 2.0, (2, 9, 1)), rng.uniform(0.5, 2.0, (2, 9, 1))
     dphi = np.full((8, 1), 0.1)
     off, zero = circumferential_flux(P, H, 3.0, dphi), circumferential_flux(P, H, 3.0, dphi, 0.0)
-    cube, mean = 0.5 * (H[:, :-1] ** 3 + H[:, 1:] ** 3), 0.5 * (P[:, :-1] + P[:, 1:])
+    cube, mean = mean_cube(H[:, :-1], H[:, 1:])[0], 0.5 * (P[:, :-1] + P[:, 1:])
     still = circumferential_flux(P, H, 0.0, dphi)
     assert np.array_equal(still.value, -(cube * mean) * (P[:, 1:] - P[:, :-1]) / dphi)
     for first, second in zip(off, zero, strict=True):

@@ -15,7 +15,7 @@ from petalfoil.errors import UsageError
 from petalfoil.results.record import Record
 from tests.cases import case
 
-BEARING = case("paper_n8", **{"model.cells_per_pitch": 16})
+BEARING = case("paper_n8", **{"model.cells_per_pitch": 32, "operation.speed": 1000.0})
 
 
 def number(record: Record, name: str) -> float:

@@ -119,7 +119,7 @@ def test_without_a_mass_there_are_no_modes() -> None:
 
 @pytest.mark.parametrize(
     ("bearing", "load"),
-    [(plain((48, 12)), 30.0), (case("paper_n6", **{"model.cells_per_pitch": 16, "operation.speed": 4000.0}), 60.0)],
+    [(plain((48, 12)), 30.0), (case("paper_n6", **{"model.cells_per_pitch": 32}), 200.0)],
     ids=["plain", "petals"],
 )
 def test_at_the_critical_mass_a_mode_neither_grows_nor_dies_out(bearing: Case, load: float) -> None:

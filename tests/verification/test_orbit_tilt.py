@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from petalfoil.analysis.orbit import Course, Orbit, run
 from petalfoil.case import Case
 from petalfoil.errors import DefinitionError
+from petalfoil.physics.forces import node_area
 from petalfoil.problem.balance import FilmForce
 from petalfoil.problem.build import build_pair, build_problem
 from petalfoil.results.record import Record
@@ -105,12 +106,8 @@ def test_pair_is_two_bearings() -> None:
     for axis in range(4):  # the force is minus the derivative of the film's volume under the pressure
         nudge = np.zeros(4)
         nudge[axis] = step
-        area = (
-            pair.layout.balance.area
-            * pair.layout.balance.radius**2
-            * pair.layout.scales.pressure
-            / pair.layout.scales.force
-        )
+        scales = pair.layout.scales
+        area = node_area(pair.layout.wall.film, pair.layout.balance.radius) * scales.pressure / scales.force
         change = (pair.at(displacement=q + nudge).film(x) - film) / step
         P = pair.pressure(x)
         assert FilmForce.of(pair).at(x[pair.positive])[axis] == pytest.approx(

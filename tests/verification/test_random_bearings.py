@@ -8,8 +8,8 @@ import pytest
 from petalfoil.analysis import equilibrium
 from petalfoil.case import Case, Edges, Mount
 from petalfoil.errors import ConvergenceError
-from petalfoil.mesh.axial import flat_axis
-from petalfoil.mesh.package import package_mesh, trapezoid
+from petalfoil.mesh.axial import flat_axis, trapezoid
+from petalfoil.mesh.package import package_mesh
 from petalfoil.physics.shell import PetalShell
 from petalfoil.results.record import Record
 from tests.random_packages import random_case
@@ -74,14 +74,14 @@ def gap_defect(case, mesh, f) -> float:  # type: ignore[no-untyped-def]
 
 
 def film_defect(case, mesh, f) -> float:  # type: ignore[no-untyped-def]
-    """Spread of the mass flux along each strip over its terms, written out from the paper's (56) with the fit."""
+    """Spread of the mass flux along each strip over its terms, written out from (F2)."""
     p, h, mu = f["pressure"], f["film_thickness"], case.gas.viscosity
     U, dx = (
         case.operation.speed * case.bearing.journal_radius,
         case.bearing.journal_radius * np.diff(mesh.phi[mesh.exposed]),
     )
     p0, p1, h0, h1 = p[:, :-1], p[:, 1:], h[:, :-1], h[:, 1:]
-    D = 0.5 * (h0**3 + h1**3) * 0.5 * (p0 + p1) / (12.0 * mu)
+    D = 2.0 * (h0 * h1) ** 2 / (h0 + h1) * 0.5 * (p0 + p1) / (12.0 * mu)
     pressure_flow = -D * (p1 - p0) / dx
     half_peclet = 0.25 * U * 0.5 * (h0 + h1) * dx / D
     fit = 1.0 / np.tanh(half_peclet) - 1.0 / half_peclet

@@ -23,10 +23,10 @@ BOWED = [row for row in ROWS if float(row["nu"]) > 0.0]
 CELLS = (16, 32, 64)
 
 
-def plate_answer(row: dict[str, str], grid: str, cells: int, *, half: bool = True) -> Array:
+def plate_answer(row: dict[str, str], grid: str, cells: int, *, half: bool = True, grading: float = 0.0) -> Array:
     """The table's quantities on `cells` along (package grid: a pitch) and `cells` across, with `a = D = q = 1`."""
     b, kappa, nu = (float(row[name]) for name in ("b=L/a", "kappa=k*phi1", "nu"))
-    shell = plate_shell(GRIDS[grid](1.0, cells), spatial_axis(b, cells, half=half), kappa, nu)
+    shell = plate_shell(GRIDS[grid](1.0, cells), spatial_axis(b, cells, half=half, grading=grading), kappa, nu)
     force = uniform_load(shell)
     W = bend(shell, force)
     line = W[:, -1 if half else cells // 2]
@@ -52,6 +52,17 @@ def test_against_ritz(row: dict[str, str], grid: str) -> None:
     assert np.abs(errors[2]).max() < 1.5e-3
     slowest = 1.7 if float(row["b=L/a"]) < 1.0 else 1.9
     assert orders(errors).min() > slowest
+
+
+@pytest.mark.parametrize("half", [True, False])
+@pytest.mark.parametrize("row", BOWED, ids=name_of)
+def test_stations_that_crowd_toward_the_ends_bend_alike(row: dict[str, str], half: bool) -> None:
+    """The same limits on axial cells that shrink four-fold toward the free sides."""
+    exact = np.array([float(row[name]) for name in QUANTITIES])
+    errors = [plate_answer(row, next(iter(GRIDS)), cells, half=half, grading=0.6) / exact - 1.0 for cells in CELLS]
+    assert np.abs(errors[1]).max() < 5e-3
+    assert np.abs(errors[2]).max() < 1.5e-3
+    assert orders(np.array(errors))[-1].min() > 1.7  # as slow on the narrow plate as above
 
 
 @pytest.mark.parametrize("grid", GRIDS)

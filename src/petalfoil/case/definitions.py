@@ -25,6 +25,8 @@ DEFAULT_CELLS = {Kind.FLAT: 128, Kind.SPATIAL: 64}  # along the pitch of a packa
 DEFAULT_AXIAL_CELLS = 24
 DEFAULT_PLAIN_CELLS = 128  # a plain bearing's pitch is the whole circle
 DEFAULT_PLAIN_AXIAL_CELLS = 32
+DEFAULT_PLAIN_GRADING = 0.6
+"""A plain bearing's film is steepest at its ends; a package's petals bend as much elsewhere (docs/decisions/014)."""
 
 
 class Case(Definition):
@@ -122,6 +124,13 @@ class Case(Definition):
         if self.model.axial_cells is not None:
             return self.model.axial_cells
         return DEFAULT_PLAIN_AXIAL_CELLS if self.petals is None else DEFAULT_AXIAL_CELLS
+
+    @property
+    def axial_grading(self) -> float:
+        """How far cells shrink toward the ends, the default filled in; without meaning in a flat model [1]."""
+        if self.model.axial_grading is not None:
+            return self.model.axial_grading
+        return DEFAULT_PLAIN_GRADING if self.petals is None else 0.0
 
     # ------------------------------------------------------------------------------------------ validation
 

@@ -110,6 +110,13 @@ class Model(Definition):
     edges: Edges = Edges.AMBIENT
     cells_per_pitch: Annotated[int, Count(meaning="cells along a pitch", at_least=4, at_most=4096)] | None = None
     axial_cells: Annotated[int, Count(meaning="cells over the whole length", at_least=2, at_most=512)] | None = None
+    axial_grading: (
+        Annotated[
+            float,
+            Quantity(unit="1", meaning="how far cells shrink toward the ends", symbol="a_z", at_least=0.0, at_most=0.9),
+        ]
+        | None
+    ) = None
     symmetry: StrictBool = True
     slip: StrictBool = False
     method: Method = Method.NEWTON

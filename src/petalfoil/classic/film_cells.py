@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.physics.balance import FilmBalance
-from petalfoil.physics.film import slip_pressure
+from petalfoil.physics.film import mean_cube, slip_pressure
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -63,7 +63,7 @@ def film_cells(balance: FilmBalance, H: Array, Lam: float) -> FilmCells:
     """Coefficients for a march at film thickness `H` (strip, node, axial) and bearing number `Lam` [1]."""
     mesh, Kn = balance.mesh, balance.knudsen
     ahead, beside = (H[:, :-1], H[:, 1:]), (H[..., :-1], H[..., 1:])
-    cube, cube_across = (0.5 * (h0**3 + h1**3) for h0, h1 in (ahead, beside))
+    cube, cube_across = (mean_cube(*sides)[0] for sides in (ahead, beside))
     width, width_across = balance.width_Z, mesh.arc_weight[:, None] * mesh.axial.copies
     first, last = shared(mesh.unknown)
     hold = (H * balance.area).ravel()
@@ -73,8 +73,8 @@ def film_cells(balance: FilmBalance, H: Array, Lam: float) -> FilmCells:
         n_z=mesh.shape[2],
         along=_at_nodes(cube / balance.dphi * width, H.shape),
         across=_at_nodes(cube_across / balance.dZ * width_across, H.shape),
-        slip=_at_nodes(slip_pressure(*ahead, cube, Kn)[0], H.shape),
-        slip_across=_at_nodes(slip_pressure(*beside, cube_across, Kn)[0], H.shape),
+        slip=_at_nodes(slip_pressure(*ahead, Kn)[0], H.shape),
+        slip_across=_at_nodes(slip_pressure(*beside, Kn)[0], H.shape),
         carried=_at_nodes(0.5 * Lam * ahead[0] * width, H.shape),
         carried_on=_at_nodes(0.5 * Lam * ahead[1] * width, H.shape),
         peclet=_at_nodes(0.25 * Lam * (ahead[0] + ahead[1]) * balance.dphi / cube, H.shape),

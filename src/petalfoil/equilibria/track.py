@@ -7,7 +7,7 @@ import numpy as np
 from petalfoil.equilibria.answer import Answer
 from petalfoil.equilibria.branches import fingerprint
 from petalfoil.equilibria.cold import solve_cold
-from petalfoil.equilibria.warm import follow, restart
+from petalfoil.equilibria.warm import follow, predict, restart
 from petalfoil.equilibria.work import Work
 from petalfoil.problem.coupled import CoupledProblem
 from petalfoil.solvers.active_set import ActiveOptions
@@ -17,6 +17,13 @@ WARM = ActiveOptions(max_steps=7)
 
 SUSPECT = 0.05
 """Change of the push on the journal, over its size, beyond which a restarted point is checked for a jump."""
+
+FAR, FAR_FOLLOWED = 3.0, 10.0
+"""Times that a restarted or a followed point may be as far as the tangent foretold without such a check. A contact that
+opens on the way takes a followed one seven times as far, a fold that it leaps a hundred times."""
+
+LEAP = 0.5
+"""Share of the whole way in one small step that makes it a jump: along a branch it falls as the steps do."""
 
 SUBSTEPS = (4, 16)
 """Parts into which the way is cut to see whether the branch leads there."""
@@ -30,28 +37,38 @@ def advance(known: Answer, problem: CoupledProblem, work: Work) -> tuple[Answer,
     ConvergenceError
         Nothing was found.
     """
-    step = follow(known, problem, work, WARM)
-    if step is not None:
-        return step, False
-    found = restart(known, problem, work) or solve_cold(problem, work)
-    if not suspicious(known, found):
+    change = predict(known, problem)
+    step = follow(known, problem, work, WARM, change)
+    found = step or restart(known, problem, work, change) or solve_cold(problem, work)
+    way, foretold = distance(known, found), float(np.max(np.abs(change), initial=0.0))
+    if step is not None and way <= FAR_FOLLOWED * foretold:
+        return found, False
+    if step is None and way <= FAR * foretold and not pushes_otherwise(known, found):
         return found, False
     for count in SUBSTEPS:
-        gentle = by_small_steps(known, problem, count, work)
+        gentle = by_small_steps(known, problem, (count, LEAP * way), work)
         if gentle is not None:
             return gentle, False
     return found, True
 
 
-def suspicious(known: Answer, found: Answer) -> bool:
+def distance(one: Answer, other: Answer) -> float:
+    """Largest difference of an unknown: a deflection over the reference film, a pressure over the ambient one."""
+    return float(np.max(np.abs(other.x - one.x), initial=0.0))
+
+
+def pushes_otherwise(known: Answer, found: Answer) -> bool:
     """The push on the journal changed by more than a small step would."""
     before, after = fingerprint(known), fingerprint(found)
     return bool(np.max(np.abs(after - before)) > SUSPECT * max(before[0], after[0]))
 
 
-def by_small_steps(known: Answer, problem: CoupledProblem, count: int, work: Work) -> Answer | None:
-    """Follow the branch in `count` equal parts; None where it does not lead on."""
-    start, current = known.problem, known
+def by_small_steps(known: Answer, problem: CoupledProblem, parts: tuple[int, float], work: Work) -> Answer | None:
+    """Follow the branch in equal parts, as many as the first of `parts`, none farther than the second.
+
+    None where the branch does not lead on like that.
+    """
+    (count, farthest), start, current = parts, known.problem, known
     for part in range(1, count + 1):
         share = part / count
         between = problem.at(
@@ -59,7 +76,7 @@ def by_small_steps(known: Answer, problem: CoupledProblem, count: int, work: Wor
             displacement=start.displacement + share * (problem.displacement - start.displacement),
         )
         step = follow(current, between, work, WARM)
-        if step is None:
+        if step is None or distance(current, step) > farthest:
             return None
         current = step
     return current

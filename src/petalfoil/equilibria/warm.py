@@ -39,9 +39,18 @@ def predict(known: Answer, problem: CoupledProblem) -> Array:
     return change
 
 
-def follow(known: Answer, problem: CoupledProblem, work: Work, options: ActiveOptions | None = None) -> Answer | None:
-    """The neighbour of `known` on its own branch: tangent and contact set, nothing else; None if they do not lead."""
-    start = keep_open(known.x, predict(known, problem), problem.positive)
+def follow(
+    known: Answer,
+    problem: CoupledProblem,
+    work: Work,
+    options: ActiveOptions | None = None,
+    change: Array | None = None,
+) -> Answer | None:
+    """The neighbour of `known` on its own branch: tangent and contact set, nothing else; None if they do not lead.
+
+    `change` is what `predict` foretells, if it is known already; likewise in `restart`.
+    """
+    start = keep_open(known.x, predict(known, problem) if change is None else change, problem.positive)
     try:
         before = None if known.closed is None else known.closed.factor
         closed, outcome = active_set(
@@ -54,9 +63,9 @@ def follow(known: Answer, problem: CoupledProblem, work: Work, options: ActiveOp
     return from_closed(problem, closed, "followed from the neighbouring point")
 
 
-def restart(known: Answer, problem: CoupledProblem, work: Work) -> Answer | None:
+def restart(known: Answer, problem: CoupledProblem, work: Work, change: Array | None = None) -> Answer | None:
     """The interior point from `known`, widened; it may find another branch."""
-    x = keep_open(known.x, predict(known, problem), problem.positive)
+    x = keep_open(known.x, predict(known, problem) if change is None else change, problem.positive)
     s = np.maximum(problem.gaps(x), np.sqrt(RESTART_BARRIER))
     lam = np.maximum(known.lam, RESTART_BARRIER * problem.weight / s)
     try:

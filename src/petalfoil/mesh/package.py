@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.mesh.axial import AxialGrid
+from petalfoil.mesh.axial import AxialGrid, trapezoid
 from petalfoil.mesh.pitch import petal_angles
 
 
@@ -80,15 +80,6 @@ class PackageMesh:
         numbers = np.arange(self.count * (self.n_node - 1) * self.n_z).reshape(self.count, -1, self.n_z)
         roots = np.full((self.count, 1, self.n_z), -1)
         return np.concatenate([roots, numbers], axis=1)
-
-
-def trapezoid(nodes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Weights of the trapezoidal rule on `nodes`, shape (n,)."""
-    weight = np.zeros(len(nodes))
-    cell = np.diff(nodes)
-    weight[:-1] += 0.5 * cell
-    weight[1:] += 0.5 * cell
-    return weight
 
 
 def package_mesh(count: int, overlap: float, first_root: float, cells: int, axial: AxialGrid) -> PackageMesh:

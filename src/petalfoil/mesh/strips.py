@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.mesh.axial import AxialGrid
-from petalfoil.mesh.package import PackageMesh, trapezoid
+from petalfoil.mesh.axial import AxialGrid, trapezoid
+from petalfoil.mesh.package import PackageMesh
 
 
 @dataclass(frozen=True, slots=True)

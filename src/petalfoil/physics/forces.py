@@ -11,8 +11,8 @@ Array = NDArray[np.float64]
 
 
 def node_area(mesh: FilmMesh, radius: float) -> Array:
-    """Area of each film node's cell on a cylinder of `radius`, shape (node, axial) [m^2]."""
-    return radius * mesh.arc_weight[:, None] * mesh.axial.weight[None, :]
+    """Area of a cylinder of `radius` that the pressure at each film node loads, shape (node, axial) [m^2]."""
+    return radius * mesh.arc_weight[:, None] * mesh.axial.load_weight[None, :]
 
 
 def film_force(mesh: FilmMesh, radius: float, Q: Array) -> Array:
@@ -46,7 +46,7 @@ def viscous_torque(
     (p, h), (mu, U) = state, shear
     couette = np.sum(mu * U / (h + 2.0 * slip / p) * node_area(mesh, radius))
     mean_h = 0.5 * (h[:, :-1] + h[:, 1:])
-    poiseuille = np.sum(0.5 * mean_h * np.diff(p, axis=1) * mesh.axial.weight)
+    poiseuille = np.sum(0.5 * mean_h * np.diff(p, axis=1) * mesh.axial.load_weight)
     return float(radius * (couette + poiseuille))
 
 

@@ -20,8 +20,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.mesh.axial import AxialGrid
-from petalfoil.mesh.package import trapezoid
+from petalfoil.mesh.axial import AxialGrid, trapezoid
 
 Array = NDArray[np.float64]
 
@@ -108,28 +107,19 @@ class PetalShell:
 
     @property
     def _second_phi(self) -> sp.csr_array:
-        """Differences along the arc -> second derivative at the nodes, three points on any spacing [1]."""
-        cell = np.diff(self.phi)
-        n = len(self.phi)
-        second = sp.lil_array((n, n - 1))
-        for i in range(1, n - 1):
-            span = 0.5 * (cell[i - 1] + cell[i])
-            second[i, i - 1], second[i, i] = -1.0 / (cell[i - 1] * span), 1.0 / (cell[i] * span)
+        """Differences along the arc -> second derivative at the nodes [1]."""
+        second = _second_derivative(self.phi)
         if self.clamped:  # the node before the root mirrors the first one
-            second[0, 0] = 2.0 / cell[0] ** 2
+            second[0, 0] = 2.0 / (self.phi[1] - self.phi[0]) ** 2
         return second.tocsr()
 
     @property
     def _second_z(self) -> sp.csr_array:
         """Differences along the shaft -> second derivative; none on free sides nor in the flat model [1/m^2]."""
-        n_z = len(self.axial.z)
-        second = sp.lil_array((n_z, max(n_z - 1, 0)))
-        if n_z > 1:
-            inverse = 1.0 / (self.axial.z[1] - self.axial.z[0]) ** 2
-            for j in range(1, n_z - 1):
-                second[j, j - 1], second[j, j] = -inverse, inverse
-            if self.axial.half:  # the node past the plane of symmetry mirrors the one before it
-                second[n_z - 1, n_z - 2] = -2.0 * inverse
+        z = self.axial.z
+        second = _second_derivative(z)
+        if self.axial.half:  # the node past the plane of symmetry mirrors the one before it
+            second[-1, -1] = -2.0 / (z[-1] - z[-2]) ** 2
         return second.tocsr()
 
     @property
@@ -209,6 +199,16 @@ def _jumps(n: int) -> sp.csr_array:
     """Differences of neighbours among `n` values, shape (n - 1, n)."""
     one = np.ones(max(n - 1, 0))
     return sp.csr_array(sp.diags_array([-one, one], offsets=[0, 1], shape=(n - 1, n)))
+
+
+def _second_derivative(nodes: Array) -> sp.lil_array:
+    """Differences of neighbours -> second derivative at the inner ones of `nodes`, three points on any spacing."""
+    n, cell = len(nodes), np.diff(nodes)
+    second = sp.lil_array((n, n - 1))
+    for i in range(1, n - 1):
+        span = 0.5 * (cell[i - 1] + cell[i])
+        second[i, i - 1], second[i, i] = -1.0 / (cell[i - 1] * span), 1.0 / (cell[i] * span)
+    return second
 
 
 def bending_stress(shell: PetalShell, W: Array, youngs_modulus: float, thickness: float) -> Array:

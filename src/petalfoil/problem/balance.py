@@ -16,6 +16,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.physics.forces import node_area
 from petalfoil.problem.coupled import CoupledProblem, Linearization
 from petalfoil.sparsity import Elimination, add_up
 
@@ -39,7 +40,7 @@ class FilmForce:
         """The film's force in the units of `problem`: `-sum (P - 1) n R_j dphi dz` (62)."""
         layout = problem.layout
         mesh, balance = layout.wall.film, layout.balance
-        area = balance.area * balance.radius**2 * layout.scales.pressure / layout.scales.force
+        area = node_area(mesh, balance.radius) * layout.scales.pressure / layout.scales.force
         numbers = np.where(mesh.unknown >= 0, mesh.unknown, mesh.n_unknown).ravel()
         normals = layout.wall.contacts.by_e[layout.wall.contacts.journal].T  # a gap narrows where the film pushes
         parts = [

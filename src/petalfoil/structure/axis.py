@@ -11,4 +11,4 @@ def axial_grid(case: Case) -> AxialGrid:
     length, model = case.bearing.length, case.model
     if model.kind is Kind.FLAT:
         return flat_axis(length)
-    return spatial_axis(length, case.axial_cells, half=model.symmetry)
+    return spatial_axis(length, case.axial_cells, half=model.symmetry, grading=case.axial_grading)

@@ -9,6 +9,7 @@ from petalfoil.case import Case, Edges, Mount, Package, Petals
 from petalfoil.mesh.package import PackageMesh, package_mesh
 from petalfoil.mesh.strips import exposed_strips
 from petalfoil.physics.contact import package_contacts
+from petalfoil.physics.forces import node_area
 from petalfoil.physics.friction import petal_slip
 from petalfoil.physics.shell import PetalShell
 from petalfoil.structure.axis import axial_grid
@@ -64,7 +65,7 @@ def build(case: Case) -> Wall:
     shell, every = build_shell(case, mesh), sp.eye_array(mesh.count)
     motions, support = shell.free_motions()
     slip, share = petal_slip(mesh, 0.5 * petals.total_thickness / r_m, film.unknown.size)
-    load_area = r_m * film.arc_weight[:, None] * mesh.axial.weight
+    load_area = node_area(film, r_m)
     rest = r0[mesh.exposed] - 0.5 * petals.total_thickness - case.bearing.journal_radius
     return Wall(
         name="petals",

@@ -39,13 +39,40 @@ class Elasticity:
         S = self.strain @ self.difference
         return sp.csr_array(S.T @ self.rigidity @ S)
 
+    @cached_property
+    def _levels(self) -> tuple[sp.csr_array, sp.csr_array, sp.csr_array]:
+        """(whole, rest, metric): strains over the largest entry of their rows by jumps, and the rigidity between them.
+
+        Entries of `whole` are +-1: jumps are subtracted before they are weighted. Neighbouring ones lie close together,
+        so that their difference is free of rounding, as that of neighbouring deflections is; only `rest`, what unequal
+        cells add, is rounded.
+        """
+        size = abs(self.strain).max(axis=1).toarray().ravel() if self.strain.nnz else np.ones(self.strain.shape[0])
+        scale = sp.diags_array(np.where(size > 0.0, size, 1.0))
+        unit = sp.csr_array(scale.power(-1) @ self.strain)
+        whole, rest = unit.copy(), unit.copy()
+        whole.data = np.round(unit.data)
+        rest.data -= whole.data
+        rest.data[np.abs(rest.data) < CELL_ROUNDING] = 0.0
+        for part in (whole, rest):
+            part.eliminate_zeros()
+        return whole, rest, sp.csr_array(scale @ self.rigidity @ scale)
+
     def force(self, W: Array, fine: Array | None = None) -> Array:
         """Nodal forces of deflections `W` plus `fine`, what of them lies below the last digit of `W`; (n,) [N]."""
+        whole, rest, metric = self._levels
         jumps = self.difference @ W
+        strains = whole @ jumps + rest @ jumps
         if fine is not None:
-            jumps = jumps + self.difference @ fine
-        out: Array = self.difference.T @ (self.strain.T @ (self.rigidity @ (self.strain @ jumps)))
+            jumps = self.difference @ fine
+            strains += whole @ jumps + rest @ jumps
+        moments = metric @ strains
+        out: Array = self.difference.T @ (whole.T @ moments + rest.T @ moments)
         return out
+
+
+CELL_ROUNDING = 1e-10
+"""Cells whose ratio misses one by less are equal."""
 
 
 def no_elasticity() -> Elasticity:
