@@ -13,8 +13,8 @@ from petalfoil.equilibria.work import Work
 from petalfoil.solvers.eigen import Pencil, rightmost
 from petalfoil.solvers.ties import tie
 
-TIME_STEP = 0.5
-"""Radians of rotation a step of the eigenvalue's time map: resolves disturbances up to a few times the speed."""
+TIME_STEP = 0.15
+"""Radians of rotation a step of the eigenvalue's time map: what grows or dies out in a few of them is seen first."""
 
 
 def leading_eigenvalue(answer: Answer, work: Work) -> complex:
