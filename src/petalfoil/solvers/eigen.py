@@ -22,8 +22,8 @@ from petalfoil.sparsity import Order
 
 Array = NDArray[np.float64]
 
-LEAST, MOST, EVERY = 12, 80, 4
-"""Steps before the first look, at most, and between looks. Random packages need 12 to 60 of them."""
+LEAST, MOST, EVERY = 16, 80, 8
+"""Steps before the first look, at most, and between looks. Random packages need 16 to 64 of them, 32 in the mean."""
 
 SETTLED = 1e-3
 """Relative residual in `theta` of a settled eigenvalue."""
