@@ -29,6 +29,10 @@ SETTLED = 1e-3
 """Relative residual in `theta` of a settled eigenvalue."""
 
 
+UNSEEN = 1e-6
+"""Eigenvalues `theta` below this are infinity's, rounded; as `s` they decay a million times in a step."""
+
+
 @dataclass(frozen=True)
 class Pencil:
     """`J` and `M`, (n, n); rows from `first` on are differential, those before are algebraic."""
@@ -82,6 +86,7 @@ def arnoldi(advance: Callable[[Array], Array], start: Array, step: float) -> com
 def leading(H: Array, rest: float, step: float) -> tuple[complex, float]:
     """Rightmost eigenvalue that the Krylov space of `H` sees, and its relative residual in `theta`."""
     theta, vectors = la.eig(H)
-    s = (1.0 - 1.0 / np.where(theta == 0.0, np.inf, theta)) / step
-    best = int(np.argmax(np.where(theta == 0.0, -np.inf, s.real)))
-    return complex(s[best]), rest * abs(vectors[-1, best]) / abs(theta[best]) if theta[best] else 0.0
+    theta = np.where(np.abs(theta) > UNSEEN, theta, UNSEEN)
+    s = (1.0 - 1.0 / theta) / step
+    best = int(np.argmax(s.real))
+    return complex(s[best]), rest * abs(vectors[-1, best]) / abs(theta[best])
