@@ -126,7 +126,7 @@ def raced(lane: Lane, limit: float, repeats: int) -> Row:
     problem = build_problem(lane.case())
     with one_thread():
         newton = in_turn({"newton": lambda: solve_cold(problem, Work())}, repeats)["newton"]
-    lines, stopped = alone(lane, limit * (SETTLED if (lane.turns, lane.engine) == ("settled", "numba") else 1.0))
+    lines, stopped = alone(lane, limit if lane.turns == "loose" else limit * SETTLED[lane.engine])
     details: dict[str, Value] = {"seconds_newton": newton, "unknowns": problem.layout.n}
     stops = [line for line in lines if "stop" in line]
     for line in stops:
@@ -140,7 +140,7 @@ def raced(lane: Lane, limit: float, repeats: int) -> Row:
         return Row(lane.name, lane.says, None, f"≥ {WANTED:g}", remark=why, details=details)
     row = Row(lane.name, lane.says, None, f"≥ {WANTED:g}", details=details)
     if lane.turns == "settled" and lane.engine == "numpy":
-        return by_steps(row, lines, alone(replace(lane, engine="numba"), SETTLED * limit)[0], newton)
+        return by_steps(row, lines, alone(replace(lane, engine="numba"), limit * SETTLED["numba"])[0], newton)
     return unfinished(row, lines, newton, limit)
 
 
@@ -159,8 +159,9 @@ def unfinished(row: Row, lines: list[dict[str, Any]], newton: float, limit: floa
     return replace(row, ratio=needed / newton, met=needed / newton >= WANTED, remark=remark, details=details)
 
 
-SETTLED = 15.0
-"""Times the limit of the other races that the compiled one with settled turns is given: it needs five minutes."""
+SETTLED = {"numba": 15.0, "numpy": 6.0}
+"""Times the limit of the other races that one with settled turns is given: compiled it needs five minutes; in NumPy the
+first turns tell what a step costs."""
 
 
 def by_steps(row: Row, lines: list[dict[str, Any]], twin: list[dict[str, Any]], newton: float) -> Row:

@@ -43,7 +43,13 @@ class Grid:
 
 def rows(grid: Grid, points: int, repeats: int) -> list[Row]:
     """All rows about a warm point."""
-    return [*cost(grid, points), *factorisation(grid, repeats)]
+    point, one = cost(grid, points), factorisation(grid, repeats)
+    seconds, plain = point[0].details["seconds_per_point"], one[0].details["seconds_original"]
+    assert isinstance(seconds, float)
+    assert isinstance(plain, float)
+    says = "warm spatial point: its time over one factorisation by COLAMD of the original unknowns"
+    remark = "6 factorisations, 1.25 times their time, each 3 times faster than COLAMD: 2.5"
+    return [*point, *one, Row("warm_cost", says, seconds / plain, remark=remark)]
 
 
 # ---------------------------------------------------------------------------------------------- cost of a point
@@ -133,7 +139,7 @@ def factorisation(grid: Grid, repeats: int) -> list[Row]:
             },
             repeats,
         )
-    details = {f"seconds_{name}": value for name, value in best.items()}
+    details: dict[str, Value] = {f"seconds_{name}": value for name, value in best.items()}
     details |= {"unknowns": reduced.shape[0], "unknowns_original": bordered.shape[0]}
     says = "factorisation: COLAMD on the {}, over petalfoil's"
     whole = best["original"] / best["own"]
