@@ -20,7 +20,7 @@ from petalfoil.case.sections import Bearing, Kind, Model, Operation, Surface
 from petalfoil.errors import DefinitionError, PackageError
 
 # Grids whose error in the load stays under 1 %: measured on the paper's packages (six to ten petals, displaced by 100
-# to 280 um: at most 0.4 % flat, 0.7 % spatial) and on plain bearings (L/D 1/2 to 2).
+# to 280 um: at most 0.3 % flat, 0.6 % spatial) and on plain bearings (L/D 1/2 to 2).
 DEFAULT_CELLS = {Kind.FLAT: 128, Kind.SPATIAL: 64}  # along the pitch of a package
 DEFAULT_AXIAL_CELLS = 24
 DEFAULT_PLAIN_CELLS = 128  # a plain bearing's pitch is the whole circle
