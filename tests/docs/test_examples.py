@@ -92,7 +92,7 @@ def test_the_demo_writes_tables_figures_and_data(
     monkeypatch.setattr(demo, "SPATIAL", space)
     demo.main(tmp_path)
     printed = capsys.readouterr()
-    assert "24.85 ± " in printed.out  # 8 petals at 280 µm on 64 cells a pitch
+    assert "24.86 ± " in printed.out  # 8 petals at 280 µm on 64 cells a pitch
     assert "8 petals in space: done" in printed.err
     written = {path.name for path in tmp_path.iterdir()}
     assert {f"curve_{task.name}.nc" for task in (*small, space)} <= written

@@ -47,7 +47,7 @@ class ActiveOptions:
     """Most steps that one factorisation may serve beyond its own."""
     near: float = 1e-2
     """Residual below which the same factorisation is tried again."""
-    gain: float = 1e-2
+    gain: float = 0.1
     """Factor that such a step must take off the residual."""
     boundary_x: float = 0.8
     """Fraction of the way to zero for unknowns that must stay positive."""
@@ -132,7 +132,7 @@ def active_set(
 def with_the_same_factor(
     problem: ConeProblem, state: State | Outcome, factor: Factor, options: ActiveOptions
 ) -> State | Outcome:
-    """Further steps with the factor at hand, as long as the set is right and each gains two digits.
+    """Further steps with the factor at hand, as long as the set is right and each gains a digit.
 
     Near the answer the tangent hardly changes: a step costs a solve, a fiftieth of another factorisation.
     """
