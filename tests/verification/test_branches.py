@@ -120,6 +120,15 @@ def test_a_long_step_that_leaves_the_branch_is_told_too() -> None:
     assert [bool(record.scalars["jump"]) for record in records] == [False] * 8 + [True]
 
 
+def test_a_point_that_is_asked_for_again_is_no_jump() -> None:
+    """Nothing is foretold there, and rounding is larger."""
+    for name in ("paper_n6", "paper_n8"):
+        bearing = case(name, **{"model.cells_per_pitch": 32})
+        records = list(load_curve.iterate(bearing, 1e-6 * np.array([0.0, 50.0, 50.0, 60.0, 60.0 + 1e-8])))
+        assert not any(record.scalars["jump"] for record in records)
+        assert all(record.scalars["branches_known"] == 1 for record in records)
+
+
 def test_the_paper_s_curves_do_not_jump() -> None:
     for name in ("paper_n6", "paper_n8", "paper_n10"):
         records = list(load_curve.iterate(case(name, **{"model.cells_per_pitch": 32}), np.linspace(0.0, 280e-6, 8)))

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from petalfoil.equilibria.answer import Answer
 from petalfoil.equilibria.cold import attempt
 from petalfoil.equilibria.work import Work
+from petalfoil.physics.forces import node_area
 from petalfoil.problem.coupled import CoupledProblem
 
 Array = NDArray[np.float64]
@@ -24,8 +25,8 @@ DIFFERENT = 1e-3
 def fingerprint(answer: Answer) -> Array:
     """Push of film and contact on the journal: total size, sum, and along both axes; (4,) [N]."""
     problem = answer.problem
-    film, balance = problem.layout.wall.film, problem.layout.balance
-    push = (problem.pressure(answer.x) - 1.0) * balance.area * balance.radius**2 * problem.layout.scales.pressure
+    film, area = problem.layout.wall.film, node_area(problem.layout.wall.film, problem.layout.balance.radius)
+    push = (problem.pressure(answer.x) - 1.0) * area * problem.layout.scales.pressure
     reactions = answer.lam[problem.layout.wall.contacts.journal] * problem.layout.scales.force
     if len(reactions):
         push = push + reactions.reshape(push.shape)

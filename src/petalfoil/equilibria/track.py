@@ -22,6 +22,9 @@ FAR, FAR_FOLLOWED = 3.0, 10.0
 """Times that a restarted or a followed point may be as far as the tangent foretold without such a check. A contact that
 opens on the way takes a followed one seven times as far, a fold that it leaps a hundred times."""
 
+NEAR = 1e-6
+"""What is not farther than this from a neighbour is no jump, however little was foretold: the same point again."""
+
 LEAP = 0.5
 """Share of the whole way in one small step that makes it a jump: along a branch it falls as the steps do."""
 
@@ -40,8 +43,8 @@ def advance(known: Answer, problem: CoupledProblem, work: Work) -> tuple[Answer,
     change = predict(known, problem)
     step = follow(known, problem, work, WARM, change)
     found = step or restart(known, problem, work, change) or solve_cold(problem, work)
-    way, foretold = distance(known, found), float(np.max(np.abs(change), initial=0.0))
-    if step is not None and way <= FAR_FOLLOWED * foretold:
+    way, foretold = distance(known, found), max(float(np.max(np.abs(change), initial=0.0)), NEAR)
+    if step is not None and (way <= FAR_FOLLOWED * foretold or known.closed is None):  # or nothing was foretold
         return found, False
     if step is None and way <= FAR * foretold and not pushes_otherwise(known, found):
         return found, False

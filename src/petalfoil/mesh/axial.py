@@ -36,11 +36,14 @@ class AxialGrid:
         """Length by which the pressure at a node loads journal and wall, (n_z,) [m]; sums to the bearing length.
 
         The pressure is as steep as it gets where it meets the surroundings: cubics through the nearest four nodes of
-        the whole length are integrated, of fourth order on any smooth grid. The cells of the film keep `weight`.
+        the whole length are integrated, of fourth order on any smooth grid. The cells of the film keep `weight`, which
+        also serves where a few cells shrink so fast that a cubic's weight is negative: pressure would pull there.
         """
         if self.flat:
             return self.weight
         whole = cubic_weights(self.whole_z)
+        if np.min(whole) <= 0.0:
+            return self.weight
         return self.copies * whole[: len(self.z)] / np.where(self.half & (self.z == self.z[-1]), 2.0, 1.0)
 
     @property

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from petalfoil.analysis import load_curve
+from petalfoil.mesh.axial import cubic_weights
 from petalfoil.report.bounds import bounded_loads
 from petalfoil.report.families import Progress
 from petalfoil.report.scope import COMPARED, Scope
@@ -124,4 +125,4 @@ def push(record: Record) -> float:
     excess = np.asarray(record.fields["pressure"], dtype=np.float64) - p_a
     phi, z = (np.asarray(record.coords[name], dtype=np.float64) for name in ("phi_exposed", "z"))
     along = np.trapezoid(excess, phi, axis=1).sum(axis=0)
-    return float(radius * (along[0] * length if len(z) == 1 else np.trapezoid(along, z)))
+    return float(radius * (along[0] * length if len(z) == 1 else along @ cubic_weights(z)))

@@ -23,14 +23,17 @@ from petalfoil.sparsity import Order
 Array = NDArray[np.float64]
 
 LEAST, MOST, EVERY = 16, 80, 8
-"""Steps before the first look, at most, and between looks. Random packages need 16 to 64 of them, 32 in the mean."""
+"""Steps before the first look, at most, and between looks. Random packages need 16 to 64 of them, 29 in the mean."""
 
 SETTLED = 1e-3
 """Relative residual in `theta` of a settled eigenvalue."""
 
 
 UNSEEN = 1e-6
-"""Eigenvalues `theta` below this are infinity's, rounded; as `s` they decay a million times in a step."""
+"""Eigenvalues `theta` below this are infinity's, rounded: growth rates below `-1e6 / h` are told as that."""
+
+EXHAUSTED = 1e-12
+"""Part of a step that the space has not seen yet, below which it is rounding: the space holds all there is."""
 
 
 @dataclass(frozen=True)
@@ -70,14 +73,16 @@ def arnoldi(advance: Callable[[Array], Array], start: Array, step: float) -> com
     space[:, 0] = start / np.linalg.norm(start)
     for size in range(1, most + 1):
         seen, ahead = space[:, :size], advance(space[:, size - 1])
+        whole = float(np.linalg.norm(ahead))
         for _ in range(2):  # Gram-Schmidt, again for what rounding left
             share = seen.T @ ahead
             ahead = ahead - seen @ share
             H[:size, size - 1] += share
         H[size, size - 1] = rest = float(np.linalg.norm(ahead))
-        if size == most or rest == 0.0 or (size >= LEAST and (size - LEAST) % EVERY == 0):
+        ended = size == most or rest <= EXHAUSTED * whole
+        if ended or (size >= LEAST and (size - LEAST) % EVERY == 0):
             s, residual = leading(H[:size, :size], rest, step)
-            if residual <= SETTLED or size == most or rest == 0.0:
+            if ended or residual <= SETTLED:
                 return s
         space[:, size] = ahead / rest
     raise AssertionError("the last step returns")

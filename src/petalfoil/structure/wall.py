@@ -43,9 +43,9 @@ class Elasticity:
     def _levels(self) -> tuple[sp.csr_array, sp.csr_array, sp.csr_array]:
         """(whole, rest, metric): strains over the largest entry of their rows by jumps, and the rigidity between them.
 
-        Entries of `whole` are +-1: jumps are subtracted before they are weighted. Neighbouring ones lie close together,
-        so that their difference is free of rounding, as that of neighbouring deflections is; only `rest`, what unequal
-        cells add, is rounded.
+        Jumps are differences of neighbouring deflections. Entries of `whole` are +-1 (none beside a cell of less than
+        half the length): jumps of neighbouring cells, which lie close together, are subtracted before they are
+        weighted, and their difference is free of rounding. Only `rest`, what unequal cells add, is rounded.
         """
         size = abs(self.strain).max(axis=1).toarray().ravel() if self.strain.nnz else np.ones(self.strain.shape[0])
         scale = sp.diags_array(np.where(size > 0.0, size, 1.0))

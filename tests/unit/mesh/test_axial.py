@@ -50,6 +50,15 @@ def test_a_pressure_that_is_steep_at_its_ends_is_integrated_with_order_four(grad
     assert np.all(np.log2(np.abs(np.array(errors[:-1]) / np.array(errors[1:]))) > 3.7)
 
 
+def test_no_pressure_pulls_on_few_cells_that_shrink_fast() -> None:
+    """A cubic's weight may be negative there: the cells' own serve instead."""
+    for cells in (4, 8, 12, 16, 24):
+        for grading in (0.6, 0.8, 0.9):
+            grid = spatial_axis(1.0, cells, half=True, grading=grading)
+            assert np.all(grid.load_weight > 0.0)
+            assert_allclose(grid.load_weight.sum(), 1.0, rtol=1e-14)
+
+
 def test_the_flat_model_is_one_station() -> None:
     flat = flat_axis(0.05)
     assert flat.flat
