@@ -67,6 +67,11 @@ class Lane:
         return f"race_n{self.petals}_{self.grid.replace('×', 'x')}_e{self.micrometres}_{self.engine}{word}"
 
     @property
+    def patience(self) -> float:
+        """Times the limit of the loose races that it is given."""
+        return 1.0 if self.turns == "loose" else SETTLED[self.engine]
+
+    @property
     def says(self) -> str:
         """What its row says."""
         about = f"{self.petals} petals, {self.grid} nodes a petal, e = {self.micrometres} µm"
@@ -126,8 +131,7 @@ def raced(lane: Lane, limit: float, repeats: int) -> Row:
     problem = build_problem(lane.case())
     with one_thread():
         newton = in_turn({"newton": lambda: solve_cold(problem, Work())}, repeats)["newton"]
-    allowed = limit if lane.turns == "loose" else limit * SETTLED[lane.engine]
-    lines, stopped = alone(lane, allowed)
+    lines, stopped = alone(lane, limit * lane.patience)
     details: dict[str, Value] = {"seconds_newton": newton, "unknowns": problem.layout.n}
     stops = [line for line in lines if "stop" in line]
     for line in stops:
@@ -136,13 +140,14 @@ def raced(lane: Lane, limit: float, repeats: int) -> Row:
         seconds, first = stops[-1]["seconds"], stops[0]
         remark = f"its own stop after {first['seconds'] / newton:.3g} times newton's time, {first['apart']:.0e} apart"
         return at_least(lane.name, lane.says, seconds / newton, WANTED, details=details, remark=remark)
+    row = Row(lane.name, lane.says, None, f"≥ {WANTED:g}", details=details)
     if not stopped:
         why = next((line["error"] for line in lines if "error" in line), "it stopped short of the answer")
-        return Row(lane.name, lane.says, None, f"≥ {WANTED:g}", remark=why, details=details)
-    row = Row(lane.name, lane.says, None, f"≥ {WANTED:g}", details=details)
-    if lane.turns == "settled" and lane.engine == "numpy":
-        return by_steps(row, lines, alone(replace(lane, engine="numba"), limit * SETTLED["numba"])[0], newton)
-    return unfinished(row, lines, newton, allowed)
+        return replace(row, remark=why)
+    if (lane.engine, lane.turns) == ("numpy", "settled"):
+        twin = replace(lane, engine="numba")
+        return by_steps(row, lines, alone(twin, limit * twin.patience)[0], newton)
+    return unfinished(row, lines, newton, limit * lane.patience)
 
 
 def unfinished(row: Row, lines: list[dict[str, Any]], newton: float, limit: float) -> Row:

@@ -11,8 +11,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.mesh.axial import AxialGrid, flat_axis, trapezoid
+from petalfoil.mesh.axial import AxialGrid, flat_axis
 from petalfoil.mesh.pitch import petal_angles
+from petalfoil.mesh.quadrature import trapezoid
 from petalfoil.physics.shell import PetalShell
 from petalfoil.problem.coupled import WALL_ROUNDING
 from petalfoil.solvers.active_set import ActiveOptions, Closed, Outcome, active_set

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from petalfoil.mesh.axial import trapezoid
+from petalfoil.mesh.quadrature import trapezoid
 from petalfoil.solvers.active_set import Outcome
 from tests.verification.shell_helpers import (
     GRIDS,

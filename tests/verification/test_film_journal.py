@@ -9,7 +9,8 @@ import scipy.sparse.linalg as spla
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from petalfoil.mesh.axial import AxialGrid, flat_axis, trapezoid
+from petalfoil.mesh.axial import AxialGrid, flat_axis
+from petalfoil.mesh.quadrature import trapezoid
 from petalfoil.mesh.strips import whole_circle
 from petalfoil.physics.balance import FilmBalance
 from petalfoil.physics.forces import attitude_angle, viscous_torque

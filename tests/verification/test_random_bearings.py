@@ -8,8 +8,9 @@ import pytest
 from petalfoil.analysis import equilibrium
 from petalfoil.case import Case, Edges, Mount
 from petalfoil.errors import ConvergenceError
-from petalfoil.mesh.axial import flat_axis, trapezoid
+from petalfoil.mesh.axial import flat_axis
 from petalfoil.mesh.package import package_mesh
+from petalfoil.mesh.quadrature import trapezoid
 from petalfoil.physics.shell import PetalShell
 from petalfoil.results.record import Record
 from tests.random_packages import random_case

@@ -151,7 +151,7 @@ def newton(
         unchanged = bool(np.array_equal(wanted, state.closed))
         left = float(np.hypot(*(journal_force(problem, state.x[problem.positive], state.lam) + load)))
         work.note("contacts", residual=state.residual, force=left, touching=int(state.closed.sum()))
-        settled = state.residual <= max(numbers.tolerance, ROUNDED if state.residual > 0.5 * before else 0.0)
+        settled = state.residual <= (ROUNDED if state.residual > 0.5 * before else numbers.tolerance)
         if step and unchanged and settled and left <= FORCE_TOLERANCE * size_of(load):
             balance = finished(problem, state, load, work)
             if balance is not None:

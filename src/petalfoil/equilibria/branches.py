@@ -25,8 +25,8 @@ DIFFERENT = 1e-3
 def fingerprint(answer: Answer) -> Array:
     """Push of film and contact on the journal: total size, sum, and along both axes; (4,) [N]."""
     problem = answer.problem
-    film, area = problem.layout.wall.film, node_area(problem.layout.wall.film, problem.layout.balance.radius)
-    push = (problem.pressure(answer.x) - 1.0) * area * problem.layout.scales.pressure
+    film, radius = problem.layout.wall.film, problem.layout.balance.radius
+    push = (problem.pressure(answer.x) - 1.0) * node_area(film, radius) * problem.layout.scales.pressure
     reactions = answer.lam[problem.layout.wall.contacts.journal] * problem.layout.scales.force
     if len(reactions):
         push = push + reactions.reshape(push.shape)

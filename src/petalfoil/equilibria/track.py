@@ -49,7 +49,7 @@ def advance(known: Answer, problem: CoupledProblem, work: Work) -> tuple[Answer,
     if step is None and way <= FAR * foretold and not pushes_otherwise(known, found):
         return found, False
     for count in SUBSTEPS:
-        gentle = by_small_steps(known, problem, (count, LEAP * way), work)
+        gentle = by_small_steps(known, problem, count, LEAP * way, work)
         if gentle is not None:
             return gentle, False
     return found, True
@@ -66,12 +66,9 @@ def pushes_otherwise(known: Answer, found: Answer) -> bool:
     return bool(np.max(np.abs(after - before)) > SUSPECT * max(before[0], after[0]))
 
 
-def by_small_steps(known: Answer, problem: CoupledProblem, parts: tuple[int, float], work: Work) -> Answer | None:
-    """Follow the branch in equal parts, as many as the first of `parts`, none farther than the second.
-
-    None where the branch does not lead on like that.
-    """
-    (count, farthest), start, current = parts, known.problem, known
+def by_small_steps(known: Answer, problem: CoupledProblem, count: int, farthest: float, work: Work) -> Answer | None:
+    """Follow the branch in `count` equal parts, none of them beyond `farthest`; None where it does not lead on so."""
+    start, current = known.problem, known
     for part in range(1, count + 1):
         share = part / count
         between = problem.at(

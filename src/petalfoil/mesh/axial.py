@@ -8,6 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.mesh.quadrature import cubic_weights, trapezoid
+
 
 @dataclass(frozen=True)
 class AxialGrid:
@@ -44,7 +46,10 @@ class AxialGrid:
         whole = cubic_weights(self.whole_z)
         if np.min(whole) <= 0.0:
             return self.weight
-        return self.copies * whole[: len(self.z)] / np.where(self.half & (self.z == self.z[-1]), 2.0, 1.0)
+        gridded = self.copies * whole[: len(self.z)]
+        if self.half:
+            gridded[-1] *= 0.5  # the middle is its own mirror image
+        return gridded
 
     @property
     def flat(self) -> bool:
@@ -82,23 +87,3 @@ def spatial_axis(length: float, cells: int, *, half: bool, grading: float = 0.0)
     share = np.arange(cells // 2 + 1 if half else cells + 1) / cells
     z = length * (share - grading / (2.0 * np.pi) * np.sin(2.0 * np.pi * share))
     return AxialGrid(z, trapezoid(z) * (2.0 if half else 1.0), length, half)
-
-
-def trapezoid(nodes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Weights of the trapezoidal rule on `nodes`, shape (n,)."""
-    weight = np.zeros(len(nodes))
-    cell = np.diff(nodes)
-    weight[:-1] += 0.5 * cell
-    weight[1:] += 0.5 * cell
-    return weight
-
-
-def cubic_weights(nodes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Weights that integrate, cell by cell, the polynomial through the nearest four of `nodes` (or all, if fewer)."""
-    count, cell, order = min(4, len(nodes)), np.diff(nodes), np.arange(min(4, len(nodes)))
-    near = np.clip(np.arange(len(cell)) - 1, 0, len(nodes) - count)[:, None] + order
-    share = (nodes[near] - nodes[:-1, None]) / cell[:, None]
-    moments, exact = share[:, None, :] ** order[:, None], np.broadcast_to(1.0 / (1.0 + order), share.shape)
-    weight = np.zeros(len(nodes))
-    np.add.at(weight, near, cell[:, None] * np.linalg.solve(moments, exact[..., None])[..., 0])
-    return weight

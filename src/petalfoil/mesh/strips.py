@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.mesh.axial import AxialGrid, trapezoid
+from petalfoil.mesh.axial import AxialGrid
 from petalfoil.mesh.package import PackageMesh
+from petalfoil.mesh.quadrature import trapezoid
 
 
 @dataclass(frozen=True, slots=True)

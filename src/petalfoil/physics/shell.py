@@ -20,7 +20,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.mesh.axial import AxialGrid, trapezoid
+from petalfoil.mesh.axial import AxialGrid
+from petalfoil.mesh.quadrature import trapezoid
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from petalfoil.analysis import load_curve
-from petalfoil.mesh.axial import cubic_weights
+from petalfoil.mesh.quadrature import cubic_weights
 from petalfoil.report.bounds import bounded_loads
 from petalfoil.report.families import Progress
 from petalfoil.report.scope import COMPARED, Scope

@@ -28,7 +28,6 @@ LEAST, MOST, EVERY = 16, 80, 8
 SETTLED = 1e-3
 """Relative residual in `theta` of a settled eigenvalue."""
 
-
 UNSEEN = 1e-6
 """Eigenvalues `theta` below this are infinity's, rounded: growth rates below `-1e6 / h` are told as that."""
 

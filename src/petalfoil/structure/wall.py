@@ -58,15 +58,16 @@ class Elasticity:
             part.eliminate_zeros()
         return whole, rest, sp.csr_array(scale @ self.rigidity @ scale)
 
+    def _strains(self, W: Array) -> Array:
+        """Strains of deflections `W`, over the largest entry of their rows; (m,)."""
+        (whole, rest, _), jumps = self._levels, self.difference @ W
+        strains: Array = whole @ jumps + rest @ jumps
+        return strains
+
     def force(self, W: Array, fine: Array | None = None) -> Array:
         """Nodal forces of deflections `W` plus `fine`, what of them lies below the last digit of `W`; (n,) [N]."""
         whole, rest, metric = self._levels
-        jumps = self.difference @ W
-        strains = whole @ jumps + rest @ jumps
-        if fine is not None:
-            jumps = self.difference @ fine
-            strains += whole @ jumps + rest @ jumps
-        moments = metric @ strains
+        moments = metric @ (self._strains(W) if fine is None else self._strains(W) + self._strains(fine))
         out: Array = self.difference.T @ (whole.T @ moments + rest.T @ moments)
         return out
 

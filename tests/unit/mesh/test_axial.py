@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from petalfoil.mesh.axial import cubic_weights, flat_axis, spatial_axis
+from petalfoil.mesh.axial import flat_axis, spatial_axis
+from petalfoil.mesh.quadrature import cubic_weights
 
 GRADINGS = (0.0, 0.6, 0.9)
 
