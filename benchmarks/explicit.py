@@ -23,8 +23,8 @@ from petalfoil.classic.kernels import Descent, Engine, March, kernels
 from petalfoil.classic.numpy_kernels import exponential_fit, inflow, largest_rate
 from petalfoil.classic.options import ClassicOptions
 from petalfoil.classic.relaxation import pressure_unknowns
-from petalfoil.problem.coupled import CoupledProblem
-from petalfoil.transient.state import Instant
+from petalfoil.dynamics.time_state import Instant
+from petalfoil.system.coupled import CoupledProblem
 
 Array = NDArray[np.float64]
 

@@ -24,8 +24,8 @@ from spatial_point import FARTHEST, STEP, Grid
 
 from petalfoil.analysis import load_curve
 from petalfoil.analysis.session import one_thread
-from petalfoil.problem.build import build_problem
-from petalfoil.solvers.linear import LinearSolver
+from petalfoil.solvers.sparse_lu import LinearSolver
+from petalfoil.system.build import build_problem
 
 SIZES = (Grid(10, 6), Grid(18, 12), Grid(34, 22), Grid(58, 38))
 """About 1000, 3000, 10 000 and 30 000 unknowns: a short curve on each."""

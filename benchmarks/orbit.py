@@ -13,16 +13,16 @@ import explicit
 import numpy as np
 from measure import Row, Value, at_least, at_most, in_turn
 
-from petalfoil.analysis.orbit import TOLERANCE, Course, Orbit
+from petalfoil.analysis.orbit import TOLERANCE, Orbit, OrbitRequest
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
 from petalfoil.classic.kernels import Engine
-from petalfoil.equilibria.response import Motion
-from petalfoil.problem.build import build_problem
-from petalfoil.solvers.linear import LinearSolver
+from petalfoil.dynamics.time_state import Instant
+from petalfoil.equilibrium.linear_response import Motion
+from petalfoil.solvers.constraints import tie
 from petalfoil.solvers.spanning import determining
-from petalfoil.solvers.ties import tie
-from petalfoil.transient.state import Instant
+from petalfoil.solvers.sparse_lu import LinearSolver
+from petalfoil.system.build import build_problem
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 ROTOR = {"mass": 3.0, "unbalance": 2e-6}
@@ -53,7 +53,7 @@ class Lane:
 
     def case(self) -> Case:
         """The bearing with its rotor."""
-        file = "paper_n8" if self.kind == "flat" else "paper_n8_spatial"
+        file = "paper_n8" if self.kind == "2d" else "paper_n8_spatial"
         return Case.load(EXAMPLES / f"{file}.toml").replace(rotor=ROTOR, **self.changes)
 
     @property
@@ -61,17 +61,17 @@ class Lane:
         """Which motion."""
         case = self.case()
         cells = f"{build_problem(case).layout.wall.film.shape[1] - 1}"
-        cells += f"×{case.model.axial_cells}" if self.kind == "spatial" else ""
+        cells += f"×{case.model.axial_cells}" if self.kind == "3d" else ""
         return f"orbit, 8 petals, {self.kind}, {cells} cells"
 
 
 FULL = (
-    Lane("flat", "flat", sample=40.0),
-    Lane("spatial", "spatial", {"model.cells_per_pitch": 24, "model.axial_cells": 16}, seconds=60.0, sample=40.0),
+    Lane("2d", "2d", sample=40.0),
+    Lane("3d", "3d", {"model.cells_per_pitch": 24, "model.axial_cells": 16}, seconds=60.0, sample=40.0),
 )
 QUICK = (
-    Lane("flat", "flat", {"model.cells_per_pitch": 16}, revolutions=2.0, sample=2.0),
-    Lane("spatial", "spatial", {"model.cells_per_pitch": 10, "model.axial_cells": 6}, revolutions=1.0, sample=2.0),
+    Lane("2d", "2d", {"model.cells_per_pitch": 16}, revolutions=2.0, sample=2.0),
+    Lane("3d", "3d", {"model.cells_per_pitch": 10, "model.axial_cells": 6}, revolutions=1.0, sample=2.0),
 )
 
 
@@ -115,7 +115,7 @@ def rows(lanes: tuple[Lane, ...]) -> list[Row]:
 
 def followed(lane: Lane) -> Followed:
     """Follow a motion until its end or until its time is up."""
-    orbit = Orbit(lane.case(), Course(initial="balance", revolutions=lane.revolutions))
+    orbit = Orbit(lane.case(), OrbitRequest(initial="balance", revolutions=lane.revolutions))
     before, last, start = orbit.work.film.factorizations, deque([orbit.start], TURN + 2), time.process_time()
     for _ in orbit.steps():
         assert orbit.trace.last is not None  # it has just made a step
@@ -140,13 +140,16 @@ def own(motion: Followed) -> list[Row]:
         "steps": steps,
         "factorisations": motion.factorisations,
         "failed_steps": int(record["failed_steps"]),
-        "refused_steps": int(record["refused_steps"]),
+        "rejected_steps": int(record["rejected_steps"]),
         "largest_residual": float(record["residual"]),
         "seconds": motion.seconds,
         "seconds_a_step": step,
         **times,
     }
-    count, kept = motion.factorisations / steps, f"{details['failed_steps']} failed, {details['refused_steps']} refused"
+    count, kept = (
+        motion.factorisations / steps,
+        f"{details['failed_steps']} failed, {details['rejected_steps']} refused",
+    )
     remark = f"{steps} steps in {motion.revolutions:.3g} revolutions, {kept}"
     name, cost = f"orbit_{lane.name}", step / times["seconds_factorisation"]
     anew = f"{step / times['seconds_factorisation_anew']:.3g} where its order is found anew"

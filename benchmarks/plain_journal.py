@@ -14,10 +14,10 @@ from measure import Row, Value, at_most, in_turn
 from petalfoil.analysis import equilibrium
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
-from petalfoil.equilibria.cold import solve_cold
-from petalfoil.equilibria.work import Work
+from petalfoil.equilibrium.cold_start import solve_cold
+from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.physics.forces import film_force
-from petalfoil.problem.build import build_problem
+from petalfoil.system.build import build_problem
 
 ROOT = Path(__file__).parents[1]
 TABLE = ROOT / "tests" / "verification" / "reference" / "a2_journal_finite_LD1.csv"
@@ -99,7 +99,7 @@ def timed(exact: Exact, grid: Grid, repeats: int) -> dict[str, float]:
     calls = {
         "yardstick": lambda: by_yardstick(exact, grid),
         "petalfoil": lambda: equilibrium.run(case),
-        "solution": lambda: solve_cold(build_problem(case), Work()),
+        "solution": lambda: solve_cold(build_problem(case), RunLog()),
     }
     with one_thread():
         return in_turn(calls, repeats)
@@ -110,7 +110,7 @@ def solution(exact: Exact, grid: Grid) -> tuple[float, float]:
     case = exact.case(grid)
     problem = build_problem(case)
     with one_thread():
-        found = solve_cold(problem, Work())
+        found = solve_cold(problem, RunLog())
     bearing, p_a = case.bearing, case.gas.ambient_pressure
     force = film_force(problem.layout.wall.film, bearing.journal_radius, (problem.pressure(found.x) - 1.0) * p_a)
     x, y = force / (p_a * bearing.length * 2.0 * bearing.journal_radius)

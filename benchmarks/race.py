@@ -29,12 +29,12 @@ from measure import Row, Value, at_least, in_turn
 
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
-from petalfoil.equilibria.cold import solve_cold
-from petalfoil.equilibria.work import Work
+from petalfoil.equilibrium.cold_start import solve_cold
+from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.errors import ConvergenceError
 from petalfoil.physics.forces import contact_force, film_force, node_area
-from petalfoil.problem.build import build_problem
-from petalfoil.problem.coupled import CoupledProblem
+from petalfoil.system.build import build_problem
+from petalfoil.system.coupled import CoupledProblem
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 EPSILON = 1e-5
@@ -92,7 +92,7 @@ class Lane:
             "model.cells_per_pitch": round((self.nodes - 1) / overlap),
         }
         if self.stations:
-            changes |= {"model.kind": "spatial", "model.axial_cells": self.stations - 1}
+            changes |= {"model.kind": "3d", "model.axial_cells": self.stations - 1}
         return case.replace(**changes)
 
 
@@ -130,7 +130,7 @@ def raced(lane: Lane, limit: float, repeats: int) -> Row:
     """Time of the classic method over that of Newton, both from nothing, to the same answer."""
     problem = build_problem(lane.case())
     with one_thread():
-        newton = in_turn({"newton": lambda: solve_cold(problem, Work())}, repeats)["newton"]
+        newton = in_turn({"newton": lambda: solve_cold(problem, RunLog())}, repeats)["newton"]
     lines, stopped = alone(lane, limit * lane.patience)
     details: dict[str, Value] = {"seconds_newton": newton, "unknowns": problem.layout.n}
     stops = [line for line in lines if "stop" in line]
@@ -232,7 +232,7 @@ def run_classic(lane: Lane) -> None:
     from petalfoil.classic.relaxation import Run, relax
 
     problem = build_problem(lane.case())
-    found = solve_cold(problem, Work())
+    found = solve_cold(problem, RunLog())
     wanted = figures(problem, found.x, found.lam)
     engine = Engine(lane.engine)
     with contextlib.suppress(ConvergenceError):  # compiles, where something compiles

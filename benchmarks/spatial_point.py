@@ -15,12 +15,12 @@ from watching import APART, Watch, watched
 from petalfoil.analysis import load_curve
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
-from petalfoil.equilibria.answer import Answer
-from petalfoil.equilibria.cold import solve_cold
-from petalfoil.equilibria.track import advance
-from petalfoil.equilibria.work import Work
-from petalfoil.problem.build import build_problem
-from petalfoil.solvers.linear import LinearSolver
+from petalfoil.equilibrium.cold_start import solve_cold
+from petalfoil.equilibrium.continuation import advance
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.solvers.sparse_lu import LinearSolver
+from petalfoil.system.build import build_problem
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 FARTHEST = 200e-6  # [m]
@@ -102,17 +102,17 @@ def cost(grid: Grid, points: int) -> list[Row]:
 # ---------------------------------------------------------------------------------------------- one factorisation
 
 
-def answer(grid: Grid) -> Answer:
+def answer(grid: Grid) -> Solution:
     """A point of the curve with contacts closed, its tangent at hand."""
     problem = build_problem(grid.case(0.5 * FARTHEST))
-    known = solve_cold(problem, Work())
-    found, _ = advance(known, problem.at(displacement=1.02 * problem.displacement), Work())
+    known = solve_cold(problem, RunLog())
+    found, _ = advance(known, problem.at(displacement=1.02 * problem.displacement), RunLog())
     if found.closed is None:
         raise RuntimeError("the point of the benchmark has no contact set")
     return found
 
 
-def saddle(found: Answer) -> sp.csc_array:
+def saddle(found: Solution) -> sp.csc_array:
     """The original unknowns in natural order: the tangent, bordered by the closed gaps with their multipliers."""
     closed = found.in_contact
     J, G = found.problem.linearize(found.x).matrix(np.zeros(len(closed))), found.problem.G[closed]

@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from petalfoil.analysis import load_curve
-from petalfoil.problem.coupled import Linearization
-from petalfoil.problem.package import PackageLinearization
-from petalfoil.solvers import active_set
-from petalfoil.solvers.linear import Factor, LinearSolver
-from petalfoil.solvers.ties import Ties
+from petalfoil.solvers import contact_newton
+from petalfoil.solvers.constraints import Ties
+from petalfoil.solvers.sparse_lu import Factor, LinearSolver
+from petalfoil.system.coupled import Linearization
+from petalfoil.system.package import PackageLinearization
 
 Place = tuple[Any, str]
 
@@ -22,7 +22,7 @@ PLACES: dict[str, tuple[Place, ...]] = {
     "assembly": ((Linearization, "matrix"), (PackageLinearization, "matrix"), (Ties, "reduce")),
     "solves": ((Factor, "solve"),),
     "stability": ((load_curve, "leading_eigenvalue"),),
-    "contact_search": ((active_set, "search"),),
+    "contact_search": ((contact_newton, "search"),),
 }
 """Functions by what their time is called. The last two contain some of the first three."""
 

@@ -27,9 +27,9 @@ from petalfoil.results.store import save
 HERE = Path(__file__).parent
 
 SHOWN = {  # name in the result: heading, factor, digits
-    "load_capacity": ("load\nN", 1.0, 2),
-    "min_film": ("film\nµm", 1e6, 2),
-    "max_pressure": ("pressure\nkPa", 1e-3, 1),
+    "bearing_force": ("load\nN", 1.0, 2),
+    "min_film_thickness": ("film\nµm", 1e6, 2),
+    "peak_pressure": ("pressure\nkPa", 1e-3, 1),
     "friction_torque": ("torque\nmN·m", 1e3, 2),
 }
 
@@ -162,7 +162,7 @@ def figure(point: xr.Dataset, name: str, bars: dict[str, float] | None) -> str:
 
 def comparison(finished: dict[str, Result]) -> str:
     """What the number of petals does to the load, beside what the paper says."""
-    loads = [float(finished[task.name].curve["load_capacity"][-1]) for task in FLAT]
+    loads = [float(finished[task.name].curve["bearing_force"][-1]) for task in FLAT]
     carried = ", ".join(f"{load:.1f} N with {task.label}" for load, task in zip(loads, FLAT, strict=True))
     return (
         f"At 280 µm: {carried}. The paper speaks of almost twice the load from 6 to 10 petals; it states neither the\n"

@@ -22,11 +22,11 @@ from petalfoil.analysis.richardson import Extrapolation, richardson
 
 HERE = Path(__file__).parent
 COUNTS, DISPLACEMENTS = (6, 8, 10), (0, 100, 200, 280)  # the latter in µm, downward
-COARSEST = {"flat": 64, "spatial": 24}  # cells along a pitch
-LEVELS = {"flat": 4, "spatial": 3}
+COARSEST = {"2d": 64, "3d": 24}  # cells along a pitch
+LEVELS = {"2d": 4, "3d": 3}
 
-RUNNING = {"load_capacity": 1.0, "min_film": 1e6, "max_pressure": 1e-3}  # factors to N, µm, kPa
-RESTING = {"contact_total": 1.0, "starting_torque": 1e3}  # factors to N, mN·m
+RUNNING = {"bearing_force": 1.0, "min_film_thickness": 1e6, "peak_pressure": 1e-3}  # factors to N, µm, kPa
+RESTING = {"contact_normal_force": 1.0, "starting_torque": 1e3}  # factors to N, mN·m
 
 HEAD = """# Converged values of the paper's packages
 
@@ -96,7 +96,7 @@ def page(found: dict[Task, dict[str, Extrapolation]]) -> str:
     """The whole page."""
     sections = [HEAD]
     for kind in COARSEST:
-        names = [f"{cells} × {cells // 2}" if kind == "spatial" else str(cells) for cells in grids(kind)]
+        names = [f"{cells} × {cells // 2}" if kind == "3d" else str(cells) for cells in grids(kind)]
         sections.append(f"## {kind.capitalize()} model, grids {', '.join(names)}\n")
         sections.append(
             table(found, kind, DISPLACEMENTS, RUNNING, ("load, N", "smallest film, µm", "peak pressure, kPa"))
@@ -141,7 +141,7 @@ def text(value: Extrapolation, factor: float) -> str:
 def main(path: Path) -> None:
     """Run all tasks, the longest first, and write the page when all are done."""
     err = Console(stderr=True, highlight=False)
-    tasks = [Task(n, kind, e) for kind in ("spatial", "flat") for n in COUNTS for e in (*DISPLACEMENTS, None)]
+    tasks = [Task(n, kind, e) for kind in ("3d", "2d") for n in COUNTS for e in (*DISPLACEMENTS, None)]
     found: dict[Task, dict[str, Extrapolation]] = {}
     with Pool(2) as pool:
         for task, figures in zip(tasks, pool.imap(run, tasks), strict=True):

@@ -22,7 +22,7 @@ from petalfoil import Case
 from petalfoil.analysis import balance, liftoff, runup
 from petalfoil.analysis.session import one_thread
 from petalfoil.analysis.speeds import SpeedLine
-from petalfoil.equilibria.work import Work
+from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.errors import ConvergenceError
 from petalfoil.plot import style
 from petalfoil.results.record import Record
@@ -33,7 +33,7 @@ TOP = 30000.0  # [rpm]
 POINTS = 49  # of a run-up
 ARM = 0.16 * 9.80665  # moment over what the rig's sensor shows [N m/kgf]: 1.19 for 0.76, 1.10 for 0.70, 3.79 for 2.42
 GRIDS = (96, 192, 384)  # cells along a pitch
-SPACE = {"model.kind": "spatial", "model.cells_per_pitch": 64, "model.axial_cells": 24}
+SPACE = {"model.kind": "3d", "model.cells_per_pitch": 64, "model.axial_cells": 24}
 
 err = Console(stderr=True, markup=False, highlight=False)
 
@@ -68,7 +68,7 @@ def lift_off(case: Case, experiment: Experiment, share: float = liftoff.SHARE) -
     """Lift-off speed under the load of an experiment, looked for from the measured one on [rpm]."""
     near = case.replace(**{"operation.speed": experiment.speed * RPM})
     with one_thread():
-        return liftoff.crossings(near, experiment.load, share, Work())[0] / RPM
+        return liftoff.crossings(near, experiment.load, share, RunLog())[0] / RPM
 
 
 # ------------------------------------------------------------------------------------------- tables
@@ -99,8 +99,8 @@ VARIATIONS: dict[str, tuple[dict[str, object], float]] = {
     "floats below 0.5 % of contacts": ({}, 0.005),
     "floats below 2 %": ({}, 0.02),
     "floats below 5 %": ({}, 0.05),
-    "film floor 0.5 µm": ({"surface.film_floor": 0.5e-6}, liftoff.SHARE),
-    "film floor 1.5 µm": ({"surface.film_floor": 1.5e-6}, liftoff.SHARE),
+    "film floor 0.5 µm": ({"surface.contact_film_thickness": 0.5e-6}, liftoff.SHARE),
+    "film floor 1.5 µm": ({"surface.contact_film_thickness": 1.5e-6}, liftoff.SHARE),
     "gas slips at the walls": ({"model.slip": True}, liftoff.SHARE),
     "journal radius 10 µm larger": ({"bearing.journal_radius": 28.6414e-3}, liftoff.SHARE),
     "journal radius 10 µm smaller": ({"bearing.journal_radius": 28.6214e-3}, liftoff.SHARE),
@@ -131,7 +131,7 @@ def in_space() -> str:
         "| rpm | contact share |",
         "|---:|---:|",
     ]
-    line = SpeedLine(case, (0.0, -first.load), Work())
+    line = SpeedLine(case, (0.0, -first.load), RunLog())
     with one_thread():
         for rpm in (4000.0, 6000.0, 8800.0, 12000.0, 16000.0):
             lines.append(f"| {rpm:.0f} | {100.0 * line.share(rpm * RPM):.1f} % |")
@@ -179,7 +179,9 @@ def draw(column: Sequence[Axes], records: Sequence[Record], look: tuple[str, str
     label, colour = look
     known = [record.scalars for record in records if record.converged]
     rpm = [float(s["speed"]) / RPM for s in known]
-    for ax, name, factor in zip(column, ("friction_torque", "contact_share", "min_film"), (1.0, 1e2, 1e6), strict=True):
+    for ax, name, factor in zip(
+        column, ("friction_torque", "contact_fraction", "min_film_thickness"), (1.0, 1e2, 1e6), strict=True
+    ):
         values = [factor * float(s[name]) for s in known]
         ax.plot(rpm, values, color=colour, marker=".", markersize=4, linewidth=1.6, label=label)
 
@@ -197,7 +199,7 @@ def measured(column: Sequence[Axes], leg: str) -> None:
         style.dress(ax)
         ax.set_xlim((0.0, TOP) if leg == "up" else (TOP, 0.0))
         ax.set_ylim(bottom=0.0)
-    floor = 1e6 * rig().surface.film_floor
+    floor = 1e6 * rig().surface.contact_film_thickness
     column[2].axhline(floor, color=style.GREY, linestyle="--", linewidth=1.0)
     column[2].annotate("film floor", (0.98, floor), xycoords=("axes fraction", "data"), ha="right", va="bottom")
 

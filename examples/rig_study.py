@@ -32,7 +32,7 @@ from petalfoil.analysis import balance, liftoff
 from petalfoil.analysis.session import one_thread
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case.package import MAX_ARC_ANGLE
-from petalfoil.equilibria.work import Work
+from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.errors import ConvergenceError, DefinitionError
 
 Array = NDArray[np.float64]
@@ -46,9 +46,12 @@ LOADS, MOMENTS, SPEEDS = (
 FITTED = 3  # experiments; in the fourth the bearing failed: it is predicted
 SCATTER_MOMENT, SCATTER_SPEED = 0.05, 0.03  # standard deviations of experiments 1 to 3 about their means
 
-COUNTS, MOUNTS = range(5, 13), ("hinged", "rigid")
+COUNTS, MOUNTS = range(5, 13), ("hinged", "clamped")
 RANGES = {  # of the unknown dimensions
-    "room": (5e-6, 900e-6),  # above the layers of the package, R_B - R_j less layers * delta [m]; even in its logarithm
+    "room": (
+        5e-6,
+        900e-6,
+    ),  # above the layers of the package, R_B - R_j less layers * delta [m]; even in its logarithm
     "overlap": (1.1, 2.95),  # petals over every point of the bore; sets the petals' length
     "coating": (12e-6, 20e-6),  # as stated [m]
     "turn": (0.0, 1.0),  # of the roots against the load [pitches]
@@ -102,7 +105,7 @@ class Package:
                 "petals.coating": self.coating,
                 "petals.root_tilt": tilt,
                 "petals.first_root": self.turn * pitch,
-                "surface.film_floor": floor,
+                "surface.contact_film_thickness": floor,
                 "model.cells_per_pitch": cells,
             }
         )
@@ -145,14 +148,14 @@ class Finding:
 def reactions(case: Case, loads: Sequence[float]) -> list[float]:
     """Sum of the contact reactions on the journal at rest under each load [N]."""
     still = [balance.run(case, (0.0, -load), speed=0.0) for load in loads]
-    return [float(record.scalars["contact_total"]) for record in still]
+    return [float(record.scalars["contact_normal_force"]) for record in still]
 
 
 def lift_off(case: Case, load: float, near: float, share: float = liftoff.SHARE) -> float:
     """Lift-off speed [rpm], looked for from the speed `near`; nan if it is far above."""
     omega = near * math.pi / 30.0
     with one_thread():
-        line = SpeedLine(case, (0.0, -load), Work())
+        line = SpeedLine(case, (0.0, -load), RunLog())
         touching, known = line.share(omega) > share, line.known
         if touching and line.share(TOO_FAST * omega) > share:
             return math.nan
@@ -212,7 +215,7 @@ def levelled(package: Package, floor: float, cells: int, loads: Sequence[float])
             break
         floor = wanted
     speeds += [lift_off(case, load, near) for load, near in zip(loads[FITTED:], SPEEDS[FITTED:], strict=False)]
-    return case.surface.film_floor, speeds
+    return case.surface.contact_film_thickness, speeds
 
 
 # ------------------------------------------------------------------------------------------- the search
@@ -253,7 +256,7 @@ def drawn(count: int, mount: str) -> Iterator[Package]:
 
 def ranges_of(count: int, mount: str) -> dict[str, tuple[float, float]]:
     """`RANGES`, with no petal longer than a circular free shape may be, and without the tilt of a hinged root."""
-    ranges = {name: limits for name, limits in RANGES.items() if name != "tilt" or mount == "rigid"}
+    ranges = {name: limits for name, limits in RANGES.items() if name != "tilt" or mount == "clamped"}
     low, high = ranges["overlap"]
     return {**ranges, "overlap": (low, min(high, 0.999 * MAX_ARC_ANGLE * count / (2.0 * math.pi)))}
 
@@ -272,7 +275,10 @@ def searched(count: int, mount: str, folder: Path) -> Store:
 def refine(start: Finding, folder: Path) -> Finding:
     """The best package near one that is known."""
     package, store = start.package, searched(start.package.count, start.package.mount, folder)
-    ranges, names = ranges_of(package.count, package.mount), ["overlap", "room"] + ["tilt"] * (package.mount == "rigid")
+    ranges, names = (
+        ranges_of(package.count, package.mount),
+        ["overlap", "room"] + ["tilt"] * (package.mount == "clamped"),
+    )
 
     def value(steps: Array) -> float:
         moved = {name: getattr(package, name) * math.exp(step) for name, step in zip(names, steps, strict=True)}

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from petalfoil.case import Bearing, Case, Gas, Kind, Model, Mount, Operation, Petals, Surface
+from petalfoil.case import Bearing, Case, Gas, Model, ModelKind, Mount, Operation, Petals, Surface
 from petalfoil.case.package import MAX_ARC_ANGLE
 from petalfoil.errors import DefinitionError
 
@@ -53,15 +53,15 @@ def _draw(rng: np.random.Generator) -> Case:
             arc_length=overlap * pitch * r_m,
             thickness=delta,
             bend_radius=rng.uniform(1.1, 2.5) * r_m,
-            mount=Mount.HINGED if rng.random() < 0.5 else Mount.RIGID,
+            mount=Mount.HINGED if rng.random() < 0.5 else Mount.CLAMPED,
             youngs_modulus=200e9,
             poisson_ratio=0.3,
         ),
         gas=Gas(viscosity=1.85e-5, ambient_pressure=1e5),
-        surface=Surface(film_floor=FILM_FLOOR),
+        surface=Surface(contact_film_thickness=FILM_FLOOR),
         operation=Operation(
             speed=rng.uniform(20.0, 250.0) / R_j,
             eccentricity=(reach * math.cos(direction), reach * math.sin(direction)),
         ),
-        model=Model(kind=Kind.FLAT, cells_per_pitch=32),
+        model=Model(kind=ModelKind.TWO_D, cells_per_pitch=32),
     )

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
-from petalfoil.problem.coupled import CoupledProblem
+from petalfoil.system.coupled import CoupledProblem
 from tests.cases import case
 
 Array = NDArray[np.float64]
@@ -36,19 +36,19 @@ def assert_tangent(along: Callable[[float], Array], change: Array, largest: floa
 
 
 BEARINGS: dict[str, tuple[str, str, str, bool]] = {
-    "plain, flat": ("plain_journal", "flat", "ambient", True),
-    "plain, half": ("plain_journal", "spatial", "ambient", True),
-    "plain, whole": ("plain_journal", "spatial", "ambient", False),
-    "petals, flat": ("paper_n8", "flat", "ambient", True),
-    "petals, half": ("paper_n8", "spatial", "ambient", True),
-    "petals, whole": ("paper_n8", "spatial", "ambient", False),
-    "stepped petals, flat": ("paper_n8", "flat", "continuous", True),
-    "stepped petals, half": ("paper_n8", "spatial", "continuous", True),
-    "stepped petals, whole": ("paper_n8", "spatial", "continuous", False),
-    "slipping plain, flat": ("plain_journal", "flat", "ambient", True),
-    "slipping plain, half": ("plain_journal", "spatial", "ambient", True),
-    "slipping petals, half": ("paper_n8", "spatial", "ambient", True),
-    "slipping stepped petals, flat": ("paper_n8", "flat", "continuous", True),
+    "plain, flat": ("plain_journal", "2d", "ambient", True),
+    "plain, half": ("plain_journal", "3d", "ambient", True),
+    "plain, whole": ("plain_journal", "3d", "ambient", False),
+    "petals, flat": ("paper_n8", "2d", "ambient", True),
+    "petals, half": ("paper_n8", "3d", "ambient", True),
+    "petals, whole": ("paper_n8", "3d", "ambient", False),
+    "stepped petals, flat": ("paper_n8", "2d", "continuous", True),
+    "stepped petals, half": ("paper_n8", "3d", "continuous", True),
+    "stepped petals, whole": ("paper_n8", "3d", "continuous", False),
+    "slipping plain, flat": ("plain_journal", "2d", "ambient", True),
+    "slipping plain, half": ("plain_journal", "3d", "ambient", True),
+    "slipping petals, half": ("paper_n8", "3d", "ambient", True),
+    "slipping stepped petals, flat": ("paper_n8", "2d", "continuous", True),
 }
 """Example, kind, edges, symmetry; the slipping ones in a gas so thin that slip is a good part of the flow."""
 

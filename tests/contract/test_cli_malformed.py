@@ -35,7 +35,7 @@ speed = "8000 rad/s"
 eccentricity = ["0 um", "-100 um"]
 
 [model]
-kind = "flat"
+kind = "2d"
 """
 
 # What is written instead of what, and what the message must name.
@@ -52,9 +52,9 @@ MALFORMED = {
     "below its range": ('length = "50 mm"', 'length = "-50 mm"', ["bearing.length"]),
     "not whole": ("count = 8", "count = 8.5", ["petals.count"]),
     "wrong type": ("count = 8", "count = [8]", ["petals.count"]),
-    "unknown choice": ('mount = "hinged"', 'mount = "welded"', ["petals.mount", "hinged", "rigid"]),
+    "unknown choice": ('mount = "hinged"', 'mount = "welded"', ["petals.mount", "hinged", "clamped"]),
     "three coordinates": ('["0 um", "-100 um"]', '["0 um", "-100 um", "0 um"]', ["operation.eccentricity"]),
-    "method that is not there": ('kind = "flat"', 'kind = "flat"\nmethod = "clasic"', ["model.method", "classic"]),
+    "method that is not there": ('kind = "2d"', 'kind = "2d"\nmethod = "clasic"', ["model.method", "classic"]),
     "no overlap": ('arc_length = "45 mm"', 'arc_length = "15 mm"', ["petals.arc_length"]),
     "does not fit": ('thickness = "0.176 mm"', 'thickness = "0.5 mm"', ["petals"]),
     "journal wider than bushing": ('journal_radius = "25 mm"', 'journal_radius = "27 mm"', ["bearing"]),

@@ -31,7 +31,7 @@ def test_the_records_of_all_methods_are_alike() -> None:
         keys = [list(getattr(record, part)) for record in records]
         assert all(found == keys[0] for found in keys)
     assert all(record.history for record in records)
-    assert len({str(record.scalars["branch"]) for record in records}) == len(records)
+    assert len({str(record.scalars["solution_path"]) for record in records}) == len(records)
 
 
 @METHODS
@@ -50,7 +50,7 @@ def test_a_curve_goes_from_point_to_point(method: Method) -> None:
     )
     assert all(record.converged for record in records)
     assert [record.scalars["jump"] for record in records] == [False] * 3
-    assert "neighbouring point" in str(records[2].scalars["branch"])
+    assert "neighbouring point" in str(records[2].scalars["solution_path"])
     assert told == sorted(told)
     assert 0.0 <= told[0] < told[-1] <= 1.0
 
@@ -83,7 +83,7 @@ def test_a_method_that_runs_out_of_steps_says_so_with_advice(monkeypatch: pytest
     shown = CliRunner().invoke(app, ["curve", str(path), "--eccentricity", "0 um : 50 um : 2", "--json"])
     points = json.loads(shown.stdout)["points"]
     assert [point["converged"] for point in points] == [False, False]
-    assert all("load_capacity" not in point or point["load_capacity"] is None for point in points)
+    assert all("bearing_force" not in point or point["bearing_force"] is None for point in points)
 
 
 def test_a_package_that_runs_out_of_steps_is_a_failed_point(monkeypatch: pytest.MonkeyPatch) -> None:

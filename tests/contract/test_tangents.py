@@ -10,9 +10,9 @@ import scipy.sparse as sp
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from petalfoil.physics.balance import Entries, FilmBalance
-from petalfoil.physics.film import Flux, axial_flux, circumferential_flux, langevin, mean_cube
-from petalfoil.structure import build_wall
+from petalfoil.physics.mass_balance import Entries, FilmBalance
+from petalfoil.physics.reynolds import Flux, axial_flux, circumferential_flux, langevin, mean_cube
+from petalfoil.walls import build_wall
 from tests.contract.taylor import BEARINGS, assert_tangent, bearing, taylor_slopes
 
 Array = NDArray[np.float64]

@@ -7,12 +7,12 @@ import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from petalfoil.problem.build import build_problem
-from petalfoil.problem.coupled import CoupledProblem
 from petalfoil.solvers.cone import ConePoint
+from petalfoil.solvers.constraints import tie
 from petalfoil.solvers.interior_point import NewtonSystem
-from petalfoil.solvers.linear import LinearSolver
-from petalfoil.solvers.ties import tie
+from petalfoil.solvers.sparse_lu import LinearSolver
+from petalfoil.system.build import build_problem
+from petalfoil.system.coupled import CoupledProblem
 from tests.contract.taylor import BEARINGS, assert_tangent, bearing, open_state
 
 Array = NDArray[np.float64]

@@ -8,7 +8,7 @@ import pytest
 from threadpoolctl import threadpool_info
 
 from petalfoil.analysis import equilibrium, static
-from petalfoil.solvers.linear import Factor, LinearSolver
+from petalfoil.solvers.sparse_lu import Factor, LinearSolver
 from tests.cases import case
 
 

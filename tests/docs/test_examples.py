@@ -49,13 +49,13 @@ def test_an_example_names_its_assumptions_and_writes_itself(path: Path) -> None:
 
 @pytest.mark.parametrize("name", SMALL)
 def test_an_example_solves(name: str) -> None:
-    cells, axial, load_capacity, torque, tolerance = SMALL[name]
+    cells, axial, bearing_force, torque, tolerance = SMALL[name]
     case = Case.load(EXAMPLES / f"{name}.toml").replace(**{"model.cells_per_pitch": cells, "model.axial_cells": axial})
     point = petalfoil.solve(case)
     assert bool(point["converged"])
     assert bool(point["stable"])
     assert float(point["residual"]) <= 1e-8
-    assert_allclose(float(point["load_capacity"]), load_capacity, rtol=tolerance, atol=1e-5)
+    assert_allclose(float(point["bearing_force"]), bearing_force, rtol=tolerance, atol=1e-5)
     assert_allclose(float(point["friction_torque"]), torque, rtol=tolerance)
 
 
@@ -102,14 +102,14 @@ def test_the_demo_writes_tables_figures_and_data(
         "maps_paper_n8_spatial.png",
     } <= written
     curve = load(tmp_path / "curve_paper_n8.nc")
-    assert_allclose(curve["load_capacity"].values, [0.0, 11.6, 24.85], rtol=0.02, atol=1e-6)
+    assert_allclose(curve["bearing_force"].values, [0.0, 11.6, 24.85], rtol=0.02, atol=1e-6)
 
 
 def test_the_paper_s_values_are_those_of_the_script() -> None:
     values = module(EXAMPLES / "paper_values.py")
     page = text(ROOT / "docs" / "paper-values.md")
     assert page.startswith(values.HEAD)
-    study = values.run(values.Task(6, "flat", 280))
+    study = values.run(values.Task(6, "2d", 280))
     shown = [values.text(study[name], factor) for name, factor in values.RUNNING.items()]
     assert f"| 6 | 280 | {' | '.join(shown)} |" in page
 
@@ -122,4 +122,4 @@ def test_values_show_the_digits_that_their_bars_leave() -> None:
     assert values.text(trusted, 1e6) == "**17.9603 ± 0.0031**"
     assert values.text(plain, 1.0) == "8.09 ± 0.42"
     assert values.text(zero, 1.0) == "0"
-    assert json.dumps(values.grids("spatial")) == "[24, 48, 96]"
+    assert json.dumps(values.grids("3d")) == "[24, 48, 96]"

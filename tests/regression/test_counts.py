@@ -1,4 +1,4 @@
-"""Work that must not grow: factorisations of cold starts, of curves, of packages."""
+"""RunLog that must not grow: factorisations of cold starts, of curves, of packages."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import pytest
 
 from petalfoil.analysis import load_curve
 from petalfoil.case import Case
-from petalfoil.equilibria.cold import solve_cold
-from petalfoil.equilibria.package import at_rest
-from petalfoil.equilibria.work import Work
-from petalfoil.problem.build import build_problem
+from petalfoil.equilibrium.cold_start import solve_cold
+from petalfoil.equilibrium.package_at_rest import at_rest
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.system.build import build_problem
 from tests.cases import case
 
 PACKAGES = ("paper_n6", "paper_n8", "paper_n10")
@@ -28,7 +28,7 @@ def cold(cells: int) -> list[int]:
     counts = []
     for name in PACKAGES:
         for e in DISPLACEMENTS:
-            work = Work()
+            work = RunLog()
             solve_cold(build_problem(bearing(name, cells, e)), work)
             counts.append(work.film.factorizations + work.package.factorizations)
     return counts
@@ -78,6 +78,6 @@ def test_warm_points_cost_the_same_on_a_fine_grid() -> None:
 @pytest.mark.parametrize("cells", [32, 256])
 @pytest.mark.parametrize("name", PACKAGES)
 def test_package_from_nothing(name: str, cells: int) -> None:
-    work = Work()
+    work = RunLog()
     assert at_rest(build_problem(bearing(name, cells)), work) is not None
     assert work.package.factorizations <= 20

@@ -6,7 +6,7 @@ from functools import cache
 
 import pytest
 
-from petalfoil.analysis.orbit import Course, Orbit
+from petalfoil.analysis.orbit import Orbit, OrbitRequest
 from tests.cases import case
 
 REVOLUTIONS = 10.0
@@ -16,13 +16,13 @@ REVOLUTIONS = 10.0
 def counts(cells: int) -> dict[str, int]:
     """Of the paper's 8 petals, flat, 8000 rad/s: 3 kg let go from balance with its mass centre 2 um off the axis."""
     bearing = case("paper_n8", rotor={"mass": 3.0, "unbalance": 2e-6}, **{"model.cells_per_pitch": cells})
-    orbit = Orbit(bearing, Course(initial="balance", revolutions=REVOLUTIONS))
+    orbit = Orbit(bearing, OrbitRequest(initial="balance", revolutions=REVOLUTIONS))
     before = orbit.work.film.factorizations
     for _ in orbit.steps():
         pass
     told = orbit.record().scalars
     assert told["revolutions"] == pytest.approx(REVOLUTIONS, rel=1e-9)
-    names = ("steps", "failed_steps", "refused_steps")
+    names = ("steps", "failed_steps", "rejected_steps")
     return {"factorisations": orbit.work.film.factorizations - before} | {name: int(told[name]) for name in names}
 
 

@@ -25,7 +25,7 @@ def called(monkeypatch: pytest.MonkeyPatch) -> list[tuple[tuple[Any, ...], dict[
         monkeypatch.setattr(f"petalfoil.analysis.{target}", analysis)
     monkeypatch.setattr("petalfoil.results.dataset.to_dataset", lambda record: record)
     monkeypatch.setattr("petalfoil.analysis.grid_study.table", lambda records: f"estimates of {records[0]}")
-    monkeypatch.setattr("petalfoil.analysis.grid_study.error_bars", lambda record, progress: {"load_capacity": 0.5})
+    monkeypatch.setattr("petalfoil.analysis.grid_study.error_bars", lambda record, progress: {"bearing_force": 0.5})
     for target in ("study_dataset", "with_error_bars"):
         monkeypatch.setattr(f"petalfoil.results.study.{target}", lambda *both: both)
     monkeypatch.setattr("petalfoil.results.dataset.curve_dataset", lambda records, analysis: (records, analysis))
@@ -76,7 +76,7 @@ def test_converge(called: list[Any]) -> None:
 
 
 def test_solve_with_error_bars(called: list[Any]) -> None:
-    assert petalfoil.solve(PLAIN, error=True) == (["record"], {"load_capacity": 0.5})
+    assert petalfoil.solve(PLAIN, error=True) == (["record"], {"bearing_force": 0.5})
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ import xarray as xr
 from numpy.testing import assert_allclose
 
 import petalfoil
-from petalfoil.analysis.orbit import Course
+from petalfoil.analysis.orbit import OrbitRequest
 from petalfoil.errors import PetalfoilError, StoreError, UnitError, UsageError
 from petalfoil.results.store import load, save
 from tests.cases import case
@@ -30,7 +30,7 @@ def four() -> xr.Dataset:
 
 def test_a_motion_tells_where_the_journal_is(four: xr.Dataset) -> None:
     assert four.attrs["analysis"] == "orbit"
-    assert four["x"].dims == four["min_film"].dims == four["contact_share"].dims == ("time",)
+    assert four["x"].dims == four["min_film_thickness"].dims == four["contact_fraction"].dims == ("time",)
     assert four["time"].attrs["units"] == "s"
     assert_allclose([four["x"][0], four["y"][0]], [0.0, -1e-5], rtol=0.0, atol=1e-18)
     assert_allclose(float(four["revolutions"]), 4.0, rtol=1e-9)
@@ -82,7 +82,7 @@ def test_what_is_given_reaches_the_analysis_in_si(monkeypatch: pytest.MonkeyPatc
     )
     found, course, restart, progress = asked.pop()
     assert (found, restart, progress) == (PLAIN, None, None)
-    assert course == Course(None, 0.01, (1e-6, 2e-6), course.speeds, (0.0, -20.0), 1e-4)
+    assert course == OrbitRequest(None, 0.01, (1e-6, 2e-6), course.speeds, (0.0, -20.0), 1e-4)
     assert_allclose(course.speeds, [(0.0, 0.0), (1.0, FAST)], rtol=1e-12, atol=0.0)
     petalfoil.orbit(PLAIN, speeds=[(0, 0), ("1 s", "10000 rpm")], initial=(1e-6, "2 um"))
     assert_allclose(asked[0][1].speeds, [(0.0, 0.0), (1.0, FAST)], rtol=1e-12, atol=0.0)

@@ -18,10 +18,10 @@ import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
-from petalfoil.mesh.axial import AxialGrid, flat_axis
+from petalfoil.mesh.axial import AxialGrid, axis_2d
 from petalfoil.mesh.strips import FilmMesh
-from petalfoil.physics.balance import Entries, FilmBalance
 from petalfoil.physics.forces import film_force
+from petalfoil.physics.mass_balance import Entries, FilmBalance
 from tests.cases import case
 
 Array = NDArray[np.float64]
@@ -51,7 +51,7 @@ def orders(errors: Sequence[float] | Array) -> Array:
 
 def slider(cells: int, axial: AxialGrid | None = None) -> FilmBalance:
     """One strip `0 <= X <= 1` with ambient edges and, where `axial` has more stations than one, ambient ends."""
-    axis = flat_axis(1.0) if axial is None else axial
+    axis = axis_2d(1.0) if axial is None else axial
     phi = np.linspace(0.0, 1.0, cells + 1)
     inside = np.ones((1, len(phi), len(axis.z)), dtype=bool)
     inside[:, [0, -1]] = False
@@ -77,7 +77,7 @@ def stepped_slider(step: float, cells: int, refine: int = 1) -> FilmBalance:
     unknown[0, 1:, 0] = np.arange(len(phi) - 1)
     unknown[1, 0, 0] = unknown[0, -1, 0]
     unknown[1, 1:second, 0] = len(phi) - 1 + np.arange(second - 1)
-    return FilmBalance(FilmMesh(phi, np.stack([phi, step + phi]), flat_axis(1.0), unknown), 1.0)
+    return FilmBalance(FilmMesh(phi, np.stack([phi, step + phi]), axis_2d(1.0), unknown), 1.0)
 
 
 # ---------------------------------------------------------------------------------------------- solving

@@ -11,15 +11,15 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.mesh.axial import AxialGrid, flat_axis
+from petalfoil.mesh.axial import AxialGrid, axis_2d
 from petalfoil.mesh.pitch import petal_angles
 from petalfoil.mesh.quadrature import trapezoid
 from petalfoil.physics.shell import PetalShell
-from petalfoil.problem.coupled import WALL_ROUNDING
-from petalfoil.solvers.active_set import ActiveOptions, Closed, Outcome, active_set
 from petalfoil.solvers.cone import ConePoint, ConeProblem
+from petalfoil.solvers.contact_newton import ActiveOptions, Closed, Outcome, active_set
 from petalfoil.solvers.interior_point import InteriorOptions, Step, interior_point
-from petalfoil.solvers.linear import LinearSolver
+from petalfoil.solvers.sparse_lu import LinearSolver
+from petalfoil.system.coupled import WALL_ROUNDING
 
 Array = NDArray[np.float64]
 REFERENCE = Path(__file__).parent / "reference"
@@ -52,7 +52,7 @@ GRIDS: dict[str, Callable[[float, int], Array]] = {"uniform": uniform_grid, "pac
 
 def strip_shell(phi: Array, k: float, *, clamped: bool = True, rigidity: float = 1.0) -> PetalShell:
     """A strip of unit width, metric radius 1 and `R_p = 1/k`; straight, with arc length `phi`, where `k = 0`."""
-    return plate_shell(phi, flat_axis(1.0), k, 0.3, clamped=clamped, rigidity=rigidity)
+    return plate_shell(phi, axis_2d(1.0), k, 0.3, clamped=clamped, rigidity=rigidity)
 
 
 def plate_shell(

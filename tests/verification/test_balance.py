@@ -11,13 +11,13 @@ from numpy.testing import assert_allclose
 from petalfoil.analysis import balance, equilibrium
 from petalfoil.analysis.figures import forces
 from petalfoil.case import Case
-from petalfoil.equilibria.balancing import balance_cold, rebalance
-from petalfoil.equilibria.cold import solve_cold
-from petalfoil.equilibria.loaded import Balance, force_residual
-from petalfoil.equilibria.work import Work
+from petalfoil.equilibrium.cold_start import solve_cold
+from petalfoil.equilibrium.loaded import Balance, force_residual
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.under_load import balance_cold, rebalance
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.problem.build import build_problem
 from petalfoil.results.record import Record
+from petalfoil.system.build import build_problem
 from tests.cases import case
 from tests.random_packages import random_case
 from tests.verification.test_random_bearings import kkt_residual
@@ -47,7 +47,7 @@ def carried(record: Record) -> tuple[float, float]:
 
 
 def cost(record: Record) -> float:
-    return number(record, "factorizations") + number(record, "package_iterations")
+    return number(record, "factorizations") + number(record, "pack_iterations")
 
 
 # ---------------------------------------------------------------------------------------------- fixed positions
@@ -60,7 +60,7 @@ def test_the_load_of_a_position_leads_back_to_it(e: tuple[float, float]) -> None
     found = balance.run(bearing, carried(fixed))
     assert_allclose(position(found), e, rtol=0.0, atol=1e-13)
     assert number(found, "force_residual") <= RESIDUAL
-    for name in ("min_film", "friction_torque", "max_stress"):
+    for name in ("min_film_thickness", "friction_torque", "max_bending_stress"):
         assert_allclose(number(found, name), number(fixed, name), rtol=1e-7, atol=0.0)
 
 
@@ -103,7 +103,7 @@ def run_random(count: int) -> tuple[list[Drawn], int]:
     """Balances of random bearings; and how many have no answer at their own position."""
     rng, found, without = np.random.default_rng(SEED), [], 0
     while len(found) + without < count:
-        drawn, work = random_case(rng), Work()
+        drawn, work = random_case(rng), RunLog()
         try:
             answer = solve_cold(build_problem(drawn), work)
         except ConvergenceError:
@@ -147,7 +147,7 @@ def test_three_hundred_random_bearings() -> None:
 def test_an_overload_is_answered_with_the_share_of_the_contacts(load: float) -> None:
     bearing = case("paper_n8", **COARSE)
     record = balance.run(bearing, (0.0, -load))
-    share = number(record, "contact_share")
+    share = number(record, "contact_fraction")
     assert share > 0.1
     assert record.scalars["carried_by"] == f"touching: contact carries {100.0 * share:.0f} %"
     assert number(record, "force_residual") <= RESIDUAL
@@ -157,7 +157,7 @@ def test_an_overload_is_answered_with_the_share_of_the_contacts(load: float) -> 
 def test_a_load_that_presses_petals_solid_says_so() -> None:
     """Two layers, floor and journal fill the room along the load: nothing gives way, whatever is added."""
     found = [balance.run(case("paper_n8", **COARSE), (0.0, -load)) for load in (400.0, 3000.0)]
-    assert all("pressed solid" in str(record.scalars["branch"]) for record in found)
+    assert all("pressed solid" in str(record.scalars["solution_path"]) for record in found)
     assert_allclose(position(found[0]), position(found[1]), rtol=0.0, atol=1e-12)
 
 
@@ -174,13 +174,13 @@ def test_a_sweep_of_load_is_warm_and_agrees_with_cold_starts() -> None:
     known: Balance | None = None
     counts = []
     for load in np.linspace(10.0, 90.0, 17):
-        work, force = Work(), np.array([0.0, -load]) / unit
+        work, force = RunLog(), np.array([0.0, -load]) / unit
         known = balance_cold(problem, force, work) if known is None else rebalance(known, problem, force, work)
         counts.append(work.film.factorizations)
         assert force_residual(known.answer, force) <= RESIDUAL
         if len(counts) % 4:
             continue
-        cold = balance_cold(problem, force, Work())
+        cold = balance_cold(problem, force, RunLog())
         assert_allclose(known.answer.problem.displacement, cold.answer.problem.displacement, rtol=0.0, atol=1e-8)
     assert np.median(counts[1:]) <= 8
 
@@ -191,4 +191,4 @@ def test_an_unstable_balance_gives_way_to_the_one_reached_from_rest() -> None:
     drawn = [random_case(rng) for _ in range(166)][-1]
     record = balance.run(drawn, carried(equilibrium.run(drawn)))
     assert record.scalars["stable"]
-    assert "followed from rest" in str(record.scalars["branch"])
+    assert "followed from rest" in str(record.scalars["solution_path"])

@@ -11,15 +11,15 @@ from numpy.testing import assert_allclose
 
 from petalfoil.analysis import equilibrium, load_curve
 from petalfoil.case import Case
-from petalfoil.equilibria.answer import Answer
-from petalfoil.equilibria.branches import fingerprint
-from petalfoil.equilibria.cold import solve_cold
-from petalfoil.equilibria.stability import leading_eigenvalue
-from petalfoil.equilibria.warm import settle
-from petalfoil.equilibria.work import Work
+from petalfoil.dynamics.film_stability import leading_eigenvalue
+from petalfoil.equilibrium.branches import fingerprint
+from petalfoil.equilibrium.cold_start import solve_cold
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.equilibrium.warm_start import settle
 from petalfoil.errors import ConvergenceError
-from petalfoil.problem.build import build_problem
-from petalfoil.solvers.ties import tie
+from petalfoil.solvers.constraints import tie
+from petalfoil.system.build import build_problem
 from tests.cases import case
 from tests.random_packages import random_case
 
@@ -32,7 +32,7 @@ def drawn(number: int) -> Case:
     return next(itertools.islice((random_case(rng) for _ in range(number + 1)), number, None))
 
 
-def dense_leading(answer: Answer) -> complex:
+def dense_leading(answer: Solution) -> complex:
     """Rightmost finite eigenvalue of `J u = -s M u` by the QZ algorithm on the reduced pencil."""
     problem = answer.problem
     line, none = problem.linearize(answer.x), np.zeros(len(problem.weight))
@@ -47,8 +47,8 @@ def dense_leading(answer: Answer) -> complex:
 @pytest.mark.parametrize("number", [0, 4, 8, 88])
 def test_the_leading_eigenvalue_is_the_rightmost(number: int) -> None:
     """Within 0.5 % of its magnitude; the dense spectrum tells. The cold start of case 88 is unstable."""
-    answer = solve_cold(build_problem(drawn(number)), Work())
-    exact, found = dense_leading(answer), leading_eigenvalue(answer, Work())
+    answer = solve_cold(build_problem(drawn(number)), RunLog())
+    exact, found = dense_leading(answer), leading_eigenvalue(answer, RunLog())
     assert (exact.real > 0.0) == (found.real > 0.0) == (number == 88)
     assert_allclose(found.real, exact.real, rtol=0.0, atol=5e-3 * abs(exact))
     assert_allclose(abs(found.imag), abs(exact.imag), rtol=0.0, atol=5e-2 * abs(exact))
@@ -59,26 +59,26 @@ def test_forty_leading_eigenvalues() -> None:
     """Signs are right in all, the rightmost is found within 2 %; half of them ask for 30 solves or fewer."""
     for number in range(40):
         try:
-            answer = solve_cold(build_problem(drawn(number).replace(**{"model.cells_per_pitch": 24})), Work())
+            answer = solve_cold(build_problem(drawn(number).replace(**{"model.cells_per_pitch": 24})), RunLog())
         except ConvergenceError:
             continue
-        exact, found = dense_leading(answer), leading_eigenvalue(answer, Work())
+        exact, found = dense_leading(answer), leading_eigenvalue(answer, RunLog())
         assert_allclose(found.real, exact.real, rtol=0.0, atol=2e-2 * abs(exact), err_msg=str(number))
 
 
 def test_a_stable_equilibrium_is_called_so() -> None:
-    answer = solve_cold(build_problem(case("paper_n8", **{"model.cells_per_pitch": 16})), Work())
+    answer = solve_cold(build_problem(case("paper_n8", **{"model.cells_per_pitch": 16})), RunLog())
     assert dense_leading(answer).real < 0.0
-    assert leading_eigenvalue(answer, Work()).real < 0.0
+    assert leading_eigenvalue(answer, RunLog()).real < 0.0
 
 
 def test_an_unstable_equilibrium_is_left_for_a_stable_one() -> None:
     problem = build_problem(drawn(88))
-    unstable = solve_cold(problem, Work())
-    assert leading_eigenvalue(unstable, Work()).real > 0.0
-    rested = settle(unstable, Work())
+    unstable = solve_cold(problem, RunLog())
+    assert leading_eigenvalue(unstable, RunLog()).real > 0.0
+    rested = settle(unstable, RunLog())
     assert rested is not None
-    assert leading_eigenvalue(rested, Work()).real < 0.0
+    assert leading_eigenvalue(rested, RunLog()).real < 0.0
     before, after = fingerprint(unstable), fingerprint(rested)
     assert np.max(np.abs(after - before)) > 1e-3 * before[0]
 
@@ -86,8 +86,8 @@ def test_an_unstable_equilibrium_is_left_for_a_stable_one() -> None:
 def test_solve_reports_the_stable_branch_and_that_there_are_more() -> None:
     record = equilibrium.run(drawn(88))
     assert record.scalars["stable"]
-    assert record.scalars["branches_known"] >= 2  # type: ignore[operator]
-    assert "rest" in str(record.scalars["branch"])
+    assert record.scalars["known_equilibria"] >= 2  # type: ignore[operator]
+    assert "rest" in str(record.scalars["solution_path"])
 
 
 def test_a_curve_reports_its_jump() -> None:
@@ -126,7 +126,7 @@ def test_a_point_that_is_asked_for_again_is_no_jump() -> None:
         bearing = case(name, **{"model.cells_per_pitch": 32})
         records = list(load_curve.iterate(bearing, 1e-6 * np.array([0.0, 50.0, 50.0, 60.0, 60.0 + 1e-8])))
         assert not any(record.scalars["jump"] for record in records)
-        assert all(record.scalars["branches_known"] == 1 for record in records)
+        assert all(record.scalars["known_equilibria"] == 1 for record in records)
 
 
 def test_the_paper_s_curves_do_not_jump() -> None:

@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 from petalfoil.analysis import coefficients, stability
 from petalfoil.analysis.coefficients import impedance
 from petalfoil.case import Case
-from petalfoil.equilibria.answer import Answer
-from petalfoil.equilibria.balancing import balance_cold
-from petalfoil.equilibria.loaded import Balance, journal_force
-from petalfoil.equilibria.response import Motion
-from petalfoil.equilibria.warm import follow
-from petalfoil.equilibria.work import Work
+from petalfoil.equilibrium.linear_response import Motion
+from petalfoil.equilibrium.loaded import Balance, journal_force
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.equilibrium.under_load import balance_cold
+from petalfoil.equilibrium.warm_start import follow
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.problem.build import build_problem
 from petalfoil.results.record import Record
+from petalfoil.system.build import build_problem
 from tests.cases import case
 
 Array = NDArray[np.float64]
@@ -97,8 +97,8 @@ def test_a_displacement_across_the_line_of_centres_turns_the_force() -> None:
     assert_allclose(-K[:, 0], turned, rtol=0.0, atol=3e-4 * float(np.hypot(*turned)))
 
 
-def operating(bearing: Case) -> Answer:
-    answer, _ = coefficients.operating_point(bearing, None, Work())
+def operating(bearing: Case) -> Solution:
+    answer, _ = coefficients.operating_point(bearing, None, RunLog())
     return answer
 
 
@@ -119,10 +119,10 @@ PETALS = {"model.cells_per_pitch": 32}
 def balanced(speed: float, load: float) -> Balance:
     bearing = case("paper_n8", **PETALS, **{"operation.speed": speed, "operation.eccentricity": (0.0, 0.0)})
     problem = build_problem(bearing)
-    return balance_cold(problem, np.array([0.0, -load]) / problem.layout.scales.force, Work())
+    return balance_cold(problem, np.array([0.0, -load]) / problem.layout.scales.force, RunLog())
 
 
-def differences(answer: Answer, step: float) -> Array:
+def differences(answer: Solution, step: float) -> Array:
     """`-dF/de` from equilibria on either side, which keep the contacts of `answer` [unit of force over length]."""
     columns = []
     for k in (0, 1):
@@ -130,7 +130,7 @@ def differences(answer: Answer, step: float) -> Array:
         for side in (-step, step):
             moved = answer.problem.displacement.copy()
             moved[k] += side
-            near = follow(answer, answer.problem.at(displacement=moved), Work())
+            near = follow(answer, answer.problem.at(displacement=moved), RunLog())
             assert near is not None
             assert np.array_equal(near.in_contact, answer.in_contact)
             forces.append(journal_force(near.problem, near.x[near.problem.positive], near.lam))
@@ -145,7 +145,7 @@ def test_stiffness_of_petals_is_the_slope_of_equilibria(speed: float, load: floa
     journal = answer.problem.layout.wall.contacts.journal
     assert bool(answer.in_contact[journal].any()) == touching
     scales = answer.problem.layout.scales
-    K, _ = impedance(Motion.about(answer), 0.0, speed, Work())
+    K, _ = impedance(Motion.about(answer), 0.0, speed, RunLog())
     slope = differences(answer, 1e-4) * scales.force / scales.length
     assert_allclose(K, slope, rtol=0.0, atol=1e-5 * float(np.max(np.abs(slope))))
 
@@ -161,12 +161,12 @@ def test_impedance_of_petals_solves_the_equations_linearised_by_differences() ->
     answer = operating(bearing)
     assert not answer.in_contact[answer.problem.layout.wall.contacts.journal].any()
     nu = 0.7
-    K, C = impedance(Motion.about(answer), nu * 8000.0, 8000.0, Work())
+    K, C = impedance(Motion.about(answer), nu * 8000.0, 8000.0, RunLog())
     Z = by_differences(answer, nu) * answer.problem.layout.scales.force / answer.problem.layout.scales.length
     assert_allclose(K + 1j * nu * 8000.0 * C, Z, rtol=0.0, atol=1e-5 * float(np.max(np.abs(Z))))
 
 
-def by_differences(answer: Answer, nu: float, step: float = 1e-5) -> NDArray[np.complex128]:
+def by_differences(answer: Solution, nu: float, step: float = 1e-5) -> NDArray[np.complex128]:
     problem, closed = answer.problem, answer.in_contact
     G = problem.G.toarray()[closed]
     _, sizes, rows = np.linalg.svd(G)

@@ -9,11 +9,11 @@ from numpy.testing import assert_allclose
 from scipy.optimize import nnls
 
 from petalfoil.case import Case, Mount
-from petalfoil.equilibria.package import at_rest
-from petalfoil.equilibria.work import Work
-from petalfoil.problem.build import build_problem
-from petalfoil.problem.package import PackageProblem
-from petalfoil.structure.petals import build_mesh, petals_of
+from petalfoil.equilibrium.package_at_rest import at_rest
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.system.build import build_problem
+from petalfoil.system.package import PackageProblem
+from petalfoil.walls.petals import build_mesh, petals_of
 from tests.cases import case
 from tests.random_packages import random_case
 from tests.verification.shell_helpers import Array, Solved, solve
@@ -28,7 +28,7 @@ def package(of: Case) -> PackageProblem:
 
 
 def example(name: str, cells: int, **changes: object) -> Case:
-    return case(name, **{"model.kind": "flat", "model.cells_per_pitch": cells, **changes})
+    return case(name, **{"model.kind": "2d", "model.cells_per_pitch": cells, **changes})
 
 
 def answer_of(problem: PackageProblem) -> Solved:
@@ -54,7 +54,7 @@ def elastic_forces(of: Case, W: Array, phi: Array) -> Array:
         force[:, i - 1] += a * moment
         force[:, i] += b * moment
         force[:, i + 1] += c * moment
-    if petals.mount is Mount.RIGID:
+    if petals.mount is Mount.CLAMPED:
         a = 2.0 / h[0] ** 2 / r_m**2
         moment = rigidity * share[0] * ((1.0 / petals.bend_radius**2 - a) * W[:, 0] + a * W[:, 1])
         force[:, 0] += (1.0 / petals.bend_radius**2 - a) * moment
@@ -74,7 +74,7 @@ def touching(of: Case, W: Array, phi: Array, roots: Array) -> list[tuple[float, 
             theta = roots[l] + angle
             if angle > geometry.petal_angle - pitch - 1e-9:
                 journal = of.bearing.journal_radius + e_x * np.cos(theta) + e_y * np.sin(theta)
-                gap = r[l, i] - half - journal - of.surface.film_floor
+                gap = r[l, i] - half - journal - of.surface.contact_film_thickness
                 found.append((gap, [(l, i, 1.0)]))
             if 1e-9 < angle < pitch - 1e-9:
                 found.append((of.bearing.bushing_radius - half - r[l, i], [(l, i, -1.0)]))
@@ -158,7 +158,7 @@ ROOMY: dict[str, object] = {
     "petals.arc_length": 42e-3,
     "petals.coating": 16e-6,
     "petals.first_root": 0.0,
-    "surface.film_floor": 1e-6,
+    "surface.contact_film_thickness": 1e-6,
 }
 
 
@@ -194,7 +194,7 @@ def by_least_distance(problem: PackageProblem) -> tuple[Array, Array]:
 def test_least_distance_programming_agrees() -> None:
     rng = np.random.default_rng(SEED)
     for _ in range(6):
-        of = random_case(rng, **{"petals.mount": "rigid", "model.cells_per_pitch": 8})
+        of = random_case(rng, **{"petals.mount": "clamped", "model.cells_per_pitch": 8})
         problem = package(of)
         answer, (x, lam) = answer_of(problem), by_least_distance(problem)
         assert_allclose(answer.x, x, atol=1e-6 * np.abs(x).max())
@@ -204,7 +204,7 @@ def test_least_distance_programming_agrees() -> None:
 def test_as_the_product_assembles_it() -> None:
     for name in EXAMPLES:
         problem = package(example(name, 32))
-        assembled = at_rest(problem.coupled, Work())
+        assembled = at_rest(problem.coupled, RunLog())
         assert assembled is not None
         answer = answer_of(problem)
         assert_allclose(assembled[0], answer.x, atol=1e-9 * np.abs(answer.x).max())
@@ -250,7 +250,7 @@ def test_petals_around_a_centred_journal_are_alike() -> None:
 def test_half_the_length_is_half_of_the_whole() -> None:
     answers = []
     for symmetry in (True, False):
-        changes = {"model.kind": "spatial", "model.axial_cells": 6, "model.symmetry": symmetry}
+        changes = {"model.kind": "3d", "model.axial_cells": 6, "model.symmetry": symmetry}
         problem = package(example("paper_n8", 8, **changes))
         axial, count = problem.layout.wall.film.axial, 8
         W = answer_of(problem).x.reshape(count, -1, len(axial.z))

@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from petalfoil.mesh.quadrature import trapezoid
-from petalfoil.solvers.active_set import Outcome
+from petalfoil.solvers.contact_newton import Outcome
 from tests.verification.shell_helpers import (
     GRIDS,
     UNIT,

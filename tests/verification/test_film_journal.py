@@ -9,12 +9,12 @@ import scipy.sparse.linalg as spla
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from petalfoil.mesh.axial import AxialGrid, flat_axis
+from petalfoil.mesh.axial import AxialGrid, axis_2d
 from petalfoil.mesh.quadrature import trapezoid
 from petalfoil.mesh.strips import whole_circle
-from petalfoil.physics.balance import FilmBalance
 from petalfoil.physics.forces import attitude_angle, viscous_torque
-from petalfoil.problem.build import build_problem
+from petalfoil.physics.mass_balance import FilmBalance
+from petalfoil.system.build import build_problem
 from tests.verification.film_helpers import (
     RestingFilm,
     along_and_across,
@@ -112,7 +112,7 @@ def test_small_displacement_of_a_long_bearing(row: Row) -> None:
     """
     errors = []
     for cells in (256, 512, 1024) if float(row["Lam"]) > 20.0 else (128, 256, 512):
-        balance = FilmBalance(whole_circle(cells, flat_axis(1.0)), 1.0)
+        balance = FilmBalance(whole_circle(cells, axis_2d(1.0)), 1.0)
         one, n = np.ones(balance.mesh.shape), balance.mesh.n_unknown
         by_P, by_H = balance.tangent(balance.fluxes(one, one, float(row["Lam"])))
         dH = -(np.cos(balance.mesh.theta) * DOWN[0] + np.sin(balance.mesh.theta) * DOWN[1])

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from petalfoil.mesh.axial import spatial_axis
-from petalfoil.physics.balance import FilmBalance
-from petalfoil.structure import build_wall
+from petalfoil.mesh.axial import axis_3d
+from petalfoil.physics.mass_balance import FilmBalance
+from petalfoil.walls import build_wall
 from tests.cases import case
 from tests.verification.film_helpers import slider, stepped_slider
 
@@ -51,17 +51,17 @@ def plain_film(kind: str, symmetry: bool) -> FilmBalance:
 
 FILMS: dict[str, Callable[[], FilmBalance]] = {
     "strip": lambda: slider(9),
-    "strip with ends": lambda: slider(7, spatial_axis(1.3, 6, half=False)),
-    "half strip with ends": lambda: slider(7, spatial_axis(1.3, 6, half=True)),
-    "circle": lambda: plain_film("flat", True),
-    "circle with ends": lambda: plain_film("spatial", False),
-    "half circle with ends": lambda: plain_film("spatial", True),
-    "petals": lambda: petal_film("flat", "ambient", True),
-    "petals with ends": lambda: petal_film("spatial", "ambient", False),
-    "half petals with ends": lambda: petal_film("spatial", "ambient", True),
-    "stepped petals": lambda: petal_film("flat", "continuous", True),
-    "stepped petals with ends": lambda: petal_film("spatial", "continuous", False),
-    "half stepped petals with ends": lambda: petal_film("spatial", "continuous", True),
+    "strip with ends": lambda: slider(7, axis_3d(1.3, 6, half=False)),
+    "half strip with ends": lambda: slider(7, axis_3d(1.3, 6, half=True)),
+    "circle": lambda: plain_film("2d", True),
+    "circle with ends": lambda: plain_film("3d", False),
+    "half circle with ends": lambda: plain_film("3d", True),
+    "petals": lambda: petal_film("2d", "ambient", True),
+    "petals with ends": lambda: petal_film("3d", "ambient", False),
+    "half petals with ends": lambda: petal_film("3d", "ambient", True),
+    "stepped petals": lambda: petal_film("2d", "continuous", True),
+    "stepped petals with ends": lambda: petal_film("3d", "continuous", False),
+    "half stepped petals with ends": lambda: petal_film("3d", "continuous", True),
 }
 
 

@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 from scipy.integrate import quad
 
-from petalfoil.physics.film import axial_flux, circumferential_flux
 from petalfoil.physics.forces import viscous_torque
+from petalfoil.physics.reynolds import axial_flux, circumferential_flux
 from tests.verification.film_helpers import orders, slider, solve_film, stepped_slider, table
 
 Array = NDArray[np.float64]

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from petalfoil.mesh.axial import spatial_axis
-from petalfoil.problem.build import build_problem
+from petalfoil.mesh.axial import axis_3d
+from petalfoil.system.build import build_problem
 from tests.verification.film_helpers import RestingFilm, journal, load_number, orders, slider, table
 
 Complex = NDArray[np.complex128]
@@ -33,7 +33,7 @@ def squeeze(row: Row, cells: int) -> complex:
     """
     length, sigma = aspect(row), float(row["sigma"])
     along = cells * (2 if length > 2.0 else 1)
-    balance = slider(cells) if np.isinf(length) else slider(cells, spatial_axis(length, along, half=True))
+    balance = slider(cells) if np.isinf(length) else slider(cells, axis_3d(length, along, half=True))
     dP = RestingFilm(balance, 0.0, 0.5 * sigma).response(np.ones((1, *balance.mesh.shape)), 1.0)[0]
     return -complex(np.sum(dP * balance.area) / np.sum(balance.area))
 

@@ -9,12 +9,12 @@ from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
 from petalfoil.analysis import static
-from petalfoil.equilibria.sliding import Slid, slide
+from petalfoil.equilibrium.friction_path import FrictionResult, slide
 from petalfoil.errors import UsageError
 from petalfoil.physics.friction import Friction, halves, slopes
-from petalfoil.problem.sliding import Rubbed
-from petalfoil.solvers.active_set import ActiveOptions, active_set
-from petalfoil.solvers.linear import LinearSolver
+from petalfoil.solvers.contact_newton import ActiveOptions, active_set
+from petalfoil.solvers.sparse_lu import LinearSolver
+from petalfoil.system.friction import FrictionState
 from tests.cases import case
 from tests.verification.shell_helpers import (
     UNIT,
@@ -37,16 +37,16 @@ WIDTH = 3e-4
 
 def start(
     problem: ElasticProblem, friction: Friction, closed: NDArray[np.bool_]
-) -> tuple[Array, Array, NDArray[np.bool_], Rubbed]:
+) -> tuple[Array, Array, NDArray[np.bool_], FrictionState]:
     """The equilibrium without friction, from which a path begins."""
     found, outcome = active_set(problem, np.zeros(problem.n), closed, LinearSolver(), ActiveOptions(max_steps=40))
     assert found is not None, outcome
-    return found.x, found.lam, found.closed, Rubbed.fresh(friction, found.x, found.lam)
+    return found.x, found.lam, found.closed, FrictionState.fresh(friction, found.x, found.lam)
 
 
 def follow(
-    problems: list[ElasticProblem], friction: Friction, begin: tuple[Array, Array, NDArray[np.bool_], Rubbed]
-) -> list[Slid]:
+    problems: list[ElasticProblem], friction: Friction, begin: tuple[Array, Array, NDArray[np.bool_], FrictionState]
+) -> list[FrictionResult]:
     """Each problem in turn, from where the one before ended."""
     states, before = [], begin
     for problem in problems:

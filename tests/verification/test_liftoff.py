@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from petalfoil.analysis import balance, liftoff, runup
 from petalfoil.analysis.speeds import SpeedLine
-from petalfoil.equilibria.work import Work
+from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.errors import UsageError
 from petalfoil.results.record import Record
 from tests.cases import case
@@ -24,7 +24,7 @@ def number(record: Record, name: str) -> float:
 
 def share(speed: float, load: float) -> float:
     """Share of the contacts of a cold balance."""
-    return float(balance.run(BEARING, (0.0, -load), speed=speed).scalars["contact_share"])
+    return float(balance.run(BEARING, (0.0, -load), speed=speed).scalars["contact_fraction"])
 
 
 LOAD = 40.0  # N
@@ -46,7 +46,7 @@ def test_the_share_is_crossed_within_a_thousandth_of_the_speed(lifted: Record) -
 def test_a_heavier_load_lifts_off_later(lifted: Record) -> None:
     """Where load rules and not preload: above 10 N on the paper's eight petals."""
     near = BEARING.replace(**{"operation.speed": number(lifted, "liftoff_speed")})
-    lighter, heavier = (liftoff.crossings(near, load, liftoff.SHARE, Work())[0] for load in (0.8 * LOAD, 1.25 * LOAD))
+    lighter, heavier = (liftoff.crossings(near, load, liftoff.SHARE, RunLog())[0] for load in (0.8 * LOAD, 1.25 * LOAD))
     assert lighter < number(lifted, "liftoff_speed") < heavier
 
 
@@ -54,17 +54,19 @@ def test_from_below_and_from_above_the_same_crossings_are_found(lifted: Record) 
     """The case touches at its own speed, so that `lifted` ascended first; a faster one descends first."""
     faster = BEARING.replace(**{"operation.speed": 1.3 * number(lifted, "liftoff_speed")})
     assert share(BEARING.operation.speed, LOAD) > liftoff.SHARE >= share(faster.operation.speed, LOAD)
-    found = liftoff.crossings(faster, LOAD, liftoff.SHARE, Work())
+    found = liftoff.crossings(faster, LOAD, liftoff.SHARE, RunLog())
     wanted = [number(lifted, name) for name in ("liftoff_speed", "touchdown_speed")]
     assert_allclose(found, wanted, rtol=1.1 * liftoff.PRECISION, atol=0.0)
 
 
 def test_sensitivity_is_that_of_another_floor_and_share(lifted: Record) -> None:
     up, factor = number(lifted, "liftoff_speed"), 0.9
-    near = BEARING.replace(**{"operation.speed": up, "surface.film_floor": factor * BEARING.surface.film_floor})
-    by_floor = math.log(liftoff.crossings(near, LOAD, liftoff.SHARE, Work())[0] / up) / math.log(factor)
-    assert_allclose(number(lifted, "liftoff_by_floor"), by_floor, rtol=0.0, atol=0.05)
-    assert -0.2 < number(lifted, "liftoff_by_share") < 0.0  # a smaller share is reached later, if little
+    near = BEARING.replace(
+        **{"operation.speed": up, "surface.contact_film_thickness": factor * BEARING.surface.contact_film_thickness}
+    )
+    by_floor = math.log(liftoff.crossings(near, LOAD, liftoff.SHARE, RunLog())[0] / up) / math.log(factor)
+    assert_allclose(number(lifted, "liftoff_by_contact_film_thickness"), by_floor, rtol=0.0, atol=0.05)
+    assert -0.2 < number(lifted, "liftoff_by_contact_fraction") < 0.0  # a smaller share is reached later, if little
 
 
 def test_an_overload_never_floats() -> None:
@@ -72,7 +74,7 @@ def test_an_overload_never_floats() -> None:
     assert record.converged
     assert number(record, "liftoff_speed") == number(record, "touchdown_speed") == math.inf
     assert "does not lift off" in str(record.scalars["status"])
-    assert math.isnan(number(record, "liftoff_by_floor"))
+    assert math.isnan(number(record, "liftoff_by_contact_film_thickness"))
 
 
 @pytest.mark.parametrize(
@@ -109,15 +111,15 @@ def test_both_legs_are_followed_through_contact(legs: dict[str, list[Record]]) -
     assert all(record.converged for record in every)
     assert all(number(record, "force_residual") <= 1e-8 for record in every)
     for leg, sign in (("up", -1.0), ("down", 1.0)):
-        shares = [number(record, "contact_share") for record in legs[leg]]
+        shares = [number(record, "contact_fraction") for record in legs[leg]]
         assert np.all(sign * np.diff(shares) >= 0.0)
-    assert number(legs["up"][0], "contact_share") == 1.0
-    assert number(legs["up"][-1], "contact_share") == 0.0
+    assert number(legs["up"][0], "contact_fraction") == 1.0
+    assert number(legs["up"][-1], "contact_fraction") == 0.0
 
 
 def test_a_run_up_begins_with_dry_friction_and_passes_a_least_torque(legs: dict[str, list[Record]]) -> None:
     rest = legs["up"][0]
-    dry = BEARING.surface.friction_coefficient * BEARING.bearing.journal_radius * number(rest, "contact_total")
+    dry = BEARING.surface.friction_coefficient * BEARING.bearing.journal_radius * number(rest, "contact_normal_force")
     assert_allclose(number(rest, "friction_torque"), dry, rtol=1e-9, atol=0.0)
     torques = [number(record, "friction_torque") for record in legs["up"]]
     assert 0 < int(np.argmin(torques)) < len(torques) - 1
@@ -131,7 +133,7 @@ def test_the_way_down_returns_where_nothing_snaps(legs: dict[str, list[Record]])
 
 
 def test_a_line_of_speeds_is_warm() -> None:
-    work = Work()
+    work = RunLog()
     line = SpeedLine(BEARING, (0.0, -20.0), work)
     line.at(3000.0)
     counts = []

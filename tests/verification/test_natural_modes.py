@@ -14,12 +14,12 @@ from scipy.optimize import newton
 
 from petalfoil.analysis import stability
 from petalfoil.analysis.coefficients import elastic, operating_point
-from petalfoil.analysis.modes import PEAK, Mode, natural_modes
-from petalfoil.analysis.whirl import neutral_whirl, scan
 from petalfoil.case import Case
-from petalfoil.equilibria.response import Motion
-from petalfoil.equilibria.work import Work
-from petalfoil.problem.balance import FilmForce
+from petalfoil.dynamics.critical_mass import neutral_whirl, scan
+from petalfoil.dynamics.natural_modes import PEAK, Mode, natural_modes
+from petalfoil.equilibrium.linear_response import Motion
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.system.loaded import FilmForce
 from tests.cases import case
 
 Complex = NDArray[np.complex128]
@@ -30,9 +30,9 @@ def plain(grid: tuple[int, int], e: tuple[float, float] = (0.0, 0.0)) -> Case:
     return case("plain_journal", **sizes, **{"operation.eccentricity": e})
 
 
-def at(bearing: Case, load: float = 0.0) -> tuple[Motion, Work]:
+def at(bearing: Case, load: float = 0.0) -> tuple[Motion, RunLog]:
     """Small motions under a load along -y, or at the case's eccentricity."""
-    work = Work()
+    work = RunLog()
     answer, _ = operating_point(bearing, (0.0, -load) if load else None, work)
     return elastic(bearing, answer, work), work
 

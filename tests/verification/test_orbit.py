@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from petalfoil.analysis import balance, coefficients, stability
-from petalfoil.analysis.orbit import Course, Orbit, run
+from petalfoil.analysis.orbit import Orbit, OrbitRequest, run
 from petalfoil.case import Case
-from petalfoil.equilibria.work import Work
+from petalfoil.dynamics.adaptive_steps import MarchOptions, march
+from petalfoil.dynamics.time_state import Instant
+from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.results.record import Record
-from petalfoil.transient.march import MarchOptions, march
-from petalfoil.transient.state import Instant
 from tests.cases import case
 from tests.verification.film_helpers import table
 
@@ -76,7 +76,7 @@ def test_free_orbit_grows_or_dies_out_as_its_natural_mode(share: float) -> None:
     omega = loaded.operation.speed
     modes = np.asarray(told.fields["mode_growth_rate"]) + 1j * np.asarray(told.fields["natural_frequency"])
     expected = modes[np.argmax(modes.real)] / omega
-    course = Course(revolutions=6.0, initial=(x + 1e-10, y), tolerance=1e-7, longest=0.15)
+    course = OrbitRequest(revolutions=6.0, initial=(x + 1e-10, y), tolerance=1e-7, longest=0.15)
     found = eigenvalue(*tail(run(loaded, course), 0.6), 1.02 * expected)
     assert np.sign(found.real) == np.sign(share - 1.0)
     assert abs(found.real / expected.real - 1.0) <= 1e-2
@@ -92,7 +92,7 @@ def test_critical_mass_divides_orbits_that_die_out_from_orbits_that_grow() -> No
     rates = []
     for share in (0.98, 1.02):
         loaded, (x, y) = under(bearing, share * critical, load)
-        course = Course(revolutions=12.0, initial=(x + 1e-10, y), tolerance=1e-7, longest=0.1)
+        course = OrbitRequest(revolutions=12.0, initial=(x + 1e-10, y), tolerance=1e-7, longest=0.1)
         rates.append(eigenvalue(*tail(run(loaded, course), 0.6), 0.45j).real)
     assert rates[0] < 0.0 < rates[1]
 
@@ -101,7 +101,7 @@ def test_critical_mass_divides_orbits_that_die_out_from_orbits_that_grow() -> No
 def test_a_released_rotor_settles_on_its_balance() -> None:
     """From the centre, a light rotor under a load that a whirl does not turn round: within 1e-4 of the clearance."""
     loaded, (x, y) = under(plain(), 0.3, 400.0)
-    record = run(loaded, Course(revolutions=20.0, initial=(0.0, 0.0)))
+    record = run(loaded, OrbitRequest(revolutions=20.0, initial=(0.0, 0.0)))
     end = np.asarray(record.fields["x"])[-1], np.asarray(record.fields["y"])[-1]
     assert math.hypot(end[0] - x, end[1] - y) <= 1e-4 * loaded.bearing.clearance
 
@@ -117,7 +117,9 @@ def harmonics(time: Array, values: Array, frequencies: list[float]) -> Complex:
     return np.asarray(found[1] - 1j * found[2])
 
 
-def measured_impedance(bearing: Case, force: float, frequency: float, course: Course, free: list[float]) -> Complex:
+def measured_impedance(
+    bearing: Case, force: float, frequency: float, course: OrbitRequest, free: list[float]
+) -> Complex:
     """`Z` (2, 2) from orbits that a load rotating each way forces, [N/m]."""
     moved, pushed = [], []
     for turn in (frequency, -frequency):
@@ -143,7 +145,7 @@ def test_forced_orbits_of_petals_give_back_stiffness_and_damping(ratio: float) -
     free = [
         float(f) for f in np.asarray(stability.run(loaded, mass=3.0).fields["natural_frequency"]) if f < 0.2 * omega
     ]
-    course = Course(revolutions=20.0, initial=start, tolerance=1e-6, longest=0.1 / max(1.0, ratio))
+    course = OrbitRequest(revolutions=20.0, initial=start, tolerance=1e-6, longest=0.1 / max(1.0, ratio))
     found = measured_impedance(loaded, 0.01, ratio * omega, course, free)
     told = coefficients.run(loaded, [ratio * omega])
     K, C = told.fields["stiffness"][0], told.fields["damping"][0]
@@ -172,8 +174,8 @@ def test_squeeze_film_of_a_journal_at_rest(row: dict[str, str]) -> None:
     stiffness = 0.5 * math.pi * gas.ambient_pressure * sizes.length * 2.0 * sizes.journal_radius / sizes.clearance
     expected = stiffness * complex(float(row["Sk"]), float(row["Sd"]))
     turn = 2.0 * math.pi / frequency
-    longest = 0.05 * Orbit(bearing, Course(duration=turn)).system.rotor.clock.rate / frequency
-    course = Course(duration=12.0 * turn, tolerance=1e-7, longest=longest)
+    longest = 0.05 * Orbit(bearing, OrbitRequest(duration=turn)).system.rotor.clock.rate / frequency
+    course = OrbitRequest(duration=12.0 * turn, tolerance=1e-7, longest=longest)
     force = 1e-3 * bearing.bearing.clearance * abs(expected - 1e-3 * frequency**2)
     found = measured_impedance(bearing, force, frequency, course, [])
     assert np.allclose(np.diag(found).real, expected.real, rtol=5e-3, atol=0.0)
@@ -185,9 +187,9 @@ def test_squeeze_film_of_a_journal_at_rest(row: dict[str, str]) -> None:
 
 def equal_steps(bearing: Case, step: float, end: float) -> Orbit:
     """A motion in equal steps [units of time]."""
-    orbit = Orbit(bearing, Course(duration=1.0))
+    orbit = Orbit(bearing, OrbitRequest(duration=1.0))
     options = MarchOptions(tolerance=1e-5, first=step, longest=step, fixed=True)
-    for stepped in march(orbit.system, orbit.start, end, Work(), options):
+    for stepped in march(orbit.system, orbit.start, end, RunLog(), options):
         orbit.trace.add(stepped.end)
     return orbit
 
@@ -223,7 +225,7 @@ def test_audits_close_to_second_order() -> None:
         defects = []
         for step in (0.04, 0.02):
             scalars = equal_steps(bearing, step, 2.0).record().scalars
-            defects.append([scalars["mass_defect"], scalars["energy_defect"]])
+            defects.append([scalars["mass_balance_error"], scalars["energy_balance_error"]])
         coarse, fine = np.array(defects, dtype=float)
         assert np.all((fine <= 0.35 * coarse) | (fine <= least)), (coarse, fine)
         assert np.all(fine <= 1e-3)
@@ -233,10 +235,10 @@ def test_audits_close_to_second_order() -> None:
 def test_steps_adapt_to_the_tolerance() -> None:
     """A hundredth of the tolerance: smaller error, more steps."""
     bearing = falling()
-    best = run(bearing, Course(revolutions=0.5, tolerance=1e-6, longest=0.02))
+    best = run(bearing, OrbitRequest(revolutions=0.5, tolerance=1e-6, longest=0.02))
     ends, steps = [], []
     for tolerance in (1e-2, 1e-4):
-        record = run(bearing, Course(revolutions=0.5, tolerance=tolerance, longest=10.0))
+        record = run(bearing, OrbitRequest(revolutions=0.5, tolerance=tolerance, longest=10.0))
         ends.append(abs(np.asarray(record.fields["x"])[-1] - np.asarray(best.fields["x"])[-1]))
         steps.append(int(record.scalars["steps"]))
     assert ends[1] < 0.2 * ends[0]
@@ -249,32 +251,32 @@ def test_steps_adapt_to_the_tolerance() -> None:
 @pytest.mark.slow
 def test_touching_rubbing_and_lifting_off_without_a_failed_step() -> None:
     """A large unbalance throws the journal onto the petals and off again."""
-    record = run(petals(rotor={"mass": 3.0, "unbalance": 30e-6}), Course(revolutions=6.0))
-    share = np.asarray(record.fields["contact_share"])
+    record = run(petals(rotor={"mass": 3.0, "unbalance": 30e-6}), OrbitRequest(revolutions=6.0))
+    share = np.asarray(record.fields["contact_fraction"])
     touching = share > 0.01
     assert np.any(touching)
     assert np.count_nonzero(np.diff(touching.astype(int)) == -1) >= 1
     assert record.scalars["failed_steps"] == 0
-    assert np.all(np.asarray(record.fields["min_film"]) >= 0.999e-6)
+    assert np.all(np.asarray(record.fields["min_film_thickness"]) >= 0.999e-6)
 
 
 @pytest.mark.slow
 def test_an_unstable_orbit_grows_to_the_wall_and_stays_within() -> None:
     """A heavy rotor whirls at half speed until the bore stops it."""
     bearing = plain(rotor={"mass": 20.0}, **{"operation.load": (0.0, -1.0)})
-    record = run(bearing, Course(revolutions=15.0))
+    record = run(bearing, OrbitRequest(revolutions=15.0))
     radius = np.hypot(np.asarray(record.fields["x"]), np.asarray(record.fields["y"]))
-    room = bearing.bearing.clearance - bearing.surface.film_floor
+    room = bearing.bearing.clearance - bearing.surface.contact_film_thickness
     corner = room / math.cos(math.pi / bearing.cells_per_pitch)  # contact is at nodes: the room is a polygon
     assert radius.max() > 0.98 * room
     assert radius.max() <= corner * (1.0 + 1e-9)
-    assert np.asarray(record.fields["contact_share"]).max() > 0.0
+    assert np.asarray(record.fields["contact_fraction"]).max() > 0.0
 
 
 def test_speed_may_rise_from_rest() -> None:
     """A run-up in time: the shaft turns as the ramp says, the film lifts the journal on the way."""
     bearing = petals(rotor={"mass": 0.5})
-    course = Course(speeds=((0.0, 0.0), (2e-3, 8000.0)), initial=(0.0, 0.0))
+    course = OrbitRequest(speeds=((0.0, 0.0), (2e-3, 8000.0)), initial=(0.0, 0.0))
     record = run(bearing, course)
     turned = np.asarray(record.fields["shaft_angle"])[-1]
     assert turned == pytest.approx(0.5 * 2e-3 * 8000.0, rel=1e-9)
@@ -285,7 +287,7 @@ def test_speed_may_rise_from_rest() -> None:
 def test_a_released_rotor_on_petals_ends_where_its_load_balances() -> None:
     """Petals hardly damp: steps too long to follow the swing, which an L-stable scheme takes out, lead there."""
     loaded, (x, y) = under(petals(), 1e-3, 20.0)
-    course = Course(revolutions=40.0, initial=(x + 2e-6, y + 5e-6), tolerance=1e3, longest=3.0)
+    course = OrbitRequest(revolutions=40.0, initial=(x + 2e-6, y + 5e-6), tolerance=1e3, longest=3.0)
     record = run(loaded, course)
     end = np.asarray(record.fields["x"])[-1], np.asarray(record.fields["y"])[-1]
     assert math.hypot(end[0] - x, end[1] - y) <= 1e-9

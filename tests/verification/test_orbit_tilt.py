@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from petalfoil.analysis.orbit import Course, Orbit, run
+from petalfoil.analysis.orbit import Orbit, OrbitRequest, run
 from petalfoil.case import Case
 from petalfoil.errors import DefinitionError
 from petalfoil.physics.forces import node_area
-from petalfoil.problem.balance import FilmForce
-from petalfoil.problem.build import build_pair, build_problem
 from petalfoil.results.record import Record
+from petalfoil.system.build import build_pair, build_problem
+from petalfoil.system.loaded import FilmForce
 from tests.cases import case
 
 Array = NDArray[np.float64]
@@ -29,7 +29,7 @@ def path(record: Record, *names: str) -> Array:
     return np.column_stack([np.asarray(record.fields[name]) for name in names])
 
 
-COURSE = Course(revolutions=2.0, tolerance=1e-4, longest=0.1)
+COURSE = OrbitRequest(revolutions=2.0, tolerance=1e-4, longest=0.1)
 OFF = {"operation.eccentricity": (0.0, -5e-6)}
 
 
@@ -62,7 +62,7 @@ def test_conical_motion_is_that_of_one_bearing_too() -> None:
     conical = conical.replace(**{"operation.load": (0.0, 0.0)})
     single = plain({"mass": mass}, **{"operation.load": (0.0, 0.0), "model.symmetry": False}, **OFF)
     one = run(single, COURSE)
-    two = run(conical, Course(**{**COURSE.__dict__, "slope": (0.0, -5e-6 / lever)}))
+    two = run(conical, OrbitRequest(**{**COURSE.__dict__, "slope": (0.0, -5e-6 / lever)}))
     time = np.asarray(one.coords["time"])
     for name, slope in (("x", "slope_x"), ("y", "slope_y")):
         assert np.max(np.abs(lever * at(two, slope, time) - at(one, name, time))) < 2e-3 * 25e-6
@@ -74,7 +74,7 @@ def test_nutation_of_a_rotor_that_hardly_feels_its_film() -> None:
     inertia, polar, skew = 1e4, 0.3e4, 1e-8
     rotor = {"mass": 1e6, "span": 0.5, "transverse_inertia": inertia, "polar_inertia": polar, "skew": skew}
     bearing = plain(rotor, **{"operation.load": (0.0, 0.0), "operation.eccentricity": (0.0, 0.0)})
-    record = run(bearing, Course(revolutions=6.0, tolerance=1e-7, longest=0.02))
+    record = run(bearing, OrbitRequest(revolutions=6.0, tolerance=1e-7, longest=0.02))
     turned = np.asarray(record.fields["shaft_angle"])
     slope = path(record, "slope_x", "slope_y") @ np.array([1.0, 1j])
     ratio = polar / inertia
@@ -126,10 +126,10 @@ def test_petal_bearings_carry_a_tilting_rotor_through_contact() -> None:
         "skew": 1e-4,
     }
     bearing = case("paper_n8", **{"model.cells_per_pitch": 16}).replace(rotor=rotor)
-    record = run(bearing, Course(revolutions=3.0, initial="balance"))
+    record = run(bearing, OrbitRequest(revolutions=3.0, initial="balance"))
     assert record.scalars["failed_steps"] == 0
     assert np.max(np.abs(path(record, "slope_x", "slope_y"))) > 1e-6
-    assert float(record.scalars["energy_defect"]) < 5e-3
+    assert float(record.scalars["energy_balance_error"]) < 5e-3
     assert np.asarray(record.fields["frame_radius"]).shape[1] == 8
 
 

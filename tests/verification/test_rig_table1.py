@@ -110,16 +110,16 @@ def test_the_example_is_one_of_the_sets_of_the_page() -> None:
     assert_allclose(1e3 * rig.bearing.journal_radius, float(radius), rtol=0.0, atol=1e-3)
     assert_allclose(1e3 * petals.arc_length, float(length), rtol=0.0, atol=0.1)
     assert_allclose(1e6 * petals.coating, float(coating), rtol=0.0, atol=0.5)
-    assert_allclose(1e6 * rig.surface.film_floor, float(floor), rtol=0.02, atol=0.0)
+    assert_allclose(1e6 * rig.surface.contact_film_thickness, float(floor), rtol=0.02, atol=0.0)
     assert_allclose(rig.surface.friction_coefficient, float(friction), rtol=0.02, atol=0.0)
 
 
 def test_packages_are_drawn_alike_each_time_and_lie_in_their_ranges() -> None:
     study = script("rig_study")
-    first, again = (list(study.drawn(9, "rigid")) for _ in range(2))
+    first, again = (list(study.drawn(9, "clamped")) for _ in range(2))
     assert first == again
     assert len(set(first)) == study.DRAWN
-    for name, (low, high) in study.ranges_of(9, "rigid").items():
+    for name, (low, high) in study.ranges_of(9, "clamped").items():
         values = np.array([getattr(package, name) for package in first])
         assert low * (1.0 - 1e-3) <= values.min()
         assert values.max() <= high * (1.0 + 1e-3)

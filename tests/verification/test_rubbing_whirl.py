@@ -13,17 +13,17 @@ from numpy.typing import NDArray
 from petalfoil.analysis import coefficients, stability
 from petalfoil.analysis.coefficients import elastic, impedance, operating_point, sliding_at
 from petalfoil.case import Case
-from petalfoil.equilibria.answer import Answer
-from petalfoil.equilibria.harmonic import Cycle
-from petalfoil.equilibria.loaded import journal_force
-from petalfoil.equilibria.response import Motion
-from petalfoil.equilibria.sliding import slide
-from petalfoil.equilibria.work import Work
+from petalfoil.dynamics.harmonic_balance import Cycle
+from petalfoil.equilibrium.friction_path import slide
+from petalfoil.equilibrium.linear_response import Motion
+from petalfoil.equilibrium.loaded import journal_force
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import UsageError
-from petalfoil.problem.balance import FilmForce
-from petalfoil.problem.sliding import Rubbed, friction_of, held_together
 from petalfoil.results.record import Record
-from petalfoil.solvers.linear import LinearSolver
+from petalfoil.solvers.sparse_lu import LinearSolver
+from petalfoil.system.friction import FrictionState, friction_of, held_together
+from petalfoil.system.loaded import FilmForce
 from tests.cases import case
 
 Array = NDArray[np.float64]
@@ -38,9 +38,9 @@ def bearing(friction: float = 0.3, width: float = 1e-9, speed: float = 8000.0) -
 
 
 @cache
-def answer_of(speed: float = 8000.0) -> Answer:
+def answer_of(speed: float = 8000.0) -> Solution:
     """The equilibrium under the load; friction has no force there."""
-    answer, _ = operating_point(bearing(speed=speed), LOAD, Work())
+    answer, _ = operating_point(bearing(speed=speed), LOAD, RunLog())
     return answer
 
 
@@ -65,19 +65,19 @@ def test_stiffness_of_stuck_petals_is_the_slope_of_equilibria_with_friction(spee
     """Within 1e-5 of its size; friction is strong and soft, so that nothing slips in a step of 1 nm."""
     rubs, answer = bearing(5.0, 5e-9 / 0.3, speed), answer_of(speed)
     assert bool(answer.in_contact[answer.problem.layout.wall.contacts.journal].any()) == touching
-    K, _ = impedance(elastic(rubs, answer, Work()), 0.0, speed, Work())
-    free, _ = impedance(Motion.about(answer), 0.0, speed, Work())
+    K, _ = impedance(elastic(rubs, answer, RunLog()), 0.0, speed, RunLog())
+    free, _ = impedance(Motion.about(answer), 0.0, speed, RunLog())
     slope = differences(rubs, answer, 1e-4)
     assert_allclose(K, slope, rtol=0.0, atol=1e-5 * float(np.max(np.abs(slope))))
     assert K[0, 0] > 2.0 * free[0, 0]
 
 
-def differences(rubs: Case, answer: Answer, step: float) -> Array:
+def differences(rubs: Case, answer: Solution, step: float) -> Array:
     """`-dF/de` [N/m] from equilibria with friction on either side, reached from `answer` where it has no force yet."""
     layout = answer.problem.layout
     friction, columns = friction_of(rubs, layout), []
     assert friction is not None
-    before = answer.x, answer.lam, answer.in_contact, Rubbed.fresh(friction, answer.x, answer.lam)
+    before = answer.x, answer.lam, answer.in_contact, FrictionState.fresh(friction, answer.x, answer.lam)
     for k in (0, 1):
         forces = []
         for side in (-step, step):
@@ -98,11 +98,11 @@ def test_natural_modes_are_those_of_stuck_petals(monkeypatch: pytest.MonkeyPatch
     mass, bearings = 0.05, [bearing(mu).replace(**{"model.cells_per_pitch": 12}) for mu in (0.3, 0.0)]
     stuck, free = (stability.run(one, load=LOAD, mass=mass).fields for one in bearings)
     assert np.all(stuck["natural_frequency"][-1] > 1.3 * free["natural_frequency"])
-    answer, _ = operating_point(bearings[0], LOAD, Work())
+    answer, _ = operating_point(bearings[0], LOAD, RunLog())
     scales = answer.problem.layout.scales
     s = (stuck["mode_growth_rate"] + 1j * stuck["natural_frequency"]) / 8000.0
     for value in s:
-        gradient = elastic(bearings[0], answer, Work()).growing(value, LinearSolver()).force_gradient()
+        gradient = elastic(bearings[0], answer, RunLog()).growing(value, LinearSolver()).force_gradient()
         inertia = mass * (8000.0 * value) ** 2 * np.eye(2)
         sizes = np.linalg.svd(inertia - gradient * scales.force / scales.length, compute_uv=False)
         assert sizes[1] < 1e-6 * abs(inertia[0, 0])
@@ -119,7 +119,7 @@ def cycle(amplitude: float, nu: float = 0.7) -> tuple[Cycle, Complex]:
     response = Motion.about(answer).respond(nu, LinearSolver())
     whirl = Cycle(sliding, response, amplitude / answer.problem.layout.scales.length)
     free = sliding.slips(response.unit(0)[0])
-    return whirl, whirl.settled(free, whirl.compliance(), Work())
+    return whirl, whirl.settled(free, whirl.compliance(), RunLog())
 
 
 @pytest.mark.parametrize("amplitude", [0.6e-6, 1e-6, 3e-6, 30e-6])
@@ -134,7 +134,7 @@ def test_cycles_are_motions_with_their_equivalent_stiffness_in_the_tangent(ampli
     whole = replace(whirl.response.motion, held=held).respond(0.7, LinearSolver())
     change, reactions = whole.unit(0)
     assert_near(whirl.sliding.slips(change), slip, 1e-9)
-    assert_near(whirl.force_gradient(Work())[:, 0], whole.force(change, reactions), 1e-9)
+    assert_near(whirl.force_gradient(RunLog())[:, 0], whole.force(change, reactions), 1e-9)
 
 
 def test_what_a_cycle_takes_is_the_area_of_its_loops_and_the_work_of_the_film() -> None:
@@ -148,7 +148,7 @@ def test_what_a_cycle_takes_is_the_area_of_its_loops_and_the_work_of_the_film() 
     change, reactions = replace(whirl.response.motion, held=held).respond(0.7, LinearSolver()).unit(0)
     w, P = change[: layout.n_wall], change[problem.positive]
     film = -np.pi * a**2 * np.imag(np.conj(w) @ (layout.push @ P) + (FilmForce.of(problem).by_P @ P)[0])
-    taken = -np.pi * a**2 * whirl.force_gradient(Work())[0, 0].imag
+    taken = -np.pi * a**2 * whirl.force_gradient(RunLog())[0, 0].imag
     assert loops > 0.5 * taken > 0.0
     assert_allclose(taken, loops + film, rtol=1e-9)
     assert len(reactions) == int(answer_of().in_contact.sum())
@@ -161,18 +161,18 @@ def test_cycles_are_near_those_that_the_bearing_is_led_through(amplitude: float)
     scales, sliding = answer.problem.layout.scales, sliding_at(rubs, answer)
     assert sliding is not None
     a = amplitude / scales.length
-    balanced = Cycle(sliding, Motion.about(answer).respond(1e-6, LinearSolver()), a).force_gradient(Work())[0, 0]
+    balanced = Cycle(sliding, Motion.about(answer).respond(1e-6, LinearSolver()), a).force_gradient(RunLog())[0, 0]
     led = slow_cycle(rubs, answer, a)
     assert led.real == pytest.approx(balanced.real, rel=2e-2)
     assert led.imag == pytest.approx(balanced.imag, rel=1.2e-1)
 
 
-def slow_cycle(rubs: Case, answer: Answer, a: float, steps: int = 32) -> complex:
+def slow_cycle(rubs: Case, answer: Solution, a: float, steps: int = 32) -> complex:
     """First harmonic of the force along x over a displacement of `a` there, in the second cycle."""
     friction, forces = friction_of(rubs, answer.problem.layout), []
     assert friction is not None
     phase = 2.0 * np.pi * np.arange(1, 2 * steps + 1) / steps
-    before = answer.x, answer.lam, answer.in_contact, Rubbed.fresh(friction, answer.x, answer.lam)
+    before = answer.x, answer.lam, answer.in_contact, FrictionState.fresh(friction, answer.x, answer.lam)
     for angle in phase:
         problem = answer.problem.at(displacement=answer.problem.displacement + np.array([a * np.sin(angle), 0.0]))
         near = slide(problem, friction, before, LinearSolver())

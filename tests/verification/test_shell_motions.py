@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from petalfoil.mesh.axial import AxialGrid, flat_axis, spatial_axis
+from petalfoil.mesh.axial import AxialGrid, axis_2d, axis_3d
 from petalfoil.physics.shell import PetalShell
 from tests.verification.shell_helpers import GRIDS, Array, bend, orders, package_grid, plate_shell, uniform_load
 
 ANGLE, K_ARC = 1.8, 0.64
 AXES = {
-    "flat": flat_axis(1.0),
-    "half": spatial_axis(2.0, 8, half=True),
-    "whole": spatial_axis(2.0, 8, half=False),
+    "2d": axis_2d(1.0),
+    "half": axis_3d(2.0, 8, half=True),
+    "whole": axis_3d(2.0, 8, half=False),
 }
 
 
@@ -52,7 +52,7 @@ def test_the_free_turn_is_the_sine(grid: str) -> None:
     errors = []
     for cells in (16, 32, 64):
         phi = GRIDS[grid](ANGLE, cells)
-        K = plate_shell(phi, AXES["flat"], K_ARC, 0.3, clamped=False).stiffness.toarray()
+        K = plate_shell(phi, AXES["2d"], K_ARC, 0.3, clamped=False).stiffness.toarray()
         mode = np.append(0.0, np.linalg.eigh(K[1:, 1:])[1][:, 0])
         errors.append(float(np.abs(mode / mode[-1] - np.sin(K_ARC * phi) / np.sin(K_ARC * ANGLE)).max()))
     assert errors[-1] < 1e-5
@@ -66,7 +66,7 @@ def test_free_motions_with_the_root_released(grid: str, clamped: bool) -> None:
     errors = []
     for cells in (16, 32, 64):
         phi = GRIDS[grid](ANGLE, cells)
-        shell = plate_shell(phi, AXES["flat"], K_ARC, 0.3, clamped=clamped)
+        shell = plate_shell(phi, AXES["2d"], K_ARC, 0.3, clamped=clamped)
         motions, _ = shell.free_motions()
         K = shell.stiffness
         energy = np.einsum("ik,ik->k", motions, K @ motions)

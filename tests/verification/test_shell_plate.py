@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.interpolate import CubicSpline
 
-from petalfoil.mesh.axial import spatial_axis
+from petalfoil.mesh.axial import axis_3d
 from tests.verification.shell_helpers import (
     GRIDS,
     Array,
@@ -26,7 +26,7 @@ CELLS = (16, 32, 64)
 def plate_answer(row: dict[str, str], grid: str, cells: int, *, half: bool = True, grading: float = 0.0) -> Array:
     """The table's quantities on `cells` along (package grid: a pitch) and `cells` across, with `a = D = q = 1`."""
     b, kappa, nu = (float(row[name]) for name in ("b=L/a", "kappa=k*phi1", "nu"))
-    shell = plate_shell(GRIDS[grid](1.0, cells), spatial_axis(b, cells, half=half, grading=grading), kappa, nu)
+    shell = plate_shell(GRIDS[grid](1.0, cells), axis_3d(b, cells, half=half, grading=grading), kappa, nu)
     force = uniform_load(shell)
     W = bend(shell, force)
     line = W[:, -1 if half else cells // 2]
@@ -71,7 +71,7 @@ def test_without_lateral_contraction_it_is_the_strip(row: dict[str, str], grid: 
     cells = 32
     b, kappa = float(row["b=L/a"]), float(row["kappa=k*phi1"])
     phi = GRIDS[grid](1.0, cells)
-    plate, strip = plate_shell(phi, spatial_axis(b, 16, half=True), kappa, 0.0), strip_shell(phi, kappa)
+    plate, strip = plate_shell(phi, axis_3d(b, 16, half=True), kappa, 0.0), strip_shell(phi, kappa)
     W, line = bend(plate, uniform_load(plate)), bend(strip, uniform_load(strip))
     rounding = np.finfo(float).eps * len(phi) ** 4  # what the condition of bending leaves of the last digit
     assert_allclose(W, np.broadcast_to(line, W.shape), rtol=rounding)
@@ -85,7 +85,7 @@ def test_half_a_plate_is_half_of_the_whole(clamped: bool) -> None:
     phi, cells = GRIDS["package"](1.0, 16), 16
     answers = []
     for half in (True, False):
-        shell = plate_shell(phi, spatial_axis(1.3, cells, half=half), 0.7, 0.3, clamped=clamped)
+        shell = plate_shell(phi, axis_3d(1.3, cells, half=half), 0.7, 0.3, clamped=clamped)
         n_z = len(shell.axial.z)
         force = uniform_load(shell) * (1.0 + np.cos(2.0 * np.pi * shell.axial.z / 1.3)) * (1.0 + shell.phi[:, None])
         K = shell.stiffness.toarray()[n_z:, n_z:]
@@ -101,7 +101,7 @@ def test_half_a_plate_is_half_of_the_whole(clamped: bool) -> None:
 def test_anticlastic_patch(clamped: bool, grid: str, half: bool) -> None:
     """`w = M (x^2 - nu y^2) / (2 D (1 - nu^2))`, bent by edge moments `M` alone, is an exact answer of the grid."""
     M, nu, b, cells = 2.5, 0.3, 0.8, 12
-    shell = plate_shell(GRIDS[grid](1.0, cells), spatial_axis(b, 8, half=half), 0.0, nu, clamped=clamped)
+    shell = plate_shell(GRIDS[grid](1.0, cells), axis_3d(b, 8, half=half), 0.0, nu, clamped=clamped)
     x, y = shell.phi[:, None], shell.axial.z[None, :] - 0.5 * b
     W = M * (x**2 - nu * y**2) / (2.0 * (1.0 - nu**2))
     chi_x, chi_y = shell.curvatures(W)

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.interpolate import CubicSpline
 
 from petalfoil.physics.shell import PetalShell, bending_stress
-from petalfoil.solvers.active_set import Closed
+from petalfoil.solvers.contact_newton import Closed
 from tests.verification.shell_helpers import (
     GRIDS,
     UNIT,

@@ -11,13 +11,13 @@ from petalfoil.analysis.figures import effort, forces, record_of
 from petalfoil.analysis.session import Clock, Progress, one_thread, telling_work
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
-from petalfoil.equilibria.balancing import balance_cold
-from petalfoil.equilibria.loaded import Balance
-from petalfoil.equilibria.stability import leading_eigenvalue
-from petalfoil.equilibria.work import Work
+from petalfoil.dynamics.film_stability import leading_eigenvalue
+from petalfoil.equilibrium.loaded import Balance
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.under_load import balance_cold
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.problem.build import build_problem
 from petalfoil.results.record import Record
+from petalfoil.system.build import build_problem
 
 Array = NDArray[np.float64]
 
@@ -51,7 +51,7 @@ def run(
     return balance_record("balance", case, found, {**extra, **given_load(wanted)}, work)
 
 
-def settled(case: Case, load: tuple[float, float], work: Work) -> tuple[Balance, Named]:
+def settled(case: Case, load: tuple[float, float], work: RunLog) -> tuple[Balance, Named]:
     """The balance to report and what is known of its stability: if unstable, the one that the climb from rest finds.
 
     Raises
@@ -91,9 +91,9 @@ def given_load(load: tuple[float, float]) -> Named:
     return {"load_x": load[0], "load_y": load[1]}
 
 
-def balance_record(analysis: str, case: Case, found: Balance, extra: Named, work: Work) -> Record:
+def balance_record(analysis: str, case: Case, found: Balance, extra: Named, work: RunLog) -> Record:
     """The record of a balance, at the position found."""
-    share = float(forces(case, found.answer)["contact_share"])
+    share = float(forces(case, found.answer)["contact_fraction"])
     e = found.answer.problem.displacement * found.answer.problem.layout.scales.length
     own: Named = {
         "eccentricity_x": float(e[0]),

@@ -9,14 +9,14 @@ import numpy as np
 from petalfoil.analysis.fields import coordinates, petal_fields
 from petalfoil.analysis.figures import given
 from petalfoil.analysis.session import one_thread
-from petalfoil.case import Case, Kind
-from petalfoil.equilibria.ascent import rest
-from petalfoil.equilibria.work import Work
+from petalfoil.case import Case, ModelKind
+from petalfoil.equilibrium.ascent import rest
+from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.errors import ConvergenceError
-from petalfoil.problem.build import build_problem
-from petalfoil.problem.scales import Scales
 from petalfoil.results.record import Record
-from petalfoil.structure.petals import petals_of
+from petalfoil.system.build import build_problem
+from petalfoil.system.scales import Scales
+from petalfoil.walls.petals import petals_of
 
 FINE = 2001
 """Angles at which the free shape is looked at."""
@@ -35,9 +35,9 @@ def run(case: Case) -> Record:
     scalars: Named = {**given(case), **bearing_figures(case)}
     if case.petals is None:
         return Record(analysis="check", scalars=scalars, case_toml=case.to_toml(), title=case.title)
-    flat = case.replace(**{"model.kind": Kind.FLAT, "operation.speed": 0.0})
+    flat = case.replace(**{"model.kind": ModelKind.TWO_D, "operation.speed": 0.0})
     with one_thread():
-        work = Work()
+        work = RunLog()
         answer = rest(build_problem(flat), work)
     if answer is None:
         raise ConvergenceError("the package did not settle at rest", history=work.history, advice="check its geometry")
@@ -59,10 +59,10 @@ def bearing_figures(case: Case) -> Named:
     """
     scales = Scales(case.bearing.clearance, case.gas.ambient_pressure, 1.0)
     number = scales.bearing_number(case.gas.viscosity, case.operation.speed, case.bearing.journal_radius)
-    thinnest = case.room if case.petals is None else case.surface.film_floor
+    thinnest = case.room if case.petals is None else case.surface.contact_film_thickness
     return {
-        "room": case.room,
-        "room_left": case.room_left,
+        "radial_clearance": case.room,
+        "pack_clearance": case.pack_clearance,
         "compressibility_number": number,
         "viscosity": case.gas.viscosity,
         "mean_free_path": case.gas.mean_free_path,

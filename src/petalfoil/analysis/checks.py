@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibria.answer import Answer
+from petalfoil.equilibrium.solution import Solution
 
 Array = NDArray[np.float64]
 
 
-def mass_balance(answer: Answer) -> float:
+def mass_balance(answer: Solution) -> float:
     """Largest defect of a strip's mass over the flow that passes through it [1].
 
     Inflow over the leading edge, outflow over the trailing edge and leakage at the sides are the balances of the
@@ -27,7 +27,7 @@ def mass_balance(answer: Answer) -> float:
     return float(np.max(np.abs(stored) / passing))
 
 
-def reaction_balance(answer: Answer) -> float:
+def reaction_balance(answer: Solution) -> float:
     """Largest defect of a petal's loads against its support, in motions that bend nothing (S4), over the loads [1]."""
     layout = answer.problem.layout
     w, P = answer.x[: layout.n_wall], answer.x[layout.n_wall :]
@@ -41,7 +41,7 @@ def reaction_balance(answer: Answer) -> float:
     return float(np.max(np.abs(defect) / np.maximum(scale, np.finfo(float).tiny)))
 
 
-def side_leakage(answer: Answer) -> float:
+def side_leakage(answer: Solution) -> float:
     """Gas that leaves at both ends, pressure times volume a second, over `p_a^2 h_ref^3 / (12 mu)` [1].
 
     What enters again where the film is below ambient pressure is not subtracted: in a film that runs on all round

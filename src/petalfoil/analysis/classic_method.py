@@ -8,10 +8,10 @@ from petalfoil.analysis.session import TYPICAL_STEPS
 from petalfoil.case import Case, Method
 from petalfoil.classic import ClassicState, Run, assembled, relax
 from petalfoil.classic.relaxation import Row
-from petalfoil.equilibria.answer import Answer, State, total_residual
-from petalfoil.equilibria.work import Work
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import RefinedState, Solution, total_residual
 from petalfoil.errors import UsageError
-from petalfoil.problem.coupled import CoupledProblem
+from petalfoil.system.coupled import CoupledProblem
 
 TYPICAL_OUTER = 150.0
 """Outer iterations of a typical run."""
@@ -42,7 +42,7 @@ def newton_only(case: Case) -> None:
         )
 
 
-def by_classic(problem: CoupledProblem, work: Work, known: Answer | None = None) -> Answer:
+def by_classic(problem: CoupledProblem, work: RunLog, known: Solution | None = None) -> Solution:
     """The equilibrium that film and package relax to, from the assembled package or from a `known` neighbour.
 
     Raises
@@ -55,7 +55,7 @@ def by_classic(problem: CoupledProblem, work: Work, known: Answer | None = None)
     return answer_of(problem, reached, f"film and package relaxed in turn from {way}, {reached.outer} times")
 
 
-def rest_by_classic(problem: CoupledProblem, work: Work) -> Answer:
+def rest_by_classic(problem: CoupledProblem, work: RunLog) -> Solution:
     """The assembled package with its film at rest, by gradient descent.
 
     Raises
@@ -69,7 +69,7 @@ def rest_by_classic(problem: CoupledProblem, work: Work) -> Answer:
     return answer_of(still, reached, "assembled package at rest, by gradient descent")
 
 
-def telling_run(problem: CoupledProblem, work: Work) -> Run:
+def telling_run(problem: CoupledProblem, work: RunLog) -> Run:
     """A run that writes the history of `work`."""
 
     def tell(row: Row) -> None:
@@ -82,13 +82,13 @@ def telling_run(problem: CoupledProblem, work: Work) -> Run:
     return Run(problem, tell=tell, pulse=pulse)
 
 
-def start_from(known: Answer) -> ClassicState:
+def start_from(known: Solution) -> ClassicState:
     """A known neighbour as a start."""
     n = known.problem.layout.n_wall
     return ClassicState(known.x[:n], known.x[n:], known.lam, 0, 0, 0)
 
 
-def answer_of(problem: CoupledProblem, reached: ClassicState, way: str) -> Answer:
+def answer_of(problem: CoupledProblem, reached: ClassicState, way: str) -> Solution:
     """Where the method came to rest, as an answer; its residual is what it is, some 1e-6."""
-    state = State(np.concatenate([reached.w, reached.P]), np.zeros(len(reached.w)), reached.lam)
-    return Answer(problem, state, total_residual(problem, state), way)
+    state = RefinedState(np.concatenate([reached.w, reached.P]), np.zeros(len(reached.w)), reached.lam)
+    return Solution(problem, state, total_residual(problem, state), way)

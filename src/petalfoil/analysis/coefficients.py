@@ -15,13 +15,13 @@ from petalfoil.analysis.equilibrium import Named, chosen, positioned
 from petalfoil.analysis.figures import effort, failed_record, forces, given
 from petalfoil.analysis.session import Clock, Progress, one_thread, part, telling_work
 from petalfoil.case import Case
-from petalfoil.equilibria.answer import Answer
-from petalfoil.equilibria.harmonic import Cycle, Sliding
-from petalfoil.equilibria.response import Motion
-from petalfoil.equilibria.work import Work
+from petalfoil.dynamics.harmonic_balance import Cycle, Sliding
+from petalfoil.equilibrium.linear_response import Motion
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.problem.sliding import friction_of
 from petalfoil.results.record import Record
+from petalfoil.system.friction import friction_of
 
 Array = NDArray[np.float64]
 Load = tuple[float, float]
@@ -135,7 +135,7 @@ def given_amplitude(amplitude: float | None) -> Named:
     return {} if amplitude is None else {"whirl_amplitude": amplitude}
 
 
-def point(case: Case, wanted: Wanted, load: Load | None, work: Work) -> Record:
+def point(case: Case, wanted: Wanted, load: Load | None, work: RunLog) -> Record:
     """The record of one operating point; `wanted` are the whirl frequencies [rad/s] and the amplitude [m].
 
     Raises
@@ -164,7 +164,7 @@ def point(case: Case, wanted: Wanted, load: Load | None, work: Work) -> Record:
     )
 
 
-def operating_point(case: Case, load: Load | None, work: Work) -> tuple[Answer, Named]:
+def operating_point(case: Case, load: Load | None, work: RunLog) -> tuple[Solution, Named]:
     """The balance under a load where one is given, else the case's eccentricity."""
     if load is None and case.operation.load is None:
         return chosen(case, work)
@@ -173,26 +173,26 @@ def operating_point(case: Case, load: Load | None, work: Work) -> tuple[Answer, 
     return found.answer, {**known, **given_load(wanted), "force_residual": found.force_residual}
 
 
-def at_position(case: Case, answer: Answer) -> Named:
+def at_position(case: Case, answer: Solution) -> Named:
     """Where the journal is and what is to be known of the state there."""
     e = answer.problem.displacement * answer.problem.layout.scales.length
     return {
         "eccentricity_x": float(e[0]),
         "eccentricity_y": float(e[1]),
-        "contact_share": forces(case, answer)["contact_share"],
+        "contact_fraction": forces(case, answer)["contact_fraction"],
         "residual": answer.residual,
         "converged": True,
         "status": "converged",
     }
 
 
-def sliding_at(case: Case, answer: Answer) -> Sliding | None:
+def sliding_at(case: Case, answer: Solution) -> Sliding | None:
     """Contacts that slide under load, if petals have friction."""
     friction = friction_of(case, answer.problem.layout)
     return None if friction is None else Sliding.at(friction, answer)
 
 
-def elastic(case: Case, answer: Answer, work: Work) -> Motion:
+def elastic(case: Case, answer: Solution, work: RunLog) -> Motion:
     """Small motions about `answer`, if the bearing gives way there; petals with friction stick.
 
     Raises
@@ -211,7 +211,7 @@ def elastic(case: Case, answer: Answer, work: Work) -> Motion:
     return motion
 
 
-def impedance(motion: Motion, frequency: float, speed: float, work: Work) -> tuple[Array, Array]:
+def impedance(motion: Motion, frequency: float, speed: float, work: RunLog) -> tuple[Array, Array]:
     """`K` [N/m] and `C` [N s/m] at one whirl frequency [rad/s], each (2, 2); one factorisation.
 
     At a frequency of zero, `C` is the limit of small ones.
@@ -227,7 +227,7 @@ SLOW = 1e-6
 
 
 def cycle_impedance(
-    motion: Motion, frequency: float, speed: float, rubs: tuple[Sliding, float], work: Work
+    motion: Motion, frequency: float, speed: float, rubs: tuple[Sliding, float], work: RunLog
 ) -> tuple[Array, Array]:
     """The same where contacts rub in a whirl of an amplitude [m]; `motion` is without their friction.
 

@@ -10,18 +10,18 @@ import math
 from petalfoil.analysis.classic_method import by_classic, is_classic, typical_steps
 from petalfoil.analysis.figures import effort, record_of
 from petalfoil.analysis.session import Clock, Progress, one_thread, telling_work
-from petalfoil.case import Case, Kind
-from petalfoil.equilibria.answer import Answer
-from petalfoil.equilibria.ascent import ascend
-from petalfoil.equilibria.branches import distinct, probe
-from petalfoil.equilibria.cold import nothing_found, solve_cold
-from petalfoil.equilibria.stability import leading_eigenvalue
-from petalfoil.equilibria.warm import settle
-from petalfoil.equilibria.work import Work
+from petalfoil.case import Case, ModelKind
+from petalfoil.dynamics.film_stability import leading_eigenvalue
+from petalfoil.equilibrium.ascent import ascend
+from petalfoil.equilibrium.branches import distinct, probe
+from petalfoil.equilibrium.cold_start import nothing_found, solve_cold
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.equilibrium.warm_start import settle
 from petalfoil.errors import ConvergenceError
-from petalfoil.problem.build import build_problem
-from petalfoil.problem.coupled import CoupledProblem
 from petalfoil.results.record import Record
+from petalfoil.system.build import build_problem
+from petalfoil.system.coupled import CoupledProblem
 
 PROBE_CELLS, PROBE_AXIAL = 24, 6
 """Grid on which other equilibria are looked for."""
@@ -63,7 +63,7 @@ def positioned(case: Case, speed: float | None, eccentricity: tuple[float, float
     return case.replace(**changes) if changes else case
 
 
-def chosen(case: Case, work: Work) -> tuple[Answer, Named]:
+def chosen(case: Case, work: RunLog) -> tuple[Solution, Named]:
     """The equilibrium to report, and what is known of its branch and stability.
 
     Raises
@@ -89,7 +89,7 @@ def chosen(case: Case, work: Work) -> tuple[Answer, Named]:
     return found[0], about(rates[0], case, (known, way or found[0].way))
 
 
-def relaxed(case: Case, problem: CoupledProblem, work: Work, known: Answer | None = None) -> tuple[Answer, Named]:
+def relaxed(case: Case, problem: CoupledProblem, work: RunLog, known: Solution | None = None) -> tuple[Solution, Named]:
     """The equilibrium that the paper's method comes to rest at, from nothing or from a `known` neighbour.
 
     Raises
@@ -101,7 +101,7 @@ def relaxed(case: Case, problem: CoupledProblem, work: Work, known: Answer | Non
     return answer, about(leading_eigenvalue(answer, work), case, (1, answer.way))
 
 
-def from_nothing(problem: CoupledProblem, work: Work) -> list[Answer]:
+def from_nothing(problem: CoupledProblem, work: RunLog) -> list[Solution]:
     """The answer of a cold start, if there is one."""
     try:
         return [solve_cold(problem, work)]
@@ -110,7 +110,9 @@ def from_nothing(problem: CoupledProblem, work: Work) -> list[Answer]:
         return []
 
 
-def settled(found: list[Answer], rates: list[complex], way: str, work: Work) -> tuple[list[Answer], list[complex], str]:
+def settled(
+    found: list[Solution], rates: list[complex], way: str, work: RunLog
+) -> tuple[list[Solution], list[complex], str]:
     """Put first where the unstable equilibrium at the head of `found` goes, if that is stable."""
     stable = [k for k, rate in enumerate(rates) if not rate.real > 0.0]
     rested = None if stable else settle(found[0], work)
@@ -128,7 +130,7 @@ def settled(found: list[Answer], rates: list[complex], way: str, work: Work) -> 
 def coarse(case: Case) -> Case:
     """The same bearing on the grid of the probe."""
     changes: dict[str, object] = {"model.cells_per_pitch": min(case.cells_per_pitch, PROBE_CELLS)}
-    if case.model.kind is Kind.SPATIAL:
+    if case.model.kind is ModelKind.THREE_D:
         changes["model.axial_cells"] = min(case.axial_cells, PROBE_AXIAL)
     return case.replace(**changes)
 
@@ -140,8 +142,8 @@ def about(rate: complex, case: Case, branch: tuple[int, str]) -> Named:
         "stable": not rate.real > 0.0,
         "growth_rate": rate.real * omega if not math.isnan(rate.real) else math.nan,
         "growth_frequency": abs(rate.imag) * omega if not math.isnan(rate.imag) else math.nan,
-        "branches_known": branch[0],
-        "branch": branch[1],
+        "known_equilibria": branch[0],
+        "solution_path": branch[1],
     }
 
 

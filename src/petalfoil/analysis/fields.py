@@ -6,15 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
-from petalfoil.equilibria.answer import Answer
+from petalfoil.equilibrium.solution import Solution
 from petalfoil.physics.shell import bending_stress
-from petalfoil.structure.petals import build_mesh, build_shell, petals_of
+from petalfoil.walls.petals import build_mesh, build_shell, petals_of
 
 Array = NDArray[np.float64]
 Named = dict[str, Array]
 
 
-def film_fields(answer: Answer) -> Named:
+def film_fields(answer: Solution) -> Named:
     """Pressure [Pa] and film thickness [m] over the whole length, (strip, node, axial)."""
     problem = answer.problem
     scales, axial = problem.layout.scales, problem.layout.wall.film.axial
@@ -24,14 +24,14 @@ def film_fields(answer: Answer) -> Named:
     }
 
 
-def contact_pressure(answer: Answer, rows: slice) -> Array:
+def contact_pressure(answer: Solution, rows: slice) -> Array:
     """Contact pressure on the gaps `rows`, (k,) [Pa]."""
     layout = answer.problem.layout
     pressure: Array = answer.lam[rows] * layout.scales.force / layout.wall.contacts.area[rows]
     return pressure
 
 
-def petal_fields(case: Case, answer: Answer) -> Named:
+def petal_fields(case: Case, answer: Solution) -> Named:
     """Deflection, radius, contact pressures and stress of the petals, (petal, node, axial), SI."""
     petals, package = petals_of(case)
     mesh, contacts = build_mesh(case), answer.problem.layout.wall.contacts
@@ -56,7 +56,7 @@ def petal_fields(case: Case, answer: Answer) -> Named:
     }
 
 
-def coordinates(case: Case, answer: Answer) -> dict[str, NDArray[np.generic]]:
+def coordinates(case: Case, answer: Solution) -> dict[str, NDArray[np.generic]]:
     """Coordinates of the fields."""
     film = answer.problem.layout.wall.film
     strips = len(film.theta)
@@ -71,7 +71,7 @@ def coordinates(case: Case, answer: Answer) -> dict[str, NDArray[np.generic]]:
     return coords
 
 
-def all_fields(case: Case, answer: Answer) -> Named:
+def all_fields(case: Case, answer: Solution) -> Named:
     """All fields of an answer."""
     fields = film_fields(answer)
     return fields if case.petals is None else {**fields, **petal_fields(case, answer)}

@@ -9,8 +9,8 @@ from petalfoil.analysis.checks import mass_balance, reaction_balance, side_leaka
 from petalfoil.analysis.extremes import highest, lowest
 from petalfoil.analysis.fields import all_fields, coordinates
 from petalfoil.case import Case
-from petalfoil.equilibria.answer import Answer
-from petalfoil.equilibria.work import Work
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import Solution
 from petalfoil.physics.forces import attitude_angle, contact_force, film_force, node_area, viscous_torque
 from petalfoil.results.record import Record
 
@@ -18,14 +18,14 @@ Array = NDArray[np.float64]
 Named = dict[str, float | int | bool | str]
 
 
-def record_of(analysis: str, case: Case, answer: Answer, extra: Named, work: Work) -> Record:
+def record_of(analysis: str, case: Case, answer: Solution, extra: Named, work: RunLog) -> Record:
     """The record of an answer: figures, fields, coordinates, history."""
     fields = all_fields(case, answer)
     scalars = {**given(case), **forces(case, answer), **film_figures(case, answer, fields), **trust(answer), **extra}
     if "bending_stress" in fields:
-        scalars["max_stress"] = float(np.max(np.abs(fields["bending_stress"])))
+        scalars["max_bending_stress"] = float(np.max(np.abs(fields["bending_stress"])))
     else:
-        scalars["max_stress"] = 0.0
+        scalars["max_bending_stress"] = 0.0
     return Record(
         analysis=analysis,
         scalars=scalars,
@@ -37,7 +37,7 @@ def record_of(analysis: str, case: Case, answer: Answer, extra: Named, work: Wor
     )
 
 
-def failed_record(analysis: str, case: Case, status: str, work: Work, extra: Named | None = None) -> Record:
+def failed_record(analysis: str, case: Case, status: str, work: RunLog, extra: Named | None = None) -> Record:
     """The record of a point without an answer; `extra` is what else was given."""
     asked = {**given(case), **(extra or {})}
     scalars = {**asked, **effort(work), "converged": False, "status": status, "residual": float("nan")}
@@ -58,11 +58,11 @@ def given(case: Case) -> Named:
         "length": bearing.length,
         "petal_thickness": 0.0 if case.petals is None else case.petals.total_thickness,
         "ambient_pressure": case.gas.ambient_pressure,
-        "film_floor": case.surface.film_floor,
+        "contact_film_thickness": case.surface.contact_film_thickness,
     }
 
 
-def forces(case: Case, answer: Answer) -> Named:
+def forces(case: Case, answer: Solution) -> Named:
     """Forces on the journal (J1), (J2) and the share that contact carries (J3)."""
     film, scales = answer.problem.layout.wall.film, answer.problem.layout.scales
     Q = (answer.problem.pressure(answer.x) - 1.0) * scales.pressure
@@ -75,66 +75,68 @@ def forces(case: Case, answer: Answer) -> Named:
     return {
         "force_x": float(force[0]),
         "force_y": float(force[1]),
-        "load_capacity": float(np.hypot(*force)),
+        "bearing_force": float(np.hypot(*force)),
         "attitude_angle": attitude_angle(force, answer.problem.displacement),
         "film_force_x": float(by_film[0]),
         "film_force_y": float(by_film[1]),
         "contact_force_x": float(by_contact[0]),
         "contact_force_y": float(by_contact[1]),
-        "contact_total": total,
-        "contact_share": total / (total + lift) if total > 0.0 else 0.0,
+        "contact_normal_force": total,
+        "contact_fraction": total / (total + lift) if total > 0.0 else 0.0,
     }
 
 
-def film_figures(case: Case, answer: Answer, fields: dict[str, Array]) -> Named:
+def film_figures(case: Case, answer: Solution, fields: dict[str, Array]) -> Named:
     """Film, pressure, friction and leakage."""
     p, h = fields["pressure"], fields["film_thickness"]
     film, R_j = answer.problem.layout.wall.film, case.bearing.journal_radius
     z, omega, mu = film.axial.whole_z, case.operation.speed, case.gas.viscosity
     thin, high = lowest(h, film.phi), highest(p, film.phi)
-    closed = min(case.surface.film_floor, float(h.min()))  # where the journal touches, the film is its floor
+    closed = min(
+        case.surface.contact_film_thickness, float(h.min())
+    )  # where the journal touches, the film is its floor
     gridded = tuple(part[..., : len(film.axial.z)] for part in (p, h))
     slip = case.slip_length * case.gas.ambient_pressure
     torque = viscous_torque(film, R_j, (gridded[0], gridded[1]), (mu, omega * R_j), slip)
     reactions = answer.lam[answer.problem.layout.wall.contacts.journal].sum() * answer.problem.layout.scales.force
     torque += case.surface.friction_coefficient * R_j * float(reactions)
     return {
-        "min_film": max(thin.value, closed),
-        "min_film_angle": float(np.mod(film.theta[thin.strip, 0] - film.phi[0] + thin.phi, 2.0 * np.pi)),
-        "min_film_z": float(z[thin.axial]),
+        "min_film_thickness": max(thin.value, closed),
+        "min_film_thickness_angle": float(np.mod(film.theta[thin.strip, 0] - film.phi[0] + thin.phi, 2.0 * np.pi)),
+        "min_film_thickness_z": float(z[thin.axial]),
         "knudsen_number": case.gas.mean_free_path / max(thin.value, closed),
-        "max_pressure": high.value,
-        "max_pressure_angle": float(np.mod(film.theta[high.strip, 0] - film.phi[0] + high.phi, 2.0 * np.pi)),
+        "peak_pressure": high.value,
+        "peak_pressure_angle": float(np.mod(film.theta[high.strip, 0] - film.phi[0] + high.phi, 2.0 * np.pi)),
         "friction_torque": torque,
         "power_loss": torque * omega,
         "side_leakage": leakage(case, answer),
     }
 
 
-def leakage(case: Case, answer: Answer) -> float:
+def leakage(case: Case, answer: Solution) -> float:
     """Mass flow out of both ends [kg/s]."""
     scales, gas = answer.problem.layout.scales, case.gas
     unit = scales.pressure**2 * scales.length**3 / (12.0 * gas.viscosity)  # of `p` times volume flow
     return side_leakage(answer) * unit * gas.ambient_density / gas.ambient_pressure
 
 
-def trust(answer: Answer) -> Named:
+def trust(answer: Solution) -> Named:
     """Residual and balances."""
     return {
-        "film_scale": answer.problem.layout.scales.length,
+        "reference_film_thickness": answer.problem.layout.scales.length,
         "residual": answer.residual,
-        "mass_balance": mass_balance(answer),
-        "reaction_balance": reaction_balance(answer),
+        "mass_balance_error": mass_balance(answer),
+        "reaction_balance_error": reaction_balance(answer),
         "converged": True,
         "status": "converged",
     }
 
 
-def effort(work: Work) -> Named:
+def effort(work: RunLog) -> Named:
     """What it cost."""
     return {
         "iterations": sum("residual" in row or row["phase"] in ("contacts", "classic") for row in work.history),
         "factorizations": work.film.factorizations,
-        "package_iterations": work.package.factorizations,
+        "pack_iterations": work.package.factorizations,
         "probe_factorizations": work.probes.factorizations,
     }

@@ -17,14 +17,13 @@ from petalfoil.analysis.equilibrium import positioned
 from petalfoil.analysis.figures import failed_record
 from petalfoil.analysis.richardson import richardson
 from petalfoil.analysis.session import Progress
-from petalfoil.case import Case, Kind
-from petalfoil.equilibria.work import Work
+from petalfoil.case import Case, ModelKind
+from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.mesh.pitch import COARSEST_FAMILY
 from petalfoil.results.estimate import Estimate
 from petalfoil.results.record import Record
-from petalfoil.results.schema import SCALARS, Role
-from petalfoil.results.schema import Kind as Type
+from petalfoil.results.schema import SCALARS, DataType, Role
 
 Array = NDArray[np.float64]
 
@@ -33,7 +32,7 @@ RATIO = 2.0
 
 MOST_LEVELS = 10
 
-LEAST_CELLS = {Kind.FLAT: 32, Kind.SPATIAL: 24}
+LEAST_CELLS = {ModelKind.TWO_D: 32, ModelKind.THREE_D: 24}
 """Cells along a pitch below which the default adds finer grids instead of coarser ones: at 16 the film of the paper's
 packages comes down to the floor where it should not, and such a grid only widens the bars."""
 
@@ -41,7 +40,7 @@ LEAST_AXIAL = 4
 """Coarsest division of the length: its pressure is zero at both ends, and one value is no profile."""
 
 RESIDUAL = 1e-8
-"""Residual of an answer over ambient pressure, see `equilibria/answer.py`: forces are not known better."""
+"""Residual of an answer over ambient pressure, see `equilibrium/solution.py`: forces are not known better."""
 
 ANGLES = {name for name, variable in SCALARS.items() if variable.units == "rad"}
 
@@ -118,7 +117,7 @@ def grids(
 
 def grid_of(case: Case) -> tuple[int, int]:
     """Cells along a pitch, and over the length (0 in a flat model)."""
-    return case.cells_per_pitch, case.axial_cells if case.model.kind is Kind.SPATIAL else 0
+    return case.cells_per_pitch, case.axial_cells if case.model.kind is ModelKind.THREE_D else 0
 
 
 def grid_text(case: Case) -> str:
@@ -191,12 +190,12 @@ def _can_be_halved(case: Case, cells: int, axial: int) -> bool:
     if cells % 2 or cells // 2 < LEAST_CELLS[case.model.kind]:
         return False
     step = 4 if case.model.symmetry else 2  # half the length takes half the cells
-    return case.model.kind is Kind.FLAT or (axial % step == 0 and axial // 2 >= LEAST_AXIAL)
+    return case.model.kind is ModelKind.TWO_D or (axial % step == 0 and axial // 2 >= LEAST_AXIAL)
 
 
 def _on(case: Case, cells: int, axial: int) -> Case:
     changes: dict[str, object] = {"model.cells_per_pitch": cells}
-    if case.model.kind is Kind.SPATIAL:
+    if case.model.kind is ModelKind.THREE_D:
         changes["model.axial_cells"] = axial
     return case.replace(**changes)
 
@@ -208,7 +207,7 @@ def _record(case: Case, progress: Progress) -> Record:
     try:
         record = equilibrium.run(case, progress=progress)
     except ConvergenceError as failure:
-        work = Work()
+        work = RunLog()
         work.history.extend(failure.history)
         record = failed_record("solve", case, f"not converged: {failure}", work)
     return _labelled(record, case)
@@ -234,7 +233,7 @@ def _part(progress: Progress | None, start: float, end: float, text: str) -> Pro
 
 
 def _is_figure(name: str) -> bool:
-    return SCALARS[name].role is Role.ANSWER and SCALARS[name].kind is Type.FLOAT
+    return SCALARS[name].role is Role.ANSWER and SCALARS[name].kind is DataType.FLOAT
 
 
 def _known(name: str, record: Record) -> bool:

@@ -10,20 +10,20 @@ from numpy.typing import NDArray
 
 from petalfoil.analysis.session import Clock, one_thread
 from petalfoil.case import Case
-from petalfoil.equilibria.answer import Answer, State
-from petalfoil.equilibria.package import at_rest, unloaded
-from petalfoil.equilibria.sliding import Slid, slide
-from petalfoil.equilibria.work import Work
+from petalfoil.equilibrium.friction_path import FrictionResult, slide
+from petalfoil.equilibrium.package_at_rest import at_rest, unloaded
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import RefinedState, Solution
 from petalfoil.physics.friction import Friction
-from petalfoil.problem.build import build_problem
-from petalfoil.problem.coupled import CoupledProblem
-from petalfoil.problem.package import PackageProblem
-from petalfoil.problem.sliding import Rubbed, friction_of
-from petalfoil.solvers.active_set import ActiveOptions, active_set
+from petalfoil.solvers.contact_newton import ActiveOptions, active_set
+from petalfoil.system.build import build_problem
+from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.friction import FrictionState, friction_of
+from petalfoil.system.package import PackageProblem
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-Before = tuple[Array, Array, Mask, Rubbed]
+Before = tuple[Array, Array, Mask, FrictionState]
 
 HALVINGS = 8
 """Times that a way between two points may be halved before there is no answer."""
@@ -42,7 +42,7 @@ class Point:
         The journal's place.
     leg : str
         "loading", "unloading" or "reloading".
-    answer : Answer or None
+    answer : Solution or None
         The package there; None if it was not found.
     lost : float
         Energy lost to friction from the start up to here [J].
@@ -52,9 +52,9 @@ class Point:
 
     case: Case
     leg: str
-    answer: Answer | None
+    answer: Solution | None
     lost: float
-    work: Work
+    work: RunLog
     seconds: float
 
 
@@ -75,7 +75,7 @@ def follow(way: list[tuple[str, Case]]) -> Iterator[Point]:
     before: tuple[CoupledProblem, Before] | None = None
     total, unit = 0.0, base.layout.scales.force * base.layout.scales.length
     for leg, case in way:
-        clock, work = Clock(), Work()
+        clock, work = Clock(), RunLog()
         problem = base.at(displacement=np.array(case.operation.eccentricity) / base.layout.scales.length)
         with one_thread():
             slid = moved(friction, before, problem, work) if before else assembled(friction, problem, work)
@@ -87,7 +87,7 @@ def follow(way: list[tuple[str, Case]]) -> Iterator[Point]:
         yield Point(case, leg, answer_of(problem, slid), total * unit, work, clock.seconds)
 
 
-def assembled(friction: Friction, problem: CoupledProblem, work: Work) -> Slid | None:
+def assembled(friction: Friction, problem: CoupledProblem, work: RunLog) -> FrictionResult | None:
     """The package as it is assembled: no friction yet; None if it did not settle."""
     found = at_rest(problem, work)
     if found is None:
@@ -95,13 +95,13 @@ def assembled(friction: Friction, problem: CoupledProblem, work: Work) -> Slid |
     closed, _ = active_set(unloaded(problem), *found, work.package_solver, ActiveOptions())
     if closed is None:
         return None
-    rubbed = Rubbed.fresh(friction, closed.x, closed.lam)
-    return Slid(closed.x, closed.lam, closed.closed, closed.residual, rubbed, 0.0)
+    rubbed = FrictionState.fresh(friction, closed.x, closed.lam)
+    return FrictionResult(closed.x, closed.lam, closed.closed, closed.residual, rubbed, 0.0)
 
 
 def moved(
-    friction: Friction, before: tuple[CoupledProblem, Before], problem: CoupledProblem, work: Work
-) -> Slid | None:
+    friction: Friction, before: tuple[CoupledProblem, Before], problem: CoupledProblem, work: RunLog
+) -> FrictionResult | None:
     """The package after the journal has moved on to `problem`, in halves where a step is too long; None if it fails."""
     begin, state = before
     parts, lost, done, residual = [1.0], 0.0, 0.0, 0.0
@@ -120,11 +120,11 @@ def moved(
         parts.pop()
         done, lost, residual = there, lost + slid.lost, slid.residual
         state = slid.x, slid.lam, slid.closed, slid.rubbed
-    return Slid(*state[:3], residual, state[3], lost)
+    return FrictionResult(*state[:3], residual, state[3], lost)
 
 
-def answer_of(problem: CoupledProblem, slid: Slid) -> Answer:
+def answer_of(problem: CoupledProblem, slid: FrictionResult) -> Solution:
     """The state as the package's, under a film at rest."""
     still = problem.at(bearing_number=0.0)
     x = np.concatenate([slid.x, np.ones(problem.layout.n - problem.layout.n_wall)])
-    return Answer(still, State(x, np.zeros(problem.layout.n_wall), slid.lam), slid.residual, WAY)
+    return Solution(still, RefinedState(x, np.zeros(problem.layout.n_wall), slid.lam), slid.residual, WAY)

@@ -17,8 +17,8 @@ from petalfoil.analysis.figures import effort, given
 from petalfoil.analysis.session import Clock, Progress, one_thread, part, telling_work
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
-from petalfoil.equilibria.loaded import Balance
-from petalfoil.equilibria.work import Work
+from petalfoil.equilibrium.loaded import Balance
+from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.record import Record
 
@@ -106,7 +106,7 @@ class Bracket:
     known: Balance
 
 
-def crossings(case: Case, load: float, share: float, work: Work) -> tuple[float, float]:
+def crossings(case: Case, load: float, share: float, work: RunLog) -> tuple[float, float]:
     """Lift-off speed and touch-down speed [rad/s]; infinite where the journal never floats, zero where it always does.
 
     Raises
@@ -181,14 +181,14 @@ def aim(near: tuple[float, float], far: tuple[float, float], share: float) -> fl
     return near[0] + min(max(part, least), 1.0 - least) * (far[0] - near[0])
 
 
-def sensitivity(case: Case, load: float, at: tuple[float, float], work: Work) -> Named:
+def sensitivity(case: Case, load: float, at: tuple[float, float], work: RunLog) -> Named:
     """Change of the lift-off speed with film floor and share: logarithmic derivatives [1]; nan where not found."""
     share, up = at
-    h_min = case.surface.film_floor
-    thick = case.replace(**{"surface.film_floor": h_min * (1.0 + SENSITIVITY)})
+    h_min = case.surface.contact_film_thickness
+    thick = case.replace(**{"surface.contact_film_thickness": h_min * (1.0 + SENSITIVITY)})
     return {
-        "liftoff_by_floor": slope(up, rising(thick, load, share, up, work), 1.0 + SENSITIVITY),
-        "liftoff_by_share": slope(up, rising(case, load, 0.5 * share, up, work), 0.5),
+        "liftoff_by_contact_film_thickness": slope(up, rising(thick, load, share, up, work), 1.0 + SENSITIVITY),
+        "liftoff_by_contact_fraction": slope(up, rising(case, load, 0.5 * share, up, work), 0.5),
     }
 
 
@@ -199,7 +199,7 @@ def slope(before: float, after: float | None, factor: float) -> float:
     return math.log(after / before) / math.log(factor)
 
 
-def rising(case: Case, load: float, share: float, near: float, work: Work) -> float | None:
+def rising(case: Case, load: float, share: float, near: float, work: RunLog) -> float | None:
     """Lift-off speed of a bearing like the one that lifts off at `near` [rad/s]; None if it is not found."""
     if not 0.0 < near < math.inf:
         return None

@@ -16,14 +16,14 @@ from petalfoil.analysis.equilibrium import Named, about, chosen, positioned, rel
 from petalfoil.analysis.figures import effort, failed_record, record_of
 from petalfoil.analysis.session import Clock, Progress, one_thread, part, telling_work
 from petalfoil.case import Case
-from petalfoil.equilibria.answer import Answer
-from petalfoil.equilibria.stability import leading_eigenvalue
-from petalfoil.equilibria.track import advance
-from petalfoil.equilibria.work import Work
+from petalfoil.dynamics.film_stability import leading_eigenvalue
+from petalfoil.equilibrium.continuation import advance
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
-from petalfoil.problem.build import build_problem
-from petalfoil.problem.coupled import CoupledProblem
 from petalfoil.results.record import Record
+from petalfoil.system.build import build_problem
+from petalfoil.system.coupled import CoupledProblem
 
 
 def iterate(
@@ -52,7 +52,7 @@ def points(case: Case, eccentricities: Sequence[float], direction: float, speed:
 
 
 def _records(cases: list[Case], progress: Progress | None) -> Iterator[Record]:
-    known: Answer | None = None
+    known: Solution | None = None
     base = build_problem(cases[0])
     for number, case in enumerate(cases):
         clock, work = Clock(), telling_work(part(progress, number, len(cases)), "curve", typical_steps(case))
@@ -67,7 +67,7 @@ def _records(cases: list[Case], progress: Progress | None) -> Iterator[Record]:
         yield record_of("curve", case, known, {**extra, **effort(work), "wall_time": clock.seconds}, work)
 
 
-def _point(case: Case, problem: CoupledProblem, known: Answer | None, work: Work) -> tuple[Answer, Named]:
+def _point(case: Case, problem: CoupledProblem, known: Solution | None, work: RunLog) -> tuple[Solution, Named]:
     if is_classic(case):
         answer, extra = relaxed(case, problem, work, known)
         return answer, {**extra, "jump": False}

@@ -16,23 +16,23 @@ from petalfoil.analysis.figures import effort, given
 from petalfoil.analysis.session import Clock, Progress, one_thread
 from petalfoil.analysis.trace import Trace
 from petalfoil.case import Case
-from petalfoil.equilibria.cold import solve_cold
-from petalfoil.equilibria.loaded import journal_force
-from petalfoil.equilibria.work import Work
+from petalfoil.dynamics.adaptive_steps import MarchOptions, march
+from petalfoil.dynamics.rotor import RotorMotion, constant_load
+from petalfoil.dynamics.speed_schedule import Schedule
+from petalfoil.dynamics.time_state import Instant, TimeState
+from petalfoil.dynamics.tr_bdf2 import System
+from petalfoil.equilibrium.cold_start import solve_cold
+from petalfoil.equilibrium.loaded import journal_force
+from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.errors import UsageError
-from petalfoil.problem.balance import FilmForce
-from petalfoil.problem.build import build_pair, build_problem
-from petalfoil.problem.coupled import CoupledProblem
-from petalfoil.problem.film_rows import FilmState
-from petalfoil.problem.moving import StepProblem
-from petalfoil.problem.sliding import Rubbed, friction_of
 from petalfoil.results.motion import figures_of
 from petalfoil.results.record import Record
-from petalfoil.transient.march import MarchOptions, march
-from petalfoil.transient.rotor import RotorMotion, constant_load
-from petalfoil.transient.schedule import Schedule
-from petalfoil.transient.scheme import System
-from petalfoil.transient.state import Instant, Moving
+from petalfoil.system.build import build_pair, build_problem
+from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.film_rows import FilmState
+from petalfoil.system.friction import FrictionState, friction_of
+from petalfoil.system.loaded import FilmForce
+from petalfoil.system.time_step import StepProblem
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,7 +45,7 @@ TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True)
-class Course:
+class OrbitRequest:
     """What a motion is asked for.
 
     Attributes
@@ -122,7 +122,7 @@ class Orbit:
     ----------
     case : Case
         A bearing with its rotor.
-    course : Course
+    course : OrbitRequest
         How it moves.
     restart : xarray.Dataset or None
         Result of a motion of the same bearing, to go on from its end.
@@ -135,9 +135,9 @@ class Orbit:
         No equilibrium was found to start from.
     """
 
-    def __init__(self, case: Case, course: Course, restart: xr.Dataset | None = None) -> None:
+    def __init__(self, case: Case, course: OrbitRequest, restart: xr.Dataset | None = None) -> None:
         newton_only(case)
-        self.clock, self.work, self.course = Clock(), Work(), course
+        self.clock, self.work, self.course = Clock(), RunLog(), course
         self.case = positioned(case, None, first_position(case, course, self.work)) if restart is None else case
         schedule = course.schedule(case)
         begin = 0.0 if restart is None else continued(case, schedule, restart)
@@ -188,11 +188,11 @@ class Orbit:
             "tolerance": self.course.tolerance,
             "rotor_mass": 0.0 if self.case.rotor is None else self.case.rotor.mass,
             "steps": int(self.counts["steps"]),
-            "refused_steps": refused.count("error"),
+            "rejected_steps": refused.count("error"),
             "failed_steps": refused.count("no answer"),
             "residual": float(self.counts["residual"]),
             **effort(self.work),
-            "film_scale": self.system.problem.layout.scales.length,
+            "reference_film_thickness": self.system.problem.layout.scales.length,
             "wall_time": self.clock.seconds,
             "converged": True,
             "status": status,
@@ -214,7 +214,9 @@ HERE = ("eccentricity_x", "eccentricity_y")
 """Figures of a point that a motion has over time."""
 
 
-def run(case: Case, course: Course, restart: xr.Dataset | None = None, progress: Progress | None = None) -> Record:
+def run(
+    case: Case, course: OrbitRequest, restart: xr.Dataset | None = None, progress: Progress | None = None
+) -> Record:
     """The whole motion.
 
     Raises
@@ -230,7 +232,7 @@ def run(case: Case, course: Course, restart: xr.Dataset | None = None, progress:
     return orbit.record()
 
 
-def first_position(case: Case, course: Course, work: Work) -> Load | None:
+def first_position(case: Case, course: OrbitRequest, work: RunLog) -> Load | None:
     """Where the journal is released [m]; None where the case says so.
 
     Raises
@@ -262,7 +264,7 @@ def system_of(case: Case, schedule: Schedule, load: Load | None) -> System:
     return System(still, rotor, FilmForce.of(problem), friction_of(case, problem.layout))
 
 
-def at_rest(case: Case, system: System, course: Course, work: Work) -> Instant:
+def at_rest(case: Case, system: System, course: OrbitRequest, work: RunLog) -> Instant:
     """The journal held where it is, film and petals in equilibrium, and let go at time zero.
 
     From a balance its mass centre rests, and the shaft turns about that: a start without a blow.
@@ -295,9 +297,9 @@ def released(
         outflow[0] = 0.0  # the content stands in place of this balance
     force = journal_force(problem, x[problem.positive], lam) + rotor.outside(tau) - rotor.gyroscopic(tau) @ v
     speeding = np.asarray(np.linalg.solve(rotor.inertia, force), dtype=np.float64)
-    change = Moving(-outflow, v, speeding)
-    rubbed = None if system.friction is None else Rubbed.fresh(system.friction, x, lam)
-    return Instant(tau, x, lam, closed, Moving(problem.stored(x), e, v), change, rubbed)
+    change = TimeState(-outflow, v, speeding)
+    rubbed = None if system.friction is None else FrictionState.fresh(system.friction, x, lam)
+    return Instant(tau, x, lam, closed, TimeState(problem.stored(x), e, v), change, rubbed)
 
 
 def end_state(last: Instant, system: System) -> dict[str, Array]:

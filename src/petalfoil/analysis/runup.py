@@ -64,6 +64,6 @@ def _records(
             lost: Named = {**given_load(load), "leg": leg}
             yield leg, failed_record("runup", here, f"not converged: {failure}", work, lost)
             continue
-        extra: Named = {**given_load(load), "leg": leg, **effort(work), "branch": found.answer.way}
+        extra: Named = {**given_load(load), "leg": leg, **effort(work), "solution_path": found.answer.way}
         extra["wall_time"] = clock.seconds
         yield leg, balance_record("runup", here, found, extra, work)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from threadpoolctl import threadpool_limits
 
-from petalfoil.equilibria.work import Work
+from petalfoil.equilibrium.run_log import RunLog
 
 Progress = Callable[[float, str], None]
 
@@ -48,9 +48,9 @@ def part(progress: Progress | None, number: int, count: int) -> Progress | None:
     return tell
 
 
-def telling_work(progress: Progress | None, text: str, typical: float = TYPICAL_STEPS) -> Work:
-    """Work that tells `progress` of its steps; the share approaches 1 as they exceed the `typical` number."""
-    work = Work()
+def telling_work(progress: Progress | None, text: str, typical: float = TYPICAL_STEPS) -> RunLog:
+    """RunLog that tells `progress` of its steps; the share approaches 1 as they exceed the `typical` number."""
+    work = RunLog()
     if progress is None:
         return work
 

@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from petalfoil.analysis.figures import forces
 from petalfoil.case import Case
-from petalfoil.equilibria.balancing import balance_cold, rebalance
-from petalfoil.equilibria.loaded import Balance
-from petalfoil.equilibria.work import Work
-from petalfoil.problem.build import build_problem
-from petalfoil.problem.coupled import CoupledProblem
+from petalfoil.equilibrium.loaded import Balance
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.under_load import balance_cold, rebalance
+from petalfoil.system.build import build_problem
+from petalfoil.system.coupled import CoupledProblem
 
 Array = NDArray[np.float64]
 
@@ -31,13 +31,13 @@ class SpeedLine:
         The bearing.
     load : (x, y)
         Load on the journal [N].
-    work : Work
+    work : RunLog
         Counts of all balances.
     """
 
     case: Case
     load: tuple[float, float]
-    work: Work
+    work: RunLog
     known: Balance | None = None
     base: CoupledProblem = field(init=False)
 
@@ -76,4 +76,4 @@ class SpeedLine:
 
     def share(self, speed: float) -> float:
         """Share of the contacts at `speed`."""
-        return float(forces(self.case, self.at(speed).answer)["contact_share"])
+        return float(forces(self.case, self.at(speed).answer)["contact_fraction"])

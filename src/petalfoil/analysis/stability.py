@@ -14,17 +14,17 @@ from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.coefficients import Load, at_position, elastic, operating_point
 from petalfoil.analysis.equilibrium import Named, about, positioned
 from petalfoil.analysis.figures import effort, failed_record, given
-from petalfoil.analysis.modes import Mode, natural_modes
 from petalfoil.analysis.session import Clock, Progress, one_thread, part, telling_work
 from petalfoil.analysis.speeds import SpeedLine
-from petalfoil.analysis.whirl import Whirl, neutral_whirl, scan
 from petalfoil.case import Case
-from petalfoil.equilibria.answer import Answer
-from petalfoil.equilibria.stability import leading_eigenvalue
-from petalfoil.equilibria.work import Work
+from petalfoil.dynamics.critical_mass import Whirl, neutral_whirl, scan
+from petalfoil.dynamics.film_stability import leading_eigenvalue
+from petalfoil.dynamics.natural_modes import Mode, natural_modes
+from petalfoil.dynamics.rotor import GRAVITY
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.record import Array, Record
-from petalfoil.transient.rotor import GRAVITY
 
 RANGE, FACTOR = 16.0, 1.3
 """Speeds between which the threshold is looked for, over the case's, and the factor between looks."""
@@ -170,7 +170,7 @@ NEVER = 50.0
 """Margin of a bearing on which no mass whirls."""
 
 
-def threshold_speed(case: Case, load: Load | None, start: tuple[float, Whirl], work: Work) -> Threshold:
+def threshold_speed(case: Case, load: Load | None, start: tuple[float, Whirl], work: RunLog) -> Threshold:
     """Speed at which the mass begins to whirl, within the range.
 
     Upward from a stable bearing, downward from an unstable one. A speed without an equilibrium ends the search.
@@ -197,7 +197,7 @@ def threshold_speed(case: Case, load: Load | None, start: tuple[float, Whirl], w
     return math.nan, f"no threshold speed: the rotor whirls down to {in_rpm(known)}"
 
 
-def margins(case: Case, load: Load | None, mass: float, work: Work) -> Callable[[float], float]:
+def margins(case: Case, load: Load | None, mass: float, work: RunLog) -> Callable[[float], float]:
     """The margin over speed [rad/s], under the load or at the case's position."""
     if load is None and case.operation.load is None:
 
@@ -220,7 +220,7 @@ def in_rpm(speed: float) -> str:
     return f"{speed * 30.0 / math.pi:.0f} rpm"
 
 
-def record(case: Case, answer: Answer, whirl: Whirl, extra: Named, ran: tuple[Work, Clock, str]) -> Record:
+def record(case: Case, answer: Solution, whirl: Whirl, extra: Named, ran: tuple[RunLog, Clock, str]) -> Record:
     """The record of a stability analysis; what it has no number for is told by its status."""
     work, clock, ended = ran
     remarks = ["converged", "" if math.isfinite(whirl.mass) else "no mass whirls", ended]

@@ -14,13 +14,13 @@ from petalfoil.analysis.hysteresis import follow, legs
 from petalfoil.analysis.load_curve import points
 from petalfoil.analysis.session import Clock, Progress, one_thread, telling_work
 from petalfoil.case import Case
-from petalfoil.equilibria.answer import Answer
-from petalfoil.equilibria.ascent import rest
-from petalfoil.equilibria.work import Work
+from petalfoil.equilibrium.ascent import rest
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.problem.build import build_problem
-from petalfoil.problem.coupled import CoupledProblem
 from petalfoil.results.record import Record
+from petalfoil.system.build import build_problem
+from petalfoil.system.coupled import CoupledProblem
 
 
 def iterate(
@@ -82,7 +82,7 @@ def _records(cases: list[Case], progress: Progress | None) -> Iterator[Record]:
             yield static_record(case, answer, work, clock.seconds)
 
 
-def at_rest(case: Case, problem: CoupledProblem, work: Work) -> Answer | None:
+def at_rest(case: Case, problem: CoupledProblem, work: RunLog) -> Solution | None:
     """The assembled package by the method of `case`; None, and why in the history, if it did not settle."""
     if not is_classic(case):
         return rest(problem, work)
@@ -93,21 +93,21 @@ def at_rest(case: Case, problem: CoupledProblem, work: Work) -> Answer | None:
         return None
 
 
-def static_record(case: Case, answer: Answer, work: Work, seconds: float, extra: Named | None = None) -> Record:
+def static_record(case: Case, answer: Solution, work: RunLog, seconds: float, extra: Named | None = None) -> Record:
     """Reactions of the package; there is no film to speak of."""
     carried = forces(case, answer)
-    torque = case.surface.friction_coefficient * case.bearing.journal_radius * float(carried["contact_total"])
+    torque = case.surface.friction_coefficient * case.bearing.journal_radius * float(carried["contact_normal_force"])
     fields = petal_fields(case, answer)
     scalars = {
         **given(case),
         **carried,
         "starting_torque": torque,
         "friction_torque": torque,
-        "max_stress": float(np.max(np.abs(fields["bending_stress"]))),
+        "max_bending_stress": float(np.max(np.abs(fields["bending_stress"]))),
         "residual": answer.residual,
         "stable": True,
-        "branch": answer.way,
-        "branches_known": 1,
+        "solution_path": answer.way,
+        "known_equilibria": 1,
         "converged": True,
         "status": "converged",
         "wall_time": seconds,

@@ -12,12 +12,12 @@ from scipy.integrate import cumulative_trapezoid
 
 from petalfoil.analysis.extremes import highest, lowest
 from petalfoil.case import Case
+from petalfoil.dynamics.time_state import Instant
+from petalfoil.dynamics.tr_bdf2 import System
 from petalfoil.physics.forces import node_area, viscous_torque
-from petalfoil.problem.film_rows import FilmState
-from petalfoil.problem.sliding import energy_lost
-from petalfoil.structure.petals import build_mesh, petals_of
-from petalfoil.transient.scheme import System
-from petalfoil.transient.state import Instant
+from petalfoil.system.film_rows import FilmState
+from petalfoil.system.friction import energy_lost
+from petalfoil.walls.petals import build_mesh, petals_of
 
 Array = NDArray[np.float64]
 Named = dict[str, Array]
@@ -29,7 +29,17 @@ FRAMES_A_TURN = 24
 
 
 AS_THEY_ARE = (
-    *("x", "y", "velocity_x", "velocity_y", "shaft_speed", "shaft_angle", "min_film", "contact_share", "max_pressure"),
+    *(
+        "x",
+        "y",
+        "velocity_x",
+        "velocity_y",
+        "shaft_speed",
+        "shaft_angle",
+        "min_film_thickness",
+        "contact_fraction",
+        "peak_pressure",
+    ),
     *("force_x", "force_y", "friction_torque", "kinetic_energy"),
 )
 """Figures of the steps that are kept as they are."""
@@ -122,9 +132,11 @@ class Trace:
         viscous = viscous_torque(mesh, case.bearing.journal_radius, (p, h), shear, case.slip_length * ambient)
         film = FilmState(problem.layout.film_rows, P, H, self.system.rotor.bearing_number(instant.tau))
         return {
-            "min_film": max(lowest(h, mesh.phi).value, min(case.surface.film_floor, float(h.min()))),
-            "max_pressure": highest(p, mesh.phi).value,
-            "contact_share": touching / (touching + lift) if touching > 0.0 else 0.0,
+            "min_film_thickness": max(
+                lowest(h, mesh.phi).value, min(case.surface.contact_film_thickness, float(h.min()))
+            ),
+            "peak_pressure": highest(p, mesh.phi).value,
+            "contact_fraction": touching / (touching + lift) if touching > 0.0 else 0.0,
             "force_x": float(pushed[0]),
             "force_y": float(pushed[1]),
             "friction_torque": viscous + rubbing,
@@ -176,8 +188,8 @@ class Trace:
         missing = energy - over["load_work"] - over["film_work"] + over["petal_friction_work"]
         exchanged = np.sum(np.abs(self.column("load_step"))) + np.sum(np.abs(self.column("film_step")))
         return {
-            "mass_defect": float(np.max(np.abs(gained)) / gas[0]) if gas[0] else 0.0,
-            "energy_defect": float(np.max(np.abs(missing)) / exchanged) if exchanged else 0.0,
+            "mass_balance_error": float(np.max(np.abs(gained)) / gas[0]) if gas[0] else 0.0,
+            "energy_balance_error": float(np.max(np.abs(missing)) / exchanged) if exchanged else 0.0,
         }
 
     def pictures(self) -> tuple[dict[str, NDArray[np.generic]], Named]:
@@ -197,7 +209,7 @@ class Trace:
         films = [problem.at(displacement=instant.e).film(instant.x) * length for instant in instants]
         fields: Named = {
             "frame_pressure": np.array([whole(problem.pressure(at.x)[:first] * ambient) for at in instants]),
-            "frame_film": np.array([whole(film[:first]) for film in films]),
+            "frame_film_thickness": np.array([whole(film[:first]) for film in films]),
             "frame_x": np.array([self._at_first(instant)[0] for instant in instants]),
             "frame_y": np.array([self._at_first(instant)[1] for instant in instants]),
         }

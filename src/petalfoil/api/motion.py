@@ -73,7 +73,7 @@ def orbit(  # noqa: PLR0913 - the options of the verb
 
     if restart is not None and initial is not None:
         raise UsageError("initial says nothing beside restart, which goes on from where the motion ended")
-    course = analysis.Course(
+    course = analysis.OrbitRequest(
         revolutions=revolutions,
         duration=None if duration is None else parse_quantity(duration, "s"),
         initial="balance" if initial == "balance" else position_of(initial, "initial"),

@@ -21,16 +21,16 @@ from petalfoil.case.gas import Gas
 from petalfoil.case.package import Package, package_of
 from petalfoil.case.petals import Mount, Petals
 from petalfoil.case.rotor import Rotor
-from petalfoil.case.sections import Bearing, Edges, Kind, Method, Model, Operation, Surface
+from petalfoil.case.sections import Bearing, Edges, Method, Model, ModelKind, Operation, Surface
 
 __all__ = [
     "Bearing",
     "Case",
     "Edges",
     "Gas",
-    "Kind",
     "Method",
     "Model",
+    "ModelKind",
     "Mount",
     "Operation",
     "Package",

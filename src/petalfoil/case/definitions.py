@@ -16,12 +16,12 @@ from petalfoil.case.package import Package, bearing_problems, package_of, packag
 from petalfoil.case.petals import Petals
 from petalfoil.case.problems import Problem, joined
 from petalfoil.case.rotor import Rotor
-from petalfoil.case.sections import Bearing, Kind, Model, Operation, Surface
+from petalfoil.case.sections import Bearing, Model, ModelKind, Operation, Surface
 from petalfoil.errors import DefinitionError, PackageError
 
 # Grids whose error in the load stays under 1 %: measured on the paper's packages (six to ten petals, displaced by 100
 # to 280 um: at most 0.3 % flat, 0.6 % spatial) and on plain bearings (L/D 1/2 to 2).
-DEFAULT_CELLS = {Kind.FLAT: 128, Kind.SPATIAL: 64}  # along the pitch of a package
+DEFAULT_CELLS = {ModelKind.TWO_D: 128, ModelKind.THREE_D: 64}  # along the pitch of a package
 DEFAULT_AXIAL_CELLS = 24
 DEFAULT_PLAIN_CELLS = 128  # a plain bearing's pitch is the whole circle
 DEFAULT_PLAIN_AXIAL_CELLS = 32
@@ -100,11 +100,11 @@ class Case(Definition):
         return self.bearing.clearance - math.hypot(*self.operation.eccentricity)
 
     @property
-    def room_left(self) -> float:
+    def pack_clearance(self) -> float:
         """Room that the package and the film floor leave, never negative [m]."""
         package = self.package
         layers = 0.0 if package is None else package.layers * package.thickness
-        return self.room - layers - self.surface.film_floor
+        return self.room - layers - self.surface.contact_film_thickness
 
     @property
     def slip_length(self) -> float:
@@ -154,7 +154,7 @@ class Case(Definition):
 
     def _grid_problems(self) -> Iterator[Problem]:
         cells = self.axial_cells
-        if self.model.kind is Kind.SPATIAL and self.model.symmetry and cells % 2:
+        if self.model.kind is ModelKind.THREE_D and self.model.symmetry and cells % 2:
             text = (
                 f"{cells} cells cannot be halved at the plane of symmetry; allowed: an even number, or symmetry = false"
             )

@@ -113,7 +113,7 @@ def bearing_problems(bearing: Bearing, surface: Surface, operation: Operation) -
         )
         return
     eccentricity = math.hypot(*operation.eccentricity)
-    room = bearing.clearance - surface.film_floor
+    room = bearing.clearance - surface.contact_film_thickness
     if eccentricity >= room:
         yield Problem(
             "operation.eccentricity",
@@ -166,7 +166,7 @@ def _overlap_problems(package: Package, petals: Petals) -> Iterator[Problem]:
 def _room_problems(package: Package, bearing: Bearing, surface: Surface, operation: Operation) -> Iterator[Problem]:
     eccentricity = math.hypot(*operation.eccentricity)
     room = bearing.clearance - eccentricity
-    need = package.layers * package.thickness + surface.film_floor
+    need = package.layers * package.thickness + surface.contact_film_thickness
     if package.overlap <= 1.0 + FLUSH or need <= room:
         return
     displaced = need <= bearing.clearance
@@ -174,7 +174,8 @@ def _room_problems(package: Package, bearing: Bearing, surface: Surface, operati
     yield Problem(
         "operation.eccentricity" if displaced else "petals",
         f"the package does not fit: {package.layers} layers of {_m(package.thickness)} and the film floor "
-        f"{_m(surface.film_floor)} need {_m(need)}, the room between journal and bushing{where} is {_m(room)}: "
+        f"{_m(surface.contact_film_thickness)} need {_m(need)}, "
+        f"the radial clearance between journal and bushing{where} is {_m(room)}: "
         f"{_m(need - room)} too much",
         operation.eccentricity if displaced else package.thickness,
         f"an eccentricity up to {bearing.clearance - need:g} m" if displaced else f"at most {room:g} m in all",

@@ -16,10 +16,10 @@ MIN_ROWS = 3  # of a measured free shape: fewer say nothing of a curvature
 
 
 class Mount(StrEnum):
-    """How a root is held: free to turn (`HINGED`), or clamped (`RIGID`)."""
+    """How a root is held: free to turn (`HINGED`), or clamped (`CLAMPED`)."""
 
     HINGED = "hinged"
-    RIGID = "rigid"
+    CLAMPED = "clamped"
 
 
 _Angle = Annotated[float, Quantity(unit="rad", meaning="angle from the root", symbol="phi", at_least=0.0, below=6.3)]

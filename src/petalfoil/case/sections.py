@@ -37,7 +37,7 @@ class Surface(Definition):
 
     section: ClassVar[str] = "surface"
 
-    film_floor: Annotated[
+    contact_film_thickness: Annotated[
         float,
         Quantity(
             unit="m", meaning="film thickness below which surfaces touch", symbol="h_min", above=0.0, at_most=1e-2
@@ -80,11 +80,11 @@ class Operation(Definition):
     load: Annotated[tuple[_Force, _Force], BeforeValidator(as_pair)] | None = None
 
 
-class Kind(StrEnum):
+class ModelKind(StrEnum):
     """Dimensions of the model: without (`FLAT`) or with (`SPATIAL`) the axial coordinate."""
 
-    FLAT = "flat"
-    SPATIAL = "spatial"
+    TWO_D = "2d"
+    THREE_D = "3d"
 
 
 class Edges(StrEnum):
@@ -106,7 +106,7 @@ class Model(Definition):
 
     section: ClassVar[str] = "model"
 
-    kind: Kind
+    kind: ModelKind
     edges: Edges = Edges.AMBIENT
     cells_per_pitch: Annotated[int, Count(meaning="cells along a pitch", at_least=4, at_most=4096)] | None = None
     axial_cells: Annotated[int, Count(meaning="cells over the whole length", at_least=2, at_most=512)] | None = None

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.problem.coupled import CoupledProblem
+from petalfoil.system.coupled import CoupledProblem
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

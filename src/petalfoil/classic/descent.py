@@ -13,7 +13,7 @@ from petalfoil.classic.columns import Columns, columns
 from petalfoil.classic.kernels import Bands, Descent, Engine, kernels
 from petalfoil.classic.numpy_kernels import project
 from petalfoil.classic.options import ClassicOptions
-from petalfoil.problem.coupled import CoupledProblem
+from petalfoil.system.coupled import CoupledProblem
 
 Array = NDArray[np.float64]
 

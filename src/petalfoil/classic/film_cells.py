@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.physics.balance import FilmBalance
-from petalfoil.physics.film import mean_cube, slip_pressure
+from petalfoil.physics.mass_balance import FilmBalance
+from petalfoil.physics.reynolds import mean_cube, slip_pressure
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

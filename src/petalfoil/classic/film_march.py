@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from petalfoil.classic.film_cells import film_cells
 from petalfoil.classic.kernels import Engine, March, kernels
 from petalfoil.classic.options import ClassicOptions
-from petalfoil.problem.coupled import CoupledProblem
+from petalfoil.system.coupled import CoupledProblem
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from petalfoil.classic.columns import Columns
 from petalfoil.classic.film_cells import FilmCells
 from petalfoil.classic.kernels import CHECK, REFRESH, Bands, Descent, March
-from petalfoil.physics.film import langevin
+from petalfoil.physics.reynolds import langevin
 
 Array = NDArray[np.float64]
 

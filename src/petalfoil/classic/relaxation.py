@@ -14,7 +14,7 @@ from petalfoil.classic.film_march import FilmMarch
 from petalfoil.classic.kernels import Engine
 from petalfoil.classic.options import ClassicOptions
 from petalfoil.errors import ConvergenceError
-from petalfoil.problem.coupled import CoupledProblem
+from petalfoil.system.coupled import CoupledProblem
 
 Array = NDArray[np.float64]
 Row = dict[str, float | int | str]

@@ -62,7 +62,7 @@ class Answer:
         """Contact reactions [N] and starting torque [N m] of the centred journal; null without such a point."""
         for point in map(as_json, self.records):
             if math.hypot(float(point["eccentricity_x"] or 0.0), float(point["eccentricity_y"] or 0.0)) == 0.0:
-                return {"preload": point.get("contact_total"), "starting_torque": point.get("starting_torque")}
+                return {"preload": point.get("contact_normal_force"), "starting_torque": point.get("starting_torque")}
         return {"preload": None, "starting_torque": None}
 
     def to_dataset(self) -> xr.Dataset:

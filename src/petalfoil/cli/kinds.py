@@ -28,7 +28,12 @@ class LiftoffAnswer(Answer):
     def _plain(self) -> dict[str, object]:
         points = [as_json(record) for record in self.records]
         plain: dict[str, object] = {"loads": [load_of(record) for record in self.records]}
-        for name in ("liftoff_speed", "touchdown_speed", "liftoff_by_floor", "liftoff_by_share"):
+        for name in (
+            "liftoff_speed",
+            "touchdown_speed",
+            "liftoff_by_contact_film_thickness",
+            "liftoff_by_contact_fraction",
+        ):
             plain[name] = [point.get(name) for point in points]
         for name in ("share", "converged", "status", "factorizations", "wall_time"):
             plain[name] = [point.get(name) for point in points]
@@ -107,7 +112,7 @@ class ChartAnswer(Answer):
 
     def _plain(self) -> dict[str, object]:
         plain: dict[str, object] = {"loads": self.loads, "speeds": self.speeds}
-        for name in ("critical_mass", "whirl_ratio", "contact_share", "eccentricity_x", "eccentricity_y", "status"):
+        for name in ("critical_mass", "whirl_ratio", "contact_fraction", "eccentricity_x", "eccentricity_y", "status"):
             plain[name] = self.table(name)
         return plain | ({"interrupted": True} if self.interrupted else {})
 

@@ -36,10 +36,10 @@ def _lines(record: Record) -> Iterator[Line]:
         yield label, str(scalars[name]), ""
     yield "largest displacement", number(1e6 * float(np.hypot(over["x"], over["y"]).max())), "µm"
     yield "amplitude, last turns", number(1e6 * float(scalars["amplitude"])), "µm"
-    yield "smallest film", cell("min_film", float(over["min_film"].min())).value, "µm"
-    yield "largest contact share", cell("contact_share", float(over["contact_share"].max())).value, "%"
-    yield "dominating whirl over speed", _ratio(float(scalars["dominating_ratio"])), ""
-    for name, label in (("mass_defect", "defect of the gas"), ("energy_defect", "defect of the energy")):
+    yield "smallest film", cell("min_film_thickness", float(over["min_film_thickness"].min())).value, "µm"
+    yield "largest contact share", cell("contact_fraction", float(over["contact_fraction"].max())).value, "%"
+    yield "dominating whirl over speed", _ratio(float(scalars["dominant_whirl_ratio"])), ""
+    for name, label in (("mass_balance_error", "defect of the gas"), ("energy_balance_error", "defect of the energy")):
         yield label, number(float(scalars[name])), ""
     yield "time spent", number(float(scalars["wall_time"])), "s"
 

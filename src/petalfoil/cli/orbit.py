@@ -57,11 +57,11 @@ def orbit(  # noqa: PLR0913 - one argument for each option the user sees
         place, lasts, speeds = parsing.initial(initial), parsing.duration(duration), parsing.ramp(ramp)
         force, error = parsing.load(load), parsing.tolerance(tolerance)
 
-        from petalfoil.analysis.orbit import Course, Orbit
+        from petalfoil.analysis.orbit import Orbit, OrbitRequest
         from petalfoil.case import Case
         from petalfoil.cli.following import follow
 
-        course = Course(revolutions, lasts, place, speeds, force, error)
+        course = OrbitRequest(revolutions, lasts, place, speeds, force, error)
         definition, before = Case.load(case), _earlier(restart)
 
         with bar("orbit") as report:

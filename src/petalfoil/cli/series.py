@@ -30,7 +30,7 @@ def collect(
     report : callable
         Shows how far it has come.
     kind : type
-        Kind of the answer.
+        DataType of the answer.
 
     Returns
     -------

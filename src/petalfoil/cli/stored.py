@@ -8,10 +8,10 @@ from petalfoil.cli.answer import Answer
 from petalfoil.cli.kinds import KINDS, MODES, OVER_TIME, ChartAnswer
 from petalfoil.cli.study import StudyAnswer
 from petalfoil.results import Record, Scalar
-from petalfoil.results.schema import SCALARS, Kind
+from petalfoil.results.schema import SCALARS, DataType
 from petalfoil.results.study import error_bars_of, estimates_of
 
-_PLAIN = {Kind.FLOAT: float, Kind.INT: int, Kind.BOOL: bool, Kind.STR: str}
+_PLAIN = {DataType.FLOAT: float, DataType.INT: int, DataType.BOOL: bool, DataType.STR: str}
 
 
 def answer_of(dataset: xr.Dataset) -> Answer:
@@ -75,4 +75,4 @@ def _scalars(point: xr.Dataset) -> dict[str, Scalar]:
     if known.get("converged", True):
         return known
     # A count that a failed point does not have is -1 in the file, for whole numbers know no NaN.
-    return {name: value for name, value in known.items() if SCALARS[name].kind is not Kind.INT or value != -1}
+    return {name: value for name, value in known.items() if SCALARS[name].kind is not DataType.INT or value != -1}

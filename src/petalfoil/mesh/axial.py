@@ -73,12 +73,12 @@ class AxialGrid:
         return np.concatenate([self.z, self.length - self.z[-2::-1]]) if self.half else self.z
 
 
-def flat_axis(length: float) -> AxialGrid:
+def axis_2d(length: float) -> AxialGrid:
     """One station that stands for the whole length: forces per metre times the length."""
     return AxialGrid(np.array([0.5 * length]), np.array([length]), length, half=False)
 
 
-def spatial_axis(length: float, cells: int, *, half: bool, grading: float = 0.0) -> AxialGrid:
+def axis_3d(length: float, cells: int, *, half: bool, grading: float = 0.0) -> AxialGrid:
     """`cells` over the whole length [m], half of them (rounded up) on a half model.
 
     They shrink smoothly toward the ends: the largest is some `(1 + grading) / (1 - grading)` times the smallest.

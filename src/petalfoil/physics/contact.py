@@ -63,9 +63,11 @@ def package_contacts(mesh: PackageMesh, free_radius: Array, sizes: dict[str, flo
     free_radius : (n_node,) array
         `r0` of the free petal at its nodes [m].
     sizes : dict
-        `journal_radius`, `metric_radius`, `thickness` (with coating), `film_floor` [m].
+        `journal_radius`, `metric_radius`, `thickness` (with coating), `contact_film_thickness` [m].
     """
-    R_j, r_m, delta, h_min = (sizes[k] for k in ("journal_radius", "metric_radius", "thickness", "film_floor"))
+    R_j, r_m, delta, h_min = (
+        sizes[k] for k in ("journal_radius", "metric_radius", "thickness", "contact_film_thickness")
+    )
     number, n, N = mesh.free_numbers(), mesh.count, mesh.cells
     r0 = np.broadcast_to(free_radius[None, :, None], mesh.shape)
     theta = np.broadcast_to(mesh.theta[:, :, None], mesh.shape)

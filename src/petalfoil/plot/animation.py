@@ -44,7 +44,7 @@ _DENT = 0.4
 _CIRCLE = np.linspace(0.0, TURN, 361)
 _STATE = {
     "frame_pressure": "pressure",
-    "frame_film": "film_thickness",
+    "frame_film_thickness": "film_thickness",
     "frame_radius": "radius",
     "frame_x": "eccentricity_x",
     "frame_y": "eccentricity_y",
@@ -228,7 +228,7 @@ def _palette() -> Image.Image:
 
 def _mark_contacts(ax: Axes, state: xr.Dataset, stretch: Stretch) -> None:
     """Where the film is at its floor."""
-    floor = number(state, "film_floor")
+    floor = number(state, "contact_film_thickness")
     touched = array(state, "film_thickness") <= floor * (1.0 + 1e-6)
     if touched.any():
         theta = (array(state, "root_angle")[:, None] + array(state, "phi_exposed"))[touched]

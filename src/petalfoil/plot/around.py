@@ -73,7 +73,7 @@ def draw_pressure(ax: Axes, ds: xr.Dataset) -> None:
     ax.set_ylim(low - 0.06 * spread, high + 0.22 * spread)
     _frame(ax, ds, "pressure  p / p$_a$")
     _number_petals(ax, ds)
-    _remark(ax, "largest", number(ds, "max_pressure") * 1e-3, "kPa", number(ds, "max_pressure_angle"))
+    _remark(ax, "largest", number(ds, "peak_pressure") * 1e-3, "kPa", number(ds, "peak_pressure_angle"))
 
 
 def draw_film(ax: Axes, ds: xr.Dataset) -> None:
@@ -89,14 +89,14 @@ def draw_film(ax: Axes, ds: xr.Dataset) -> None:
             places = (strip.degrees[touched], film[strip.petal][touched])
             ax.plot(*places, "o", color=style.CONTACT, markersize=3.5, label=label, zorder=3)
             label = None
-    floor = number(ds, "film_floor") * 1e6
+    floor = number(ds, "contact_film_thickness") * 1e6
     if not math.isnan(floor):
         ax.axhline(floor, color=style.GREY, linewidth=1.0, linestyle="--", label=f"film floor, {floor:.3g} µm")
     ax.set_yscale("log")
     ax.set_ylim(0.7 * min(film.min(), floor if floor > 0.0 else math.inf), 3.0 * film.max())
     style.logarithmic(ax.yaxis)
     _frame(ax, ds, "film thickness  h [µm]")
-    _remark(ax, "smallest", number(ds, "min_film") * 1e6, "µm", number(ds, "min_film_angle"))
+    _remark(ax, "smallest", number(ds, "min_film_thickness") * 1e6, "µm", number(ds, "min_film_thickness_angle"))
     style.legend(ax, loc="upper left", ncols=2)
 
 

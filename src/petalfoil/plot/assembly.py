@@ -61,11 +61,11 @@ def _facts(ds: xr.Dataset) -> list[str]:
     formats = {
         "overlap": "overlap {:.3g}",
         "layers": "{:.0f} layers",
-        "room": "radial room {:.4g} µm",
-        "room_left": "{:.4g} µm left",
+        "radial_clearance": "radial room {:.4g} µm",
+        "pack_clearance": "{:.4g} µm left",
         "compressibility_number": "Λ = {:.3g}",
     }
-    lengths = ("room", "room_left")
+    lengths = ("radial_clearance", "pack_clearance")
     known = {name: number(ds, name) * (1e6 if name in lengths else 1.0) for name in formats}
     return [form.format(known[name]) for name, form in formats.items() if not math.isnan(known[name])]
 

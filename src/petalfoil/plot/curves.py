@@ -42,7 +42,7 @@ def load_characteristic(family: Sequence[tuple[str, xr.Dataset]]) -> Figure:
     fig = style.figure(8.0, 5.0)
     ax = fig.subplots()
     for number, (label, ds) in enumerate(family):
-        draw_characteristic(ax, ds, "load_capacity", number, label)
+        draw_characteristic(ax, ds, "bearing_force", number, label)
     style.dress(ax, "eccentricity  e [µm]", "load capacity  |F| [N]")
     finish(ax)
     style.set_title(fig, _common_title([ds for _, ds in family]), *_family_facts([ds for _, ds in family]))
@@ -69,7 +69,7 @@ def static(ds: xr.Dataset) -> Figure:
     UsageError
         The dataset is not a curve.
     """
-    shown = {"load_capacity": "reaction  |F| [N]", "starting_torque": "starting torque  M$_0$ [N·m]"}
+    shown = {"bearing_force": "reaction  |F| [N]", "starting_torque": "starting torque  M$_0$ [N·m]"}
     shown = {name: label for name, label in shown.items() if name in ds}
     fig = style.figure(8.0, 2.8 * len(shown) + 0.6)
     axes = fig.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]

@@ -60,9 +60,9 @@ def draw_displacement(ax: Axes, _ds: xr.Dataset, path: Path) -> None:
 
 def draw_film_history(ax: Axes, ds: xr.Dataset, path: Path) -> None:
     """Draw the smallest film and its floor."""
-    film = array(ds, "min_film") * MICRO
+    film = array(ds, "min_film_thickness") * MICRO
     _draw(ax, path, film, style.GREEN, "")
-    floor = number(ds, "film_floor") * MICRO
+    floor = number(ds, "contact_film_thickness") * MICRO
     if not math.isnan(floor):
         ax.axhline(floor, color=style.GREY, linewidth=1.0, linestyle="--", label=f"film floor, {floor:.3g} µm")
     _frame(ax, path, "smallest film [µm]")
@@ -72,7 +72,7 @@ def draw_film_history(ax: Axes, ds: xr.Dataset, path: Path) -> None:
 
 def draw_contact(ax: Axes, ds: xr.Dataset, path: Path) -> None:
     """Draw the share of the contacts."""
-    share = 100.0 * array(ds, "contact_share")
+    share = 100.0 * array(ds, "contact_fraction")
     over, _ = elapsed(path)
     ax.fill_between(over, 0.0, share, color=style.ORANGE, alpha=0.35, linewidth=0)
     _draw(ax, path, share, style.ORANGE, "")
@@ -146,7 +146,7 @@ def _spent(ds: xr.Dataset) -> str:
     whole, rubbing = float(array(ds, "shaft_work")[-1]), float(array(ds, "rubbing_work")[-1])
     scale, unit = _unit(abs(whole))
     told = f"the shaft spent {scale * whole:.3g} {unit} on friction, {scale * rubbing:.3g} {unit} of it on rubbing"
-    defect = number(ds, "energy_defect")
+    defect = number(ds, "energy_balance_error")
     return told if math.isnan(defect) else f"{told}\nlargest defect: {defect:.1e} of what was exchanged"
 
 

@@ -51,7 +51,7 @@ def contact_circle(ds: xr.Dataset) -> tuple[float, str] | None:
         case = Case.from_toml(str(ds.attrs.get("case", "")))
     except DefinitionError:
         return None
-    room = case.bearing.clearance - case.surface.film_floor
+    room = case.bearing.clearance - case.surface.contact_film_thickness
     if case.petals is None:
         return room, f"journal touches the bore, {room * MICRO:.4g} µm"
     package = package_of(case.bearing, case.petals)

@@ -33,11 +33,11 @@ def orbit(ds: xr.Dataset) -> Figure:
     path = path_of(ds)
     fig = style.figure(16.0, 9.4)
     axes = fig.subplot_mosaic(
-        [["room", "close", "spectrum"], ["move", "film", "energy"], ["move", "contact", "energy"]],
+        [["radial_clearance", "close", "spectrum"], ["move", "film", "energy"], ["move", "contact", "energy"]],
         width_ratios=[1.0, 1.0, 1.25],
         height_ratios=[2.5, 1.0, 0.8],
     )
-    draw_room(axes["room"], ds, path)
+    draw_room(axes["radial_clearance"], ds, path)
     draw_close(axes["close"], path)
     draw_frequencies(axes["spectrum"], path)
     draw_displacement(axes["move"], ds, path)

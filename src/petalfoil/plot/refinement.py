@@ -27,12 +27,12 @@ class _Drawn:
 
 
 _FIGURES = {
-    "load_capacity": _Drawn("load capacity [N]"),
-    "min_film": _Drawn("smallest film [µm]", 1e6),
-    "max_pressure": _Drawn("largest pressure [kPa]", 1e-3),
+    "bearing_force": _Drawn("load capacity [N]"),
+    "min_film_thickness": _Drawn("smallest film [µm]", 1e6),
+    "peak_pressure": _Drawn("largest pressure [kPa]", 1e-3),
     "friction_torque": _Drawn("friction torque [mN·m]", 1e3),
-    "contact_total": _Drawn("contact reactions [N]"),
-    "max_stress": _Drawn("largest stress [MPa]", 1e-6),
+    "contact_normal_force": _Drawn("contact reactions [N]"),
+    "max_bending_stress": _Drawn("largest stress [MPa]", 1e-6),
 }
 
 

@@ -26,8 +26,8 @@ class _Drawn:
 
 _RUNUP = {
     "friction_torque": _Drawn("friction torque  M [mN·m]", 1e3),
-    "contact_share": _Drawn("share of the contacts [%]", 100.0),
-    "min_film": _Drawn("smallest film  min h [µm]", 1e6),
+    "contact_fraction": _Drawn("share of the contacts [%]", 100.0),
+    "min_film_thickness": _Drawn("smallest film  min h [µm]", 1e6),
     "eccentricity": _Drawn("displacement  e [µm]", 1e6),
 }
 _LEGS: dict[str, style.Look] = {
@@ -92,7 +92,7 @@ def _draw_legs(ax: Axes, ds: xr.Dataset, value: Floats) -> None:
 
 
 def _draw_floor(ax: Axes, ds: xr.Dataset) -> None:
-    floor = number(ds, "film_floor") * 1e6
+    floor = number(ds, "contact_film_thickness") * 1e6
     if not math.isnan(floor):
         ax.axhline(floor, color=style.GREY, linewidth=1.0, linestyle=":", label=f"film floor, {floor:.3g} µm")
         ax.legend(*([items[-1]] for items in ax.get_legend_handles_labels()), fontsize=style.TICK, frameon=False)

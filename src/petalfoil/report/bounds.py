@@ -18,16 +18,16 @@ from numpy.typing import NDArray
 
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
-from petalfoil.equilibria.answer import Answer
-from petalfoil.equilibria.cold import solve_cold
-from petalfoil.equilibria.track import advance
-from petalfoil.equilibria.work import Work
+from petalfoil.equilibrium.cold_start import solve_cold
+from petalfoil.equilibrium.continuation import advance
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 from petalfoil.physics.contact import Contacts
 from petalfoil.physics.forces import contact_force, film_force, node_area
-from petalfoil.problem.build import build_problem
-from petalfoil.problem.coupled import CoupledProblem
-from petalfoil.structure.petals import build_mesh, petals_of
+from petalfoil.system.build import build_problem
+from petalfoil.system.coupled import CoupledProblem
+from petalfoil.walls.petals import build_mesh, petals_of
 
 Array = NDArray[np.float64]
 
@@ -48,21 +48,21 @@ def bounded_loads(case: Case, displacements: tuple[float, ...]) -> tuple[tuple[f
     return tuple(loads[1:]), pushes[0], float(np.max(shares))
 
 
-def _followed(places: list[CoupledProblem]) -> list[Answer | None]:
+def _followed(places: list[CoupledProblem]) -> list[Solution | None]:
     """The answers along a curve."""
-    found: list[Answer | None] = []
+    found: list[Solution | None] = []
     try:
-        known = solve_cold(places[0], Work())
+        known = solve_cold(places[0], RunLog())
         found.append(known)
         for place in places[1:]:
-            known, _ = advance(known, place, Work())
+            known, _ = advance(known, place, RunLog())
             found.append(known)
     except ConvergenceError:  # the points that are missing say so
         pass
     return found + [None] * (len(places) - len(found))
 
 
-def _figures(problem: CoupledProblem, answer: Answer | None, case: Case) -> tuple[float, float, float]:
+def _figures(problem: CoupledProblem, answer: Solution | None, case: Case) -> tuple[float, float, float]:
     """Load [N], the film's push [N], contact share [1]."""
     if answer is None:
         return math.nan, math.nan, math.nan
@@ -86,7 +86,7 @@ def bounded(case: Case) -> CoupledProblem:
 def bounds(case: Case, contacts: Contacts) -> Contacts:
     """Gaps of the package with the bounds in place of those between petals."""
     (petals, package), mesh = petals_of(case), build_mesh(case)
-    delta, least = petals.total_thickness, case.bearing.journal_radius + case.surface.film_floor
+    delta, least = petals.total_thickness, case.bearing.journal_radius + case.surface.contact_film_thickness
     r0 = np.broadcast_to(package.free_radius(mesh.phi)[None, :, None], mesh.shape)
     theta = np.broadcast_to(mesh.theta[:, :, None], mesh.shape)
     area = np.broadcast_to(package.metric_radius * mesh.arc_weight[:, None] * mesh.axial.weight, mesh.shape)

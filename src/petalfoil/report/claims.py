@@ -108,11 +108,11 @@ def displaced() -> str:
 def central(evidence: Evidence) -> Claim:
     """Figures 6 and 7: a film around the central journal."""
     curves = evidence.flat.curves
-    films = ", ".join(f"{curve.figure('min_film')[0] * 1e6:.1f}" for curve in curves)
+    films = ", ".join(f"{curve.figure('min_film_thickness')[0] * 1e6:.1f}" for curve in curves)
     peaks = ", ".join(
-        f"{curve.figure('max_pressure')[0] / curve.figure('ambient_pressure')[0]:.2f}" for curve in curves
+        f"{curve.figure('peak_pressure')[0] / curve.figure('ambient_pressure')[0]:.2f}" for curve in curves
     )
-    touching = max(curve.figure("contact_share")[0] for curve in curves)
+    touching = max(curve.figure("contact_fraction")[0] for curve in curves)
     return Claim(
         "Pressure and film thickness over every petal around the central journal, for n = 6, 8, 10",
         "3.8, Figures 6 and 7",

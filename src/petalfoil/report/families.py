@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 Progress = Callable[[float, str], None]
 
-TANGENT: Mapping[str, object] = {"petals.mount": "rigid", "petals.root_tilt": 0.0}
+TANGENT: Mapping[str, object] = {"petals.mount": "clamped", "petals.root_tilt": 0.0}
 """Roots clamped along the bore's tangent."""
 
 
@@ -62,7 +62,7 @@ class Curve:
 
     def load(self, e: float) -> float:
         """`|F|` at a displacement, between points along a straight line [N]."""
-        return float(np.interp(e, self.displacements(), self.figure("load_capacity")))
+        return float(np.interp(e, self.displacements(), self.figure("bearing_force")))
 
     def loads(self) -> tuple[float, ...]:
         """`|F|` at the compared displacements [N]."""
@@ -111,7 +111,7 @@ def flat(name: str, says: str, changes: Mapping[str, object], scope: Scope, prog
 def spatial(name: str, says: str, changes: Mapping[str, object], scope: Scope, progress: Progress) -> Family:
     """The spatial model."""
     grid = {
-        "model.kind": "spatial",
+        "model.kind": "3d",
         "model.cells_per_pitch": scope.spatial_cells,
         "model.axial_cells": scope.spatial_axial,
     }

@@ -82,7 +82,7 @@ def summary(evidence: Evidence) -> dict[str, Plain]:
             {
                 "nodes": list(grid.nodes),
                 "cells": list(grid.cells),
-                "load_capacity": _number(grid.load),
+                "bearing_force": _number(grid.load),
                 "factorizations": grid.factorisations,
                 "residual": _number(grid.residual),
             }
@@ -96,9 +96,9 @@ def _study(row: Row) -> dict[str, Plain]:
     packages: list[Plain] = [
         {
             "count": package.count,
-            "load_capacity": [_number(load) for load in package.loads],
+            "bearing_force": [_number(load) for load in package.loads],
             "film_push": _number(package.push),
-            "contact_share": _number(package.share),
+            "contact_fraction": _number(package.share),
         }
         for package in row.packages
     ]

@@ -57,11 +57,11 @@ def on(nodes: tuple[int, int]) -> Grid:
     cells = (max(4, round((nodes[0] - 1) / overlap)), max(nodes[1] - 1, 1))
     changes: dict[str, object] = {"model.cells_per_pitch": cells[0]}
     if nodes[1] > 1:
-        changes |= {"model.kind": "spatial", "model.axial_cells": cells[1]}
+        changes |= {"model.kind": "3d", "model.axial_cells": cells[1]}
     try:
         record = equilibrium.run(case.replace(**changes), eccentricity=(0.0, -AT))
     except ConvergenceError as failure:
         return Grid(nodes, cells, math.nan, len(failure.history), math.nan)
     scalars = record.scalars
-    count = int(scalars["factorizations"]) + int(scalars["package_iterations"])
-    return Grid(nodes, cells, float(scalars["load_capacity"]), count, float(scalars["residual"]))
+    count = int(scalars["factorizations"]) + int(scalars["pack_iterations"])
+    return Grid(nodes, cells, float(scalars["bearing_force"]), count, float(scalars["residual"]))

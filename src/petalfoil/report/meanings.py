@@ -79,19 +79,19 @@ def _at_rest(count: int, changes: Mapping[str, object], scope: Scope) -> tuple[f
     """Preload of the central journal and reaction at `AT`, no rotation [N]."""
     case = package(count, **{**changes, "model.cells_per_pitch": scope.flat_cells})
     central, displaced = static.iterate(case, (0.0, AT))
-    return float(central.reported().get("contact_total", math.nan)), load(displaced)
+    return float(central.reported().get("contact_normal_force", math.nan)), load(displaced)
 
 
 def _at_like_place(curve: Curve) -> float:
-    return curve.load(SHARE_OF_ROOM * package(curve.count).room_left)
+    return curve.load(SHARE_OF_ROOM * package(curve.count).pack_clearance)
 
 
 def _slope(curve: Curve) -> float:
     """Load of the first displaced point over its displacement [N/mm]."""
-    return 1e-3 * curve.figure("load_capacity")[1] / curve.displacements()[1]
+    return 1e-3 * curve.figure("bearing_force")[1] / curve.displacements()[1]
 
 
 def _excess(curve: Curve) -> float:
     central = curve.records[0]
     p_a = float(central.scalars["ambient_pressure"])
-    return 1e-3 * (float(central.reported().get("max_pressure", math.nan)) - p_a)
+    return 1e-3 * (float(central.reported().get("peak_pressure", math.nan)) - p_a)

@@ -30,9 +30,9 @@ def package(count: int, **changes: object) -> Case:
                 "poisson_ratio": 0.3,
             },
             "gas": {"viscosity": 18.5e-6, "ambient_pressure": 1e5, "temperature": 293.15},
-            "surface": {"film_floor": 1e-6, "friction_coefficient": 0.3},
+            "surface": {"contact_film_thickness": 1e-6, "friction_coefficient": 0.3},
             "operation": {"speed": 8000.0},
-            "model": {"kind": "flat"},
+            "model": {"kind": "2d"},
         }
     )
     return case.replace(**changes) if changes else case

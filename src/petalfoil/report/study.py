@@ -108,13 +108,13 @@ def loads(variation: Variation, count: int, scope: Scope) -> Loads:
     if variation.bounds:
         return Loads(count, *bounded_loads(case, COMPARED))
     central, *displaced = load_curve.iterate(case, (0.0, *COMPARED))
-    share = max(float(record.reported().get("contact_share", math.nan)) for record in (central, *displaced))
+    share = max(float(record.reported().get("contact_fraction", math.nan)) for record in (central, *displaced))
     return Loads(count, tuple(load(record) for record in displaced), push(central), share)
 
 
 def load(record: Record) -> float:
     """`|F|` of a point [N]; nan where it did not converge."""
-    return float(record.reported().get("load_capacity", math.nan))
+    return float(record.reported().get("bearing_force", math.nan))
 
 
 def push(record: Record) -> float:

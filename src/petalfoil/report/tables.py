@@ -31,7 +31,7 @@ def text(value: float, digits: int) -> str:
 def loads(family: Family) -> Table:
     """Loads of a family at its displacements."""
     places = family.curves[0].displacements()
-    columns = [curve.figure("load_capacity") for curve in family.curves]
+    columns = [curve.figure("bearing_force") for curve in family.curves]
     rows = [
         (text(e * 1e6, 0), *(text(column[k], 2) for column in columns), text(_ratio(columns[0][k], columns[-1][k]), 2))
         for k, e in enumerate(places)
@@ -114,11 +114,11 @@ def profiles(family: Family) -> Table:
 
 
 CHARACTERISTIC = {
-    "load_capacity": "load [N]",
+    "bearing_force": "load [N]",
     "attitude_angle": "attitude angle [rad]",
-    "min_film": "smallest film [m]",
-    "max_pressure": "largest pressure [Pa]",
-    "contact_share": "contact share [1]",
+    "min_film_thickness": "smallest film [m]",
+    "peak_pressure": "largest pressure [Pa]",
+    "contact_fraction": "contact share [1]",
     "friction_torque": "friction torque [N m]",
 }
 

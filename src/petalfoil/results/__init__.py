@@ -19,6 +19,6 @@ Conventions: SI units inside; a figure of a state that did not converge is NaN; 
 """
 
 from petalfoil.results.record import Record, Scalar
-from petalfoil.results.schema import VARIABLES, Kind, Variable
+from petalfoil.results.schema import VARIABLES, DataType, Variable
 
-__all__ = ["VARIABLES", "Kind", "Record", "Scalar", "Variable"]
+__all__ = ["VARIABLES", "DataType", "Record", "Scalar", "Variable"]

@@ -12,10 +12,15 @@ import numpy as np
 import xarray as xr
 
 from petalfoil.results.record import Array, Record, Scalar, blank
-from petalfoil.results.schema import COORDINATES, FIELDS, SCALARS, Kind, Role, Variable
+from petalfoil.results.schema import COORDINATES, FIELDS, SCALARS, DataType, Role, Variable
 
 CONVENTIONS = "CF-1.11"
-_DTYPES: dict[Kind, type] = {Kind.FLOAT: np.float64, Kind.INT: np.int64, Kind.BOOL: np.bool_, Kind.STR: np.str_}
+_DTYPES: dict[DataType, type] = {
+    DataType.FLOAT: np.float64,
+    DataType.INT: np.int64,
+    DataType.BOOL: np.bool_,
+    DataType.STR: np.str_,
+}
 _POINT = {"long_name": "number of the point along the curve", "units": "1"}
 
 
@@ -101,9 +106,9 @@ def _curve_fields(records: Sequence[Record], coords: Mapping[str, Array]) -> dic
 def _value(name: str, point: Mapping[str, Scalar], record: Record) -> Scalar:
     if name in point:
         return point[name]
-    if record.converged and SCALARS[name].kind in (Kind.BOOL, Kind.INT):
+    if record.converged and SCALARS[name].kind in (DataType.BOOL, DataType.INT):
         raise ValueError(f"a converged point of the curve lacks {name!r}, which others have")
-    return -1 if SCALARS[name].kind is Kind.INT else blank(SCALARS[name])
+    return -1 if SCALARS[name].kind is DataType.INT else blank(SCALARS[name])
 
 
 def _shared(name: str, reported: Sequence[Mapping[str, Scalar]]) -> Scalar:
@@ -139,9 +144,9 @@ def _labelled(variable: Variable, values: object, dims: tuple[str, ...] | None =
     attributes: dict[str, object] = {"long_name": variable.long_name, "symbol": variable.symbol}
     if variable.units:
         attributes["units"] = variable.units
-    if variable.kind is Kind.BOOL:
+    if variable.kind is DataType.BOOL:
         attributes |= {"flag_values": np.array([0, 1], dtype=np.int8), "flag_meanings": "false true"}
-    if variable.kind is Kind.INT and dims == ("point",):
+    if variable.kind is DataType.INT and dims == ("point",):
         attributes["comment"] = "-1 where a point that did not converge has none"
     return variable.dims if dims is None else dims, np.array(values, dtype=_DTYPES[variable.kind]), attributes
 

@@ -157,7 +157,7 @@ def without_drift(z: Complex) -> Complex:
     return np.asarray(z - z.mean() - slope * place, dtype=np.complex128)
 
 
-def dominating_ratio(path: Path) -> float:
+def dominant_whirl_ratio(path: Path) -> float:
     """Frequency of the largest circle over the speed, in the settled part; NaN where too few turns tell none."""
     if path.turns < LEAST_TURNS:
         return math.nan
@@ -178,8 +178,8 @@ def figures_of(time: Array, over: Mapping[str, Array]) -> dict[str, float]:
     """Amplitude [m] and dominating frequency over the speed of a motion, from its histories."""
     path = Path.of(time, over)
     if len(time) < 2:
-        return {"amplitude": 0.0, "dominating_ratio": math.nan}
-    return {"amplitude": settled_amplitude(path), "dominating_ratio": dominating_ratio(path)}
+        return {"amplitude": 0.0, "dominant_whirl_ratio": math.nan}
+    return {"amplitude": settled_amplitude(path), "dominant_whirl_ratio": dominant_whirl_ratio(path)}
 
 
 @dataclass(frozen=True)

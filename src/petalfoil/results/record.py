@@ -10,16 +10,16 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from petalfoil.results.schema import COORDINATES, FIELDS, SCALARS, Kind, Role, Variable
+from petalfoil.results.schema import COORDINATES, FIELDS, SCALARS, DataType, Role, Variable
 
 Array: TypeAlias = npt.NDArray[np.generic]
 Scalar: TypeAlias = float | int | bool | str
 
-_PLAIN: dict[Kind, tuple[type, ...]] = {
-    Kind.FLOAT: (float, int, np.floating, np.integer),
-    Kind.INT: (int, np.integer),
-    Kind.BOOL: (bool, np.bool_),
-    Kind.STR: (str,),
+_PLAIN: dict[DataType, tuple[type, ...]] = {
+    DataType.FLOAT: (float, int, np.floating, np.integer),
+    DataType.INT: (int, np.integer),
+    DataType.BOOL: (bool, np.bool_),
+    DataType.STR: (str,),
 }
 
 
@@ -84,7 +84,7 @@ def _plain(name: str, value: Scalar, converged: bool) -> Scalar:
     variable = SCALARS[name]
     if variable.role is Role.ANSWER and not converged:
         return blank(variable)
-    convert = {Kind.FLOAT: float, Kind.INT: int, Kind.BOOL: bool, Kind.STR: str}[variable.kind]
+    convert = {DataType.FLOAT: float, DataType.INT: int, DataType.BOOL: bool, DataType.STR: str}[variable.kind]
     result: Scalar = convert(value)
     return result
 
@@ -92,13 +92,13 @@ def _plain(name: str, value: Scalar, converged: bool) -> Scalar:
 def blank(variable: Variable) -> float | bool | str:
     """What stands for a figure that is not there."""
     match variable.kind:
-        case Kind.FLOAT:
+        case DataType.FLOAT:
             return float("nan")
-        case Kind.BOOL:
+        case DataType.BOOL:
             return False
-        case Kind.STR:
+        case DataType.STR:
             return ""
-        case Kind.INT:
+        case DataType.INT:
             raise ValueError("a whole number has no value that means absent: declare the variable as a float")
 
 
@@ -111,7 +111,7 @@ def _refuse_unknown(what: str, given: Mapping[str, object], declared: Mapping[st
 
 
 def _refuse_type(name: str, value: object, variable: Variable) -> None:
-    bool_as_number = isinstance(value, (bool, np.bool_)) and variable.kind is not Kind.BOOL
+    bool_as_number = isinstance(value, (bool, np.bool_)) and variable.kind is not DataType.BOOL
     if bool_as_number or not isinstance(value, _PLAIN[variable.kind]):
         raise ValueError(f"scalar {name!r} must be {variable.kind.value}, got {value!r}")
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 
-class Kind(Enum):
+class DataType(Enum):
     """Type of a variable's values."""
 
     FLOAT = "float"
@@ -46,7 +46,7 @@ class Variable:
         One line for a reader of the file.
     symbol : str
         Symbol in ``docs/notation`` and in figures.
-    kind : Kind
+    kind : DataType
         Type of the values.
     role : Role
         Given, bookkeeping, answer or geometry.
@@ -56,7 +56,7 @@ class Variable:
     units: str
     long_name: str
     symbol: str
-    kind: Kind = Kind.FLOAT
+    kind: DataType = DataType.FLOAT
     role: Role = Role.ANSWER
 
 
@@ -64,15 +64,15 @@ def _given(units: str, long_name: str, symbol: str) -> Variable:
     return Variable((), units, long_name, symbol, role=Role.GIVEN)
 
 
-def _answer(units: str, long_name: str, symbol: str, kind: Kind = Kind.FLOAT) -> Variable:
+def _answer(units: str, long_name: str, symbol: str, kind: DataType = DataType.FLOAT) -> Variable:
     return Variable((), units, long_name, symbol, kind)
 
 
-def _run(units: str, long_name: str, symbol: str, kind: Kind = Kind.FLOAT) -> Variable:
+def _run(units: str, long_name: str, symbol: str, kind: DataType = DataType.FLOAT) -> Variable:
     return Variable((), units, long_name, symbol, kind, Role.BOOKKEEPING)
 
 
-def _geometry(units: str, long_name: str, symbol: str, kind: Kind = Kind.FLOAT) -> Variable:
+def _geometry(units: str, long_name: str, symbol: str, kind: DataType = DataType.FLOAT) -> Variable:
     return Variable((), units, long_name, symbol, kind, Role.GEOMETRY)
 
 
@@ -81,7 +81,9 @@ _PETAL = ("petal", "phi", "z")
 _TIME = ("time",)
 
 COORDINATES: dict[str, Variable] = {
-    "petal": Variable(("petal",), "1", "petal number, growing with the bushing angle", "l", Kind.INT, Role.GEOMETRY),
+    "petal": Variable(
+        ("petal",), "1", "petal number, growing with the bushing angle", "l", DataType.INT, Role.GEOMETRY
+    ),
     "root_angle": Variable(("petal",), "rad", "bushing angle of the petal's root", "theta_l", role=Role.GEOMETRY),
     "phi": Variable(("phi",), "rad", "angle from the petal's root", "phi", role=Role.GEOMETRY),
     "phi_exposed": Variable(
@@ -92,19 +94,21 @@ COORDINATES: dict[str, Variable] = {
         role=Role.GEOMETRY,
     ),
     "whirl_frequency": Variable(("whirl_frequency",), "rad s-1", "whirl frequency", "Omega", role=Role.GEOMETRY),
-    "row": Variable(("row",), "1", "direction of the force: 0 along x, 1 along y", "i", Kind.INT, Role.GEOMETRY),
+    "row": Variable(("row",), "1", "direction of the force: 0 along x, 1 along y", "i", DataType.INT, Role.GEOMETRY),
     "column": Variable(
-        ("column",), "1", "direction of the displacement: 0 along x, 1 along y", "j", Kind.INT, Role.GEOMETRY
+        ("column",), "1", "direction of the displacement: 0 along x, 1 along y", "j", DataType.INT, Role.GEOMETRY
     ),
-    "mode": Variable(("mode",), "1", "number of the natural mode, by frequency", "k", Kind.INT, Role.GEOMETRY),
+    "mode": Variable(("mode",), "1", "number of the natural mode, by frequency", "k", DataType.INT, Role.GEOMETRY),
     "load": Variable(("load",), "N", "size of the load on the journal", "|load|", role=Role.GEOMETRY),
     "z": Variable(("z",), "m", "distance along the bearing axis", "z", role=Role.GEOMETRY),
     "time": Variable(_TIME, "s", "time", "t", role=Role.GEOMETRY),
     "frame": Variable(("frame",), "s", "time of a picture of film and petals", "t", role=Role.GEOMETRY),
-    "unknown": Variable(("unknown",), "1", "number of an unknown of film and petals", "i", Kind.INT, Role.GEOMETRY),
-    "gap": Variable(("gap",), "1", "number of a gap between journal, petals and bushing", "j", Kind.INT, Role.GEOMETRY),
-    "slide": Variable(("slide",), "1", "number of a place where petals slide", "i", Kind.INT, Role.GEOMETRY),
-    "axis": Variable(("axis",), "1", "direction: 0 along x, 1 along y", "i", Kind.INT, Role.GEOMETRY),
+    "unknown": Variable(("unknown",), "1", "number of an unknown of film and petals", "i", DataType.INT, Role.GEOMETRY),
+    "gap": Variable(
+        ("gap",), "1", "number of a gap between journal, petals and bushing", "j", DataType.INT, Role.GEOMETRY
+    ),
+    "slide": Variable(("slide",), "1", "number of a place where petals slide", "i", DataType.INT, Role.GEOMETRY),
+    "axis": Variable(("axis",), "1", "direction: 0 along x, 1 along y", "i", DataType.INT, Role.GEOMETRY),
 }
 
 FIELDS: dict[str, Variable] = {
@@ -141,11 +145,11 @@ HISTORIES: dict[str, Variable] = {
     "slope_y": Variable(_TIME, "rad", "slope of the shaft's axis along y", "a_y"),
     "shaft_speed": Variable(_TIME, "rad s-1", "angular velocity of the shaft", "omega"),
     "shaft_angle": Variable(_TIME, "rad", "angle that the shaft has turned", "theta_s"),
-    "min_film": Variable(_TIME, "m", "smallest film thickness", "min h"),
-    "contact_share": Variable(
+    "min_film_thickness": Variable(_TIME, "m", "smallest film thickness", "min h"),
+    "contact_fraction": Variable(
         _TIME, "1", "contact reactions over contact reactions plus integral of the film's excess pressure", "s_c"
     ),
-    "max_pressure": Variable(_TIME, "Pa", "largest absolute pressure of the film", "p_max"),
+    "peak_pressure": Variable(_TIME, "Pa", "largest absolute pressure of the film", "p_max"),
     "force_x": Variable(_TIME, "N", "force of film and contact on the journal along x", "F_x"),
     "force_y": Variable(_TIME, "N", "force of film and contact on the journal along y", "F_y"),
     "friction_torque": Variable(_TIME, "N m", "friction torque on the journal, film and contact", "M"),
@@ -157,7 +161,7 @@ HISTORIES: dict[str, Variable] = {
     "rubbing_work": Variable(_TIME, "J", "work of the shaft against dry friction alone", "W_rub"),
     "petal_friction_work": Variable(_TIME, "J", "energy lost where petals slide on each other and the bushing", "W_p"),
     "frame_pressure": Variable(("frame", *_FILM), "Pa", "absolute pressure of the film", "p"),
-    "frame_film": Variable(("frame", *_FILM), "m", "film thickness between journal and petal", "h"),
+    "frame_film_thickness": Variable(("frame", *_FILM), "m", "film thickness between journal and petal", "h"),
     "frame_radius": Variable(("frame", *_PETAL), "m", "radius of the deformed mid-surface of the petal", "r"),
     "frame_x": Variable(("frame",), "m", "displacement of the journal's centre along x", "e_x"),
     "frame_y": Variable(("frame",), "m", "displacement of the journal's centre along y", "e_y"),
@@ -178,14 +182,14 @@ SCALARS: dict[str, Variable] = {
     "load_x": _given("N", "load on the journal along x", "load_x"),
     "load_y": _given("N", "load on the journal along y", "load_y"),
     "leg": Variable(
-        (), "", "part of the way: up or down, loading, unloading or reloading", "leg", Kind.STR, Role.GIVEN
+        (), "", "part of the way: up or down, loading, unloading or reloading", "leg", DataType.STR, Role.GIVEN
     ),
     "share": _given("1", "contact share below which the journal floats", "s_f"),
     "whirl_amplitude": _given("m", "amplitude of the whirl at which petals rub", "a"),
     "rotor_mass": _given("kg", "mass of a rigid rotor on this bearing", "m"),
     "force_x": _answer("N", "force of film and contact on the journal along x", "F_x"),
     "force_y": _answer("N", "force of film and contact on the journal along y", "F_y"),
-    "load_capacity": _answer("N", "magnitude of the force on the journal", "|F|"),
+    "bearing_force": _answer("N", "magnitude of the force on the journal", "|F|"),
     "attitude_angle": _answer(
         "rad", "angle from the carried load to the displacement, positive with the rotation", "beta"
     ),
@@ -193,87 +197,88 @@ SCALARS: dict[str, Variable] = {
     "film_force_y": _answer("N", "force of the film on the journal along y", "F_film,y"),
     "contact_force_x": _answer("N", "force of the contacts on the journal along x", "F_contact,x"),
     "contact_force_y": _answer("N", "force of the contacts on the journal along y", "F_contact,y"),
-    "contact_total": _answer("N", "sum of the contact reactions over the journal", "sum lambda_J"),
-    "contact_share": _answer(
+    "contact_normal_force": _answer("N", "sum of the contact reactions over the journal", "sum lambda_J"),
+    "contact_fraction": _answer(
         "1", "contact reactions over contact reactions plus integral of the film's excess pressure", "s_c"
     ),
-    "min_film": _answer("m", "smallest film thickness", "min h"),
-    "min_film_angle": _answer("rad", "bushing angle of the smallest film thickness", "theta(min h)"),
-    "min_film_z": _answer("m", "axial place of the smallest film thickness", "z(min h)"),
+    "min_film_thickness": _answer("m", "smallest film thickness", "min h"),
+    "min_film_thickness_angle": _answer("rad", "bushing angle of the smallest film thickness", "theta(min h)"),
+    "min_film_thickness_z": _answer("m", "axial place of the smallest film thickness", "z(min h)"),
     "knudsen_number": _answer("1", "mean free path at ambient pressure over the smallest film", "Kn"),
-    "max_pressure": _answer("Pa", "largest absolute pressure of the film", "p_max"),
-    "max_pressure_angle": _answer("rad", "bushing angle of the largest pressure", "theta(p_max)"),
+    "peak_pressure": _answer("Pa", "largest absolute pressure of the film", "p_max"),
+    "peak_pressure_angle": _answer("rad", "bushing angle of the largest pressure", "theta(p_max)"),
     "petal_friction_work": _answer("J", "energy lost where petals slide on each other and the bushing", "W_p"),
     "friction_torque": _answer("N m", "friction torque on the journal, film and contact", "M"),
     "starting_torque": _answer("N m", "torque of dry friction at rest", "M_0"),
     "power_loss": _answer("W", "friction torque times angular velocity", "M omega"),
     "side_leakage": _answer("kg s-1", "mass flow of gas that leaves at both ends", "m_dot"),
-    "max_stress": _answer("Pa", "largest magnitude of the bending stress of the petals", "sigma_max"),
+    "max_bending_stress": _answer("Pa", "largest magnitude of the bending stress of the petals", "sigma_max"),
     "critical_mass": _answer("kg", "smallest mass of a rigid rotor that whirls", "m_c"),
     "whirl_ratio": _answer("1", "whirl frequency over speed at the critical mass", "gamma"),
     "threshold_speed": _answer("rad s-1", "speed at which the rotor's mass begins to whirl", "omega_c"),
     "liftoff_speed": _answer("rad s-1", "speed above which the journal floats, ascending", "omega_up"),
     "touchdown_speed": _answer("rad s-1", "speed below which the journal touches, descending", "omega_down"),
-    "liftoff_by_floor": _answer(
+    "liftoff_by_contact_film_thickness": _answer(
         "1", "logarithmic derivative of the lift-off speed by the film floor", "d ln omega_up/d ln h_min"
     ),
-    "liftoff_by_share": _answer(
+    "liftoff_by_contact_fraction": _answer(
         "1", "logarithmic derivative of the lift-off speed by the share", "d ln omega_up/d ln s_f"
     ),
-    "stable": _answer("", "the equilibrium of film and petals is stable at the fixed journal", "stable", Kind.BOOL),
+    "stable": _answer("", "the equilibrium of film and petals is stable at the fixed journal", "stable", DataType.BOOL),
     "growth_rate": _answer(
         "s-1", "real part of the leading eigenvalue of film and petals at the fixed journal", "Re s"
     ),
     "growth_frequency": _answer(
         "rad s-1", "imaginary part of the leading eigenvalue of film and petals at the fixed journal", "Im s"
     ),
-    "mass_defect": _answer("1", "gas that the film has gained beyond what flowed in, over what it holds", "d_gas"),
-    "energy_defect": _answer(
+    "energy_balance_error": _answer(
         "1", "energy of rotor and petals beyond the work done on them, over the work exchanged", "d_energy"
     ),
     "amplitude": _answer("m", "largest distance from the mean position, in the last half of a motion", "A"),
-    "dominating_ratio": _answer(
+    "dominant_whirl_ratio": _answer(
         "1", "frequency of the largest circle of the whirl over the speed, negative against the rotation", "Omega/omega"
     ),
     "revolutions": _answer("1", "turns of the shaft", "N_rev"),
-    "steps": _run("1", "steps in time", "N_steps", Kind.INT),
-    "refused_steps": _run("1", "steps taken again shorter, for their error", "N_refused", Kind.INT),
-    "failed_steps": _run("1", "steps taken again shorter, for want of an answer", "N_failed", Kind.INT),
+    "steps": _run("1", "steps in time", "N_steps", DataType.INT),
+    "rejected_steps": _run("1", "steps taken again shorter, for their error", "N_refused", DataType.INT),
+    "failed_steps": _run("1", "steps taken again shorter, for want of an answer", "N_failed", DataType.INT),
     "tolerance": _given("1", "local error of a step in reference films and ambient pressures", "tol"),
     "residual": _run("1", "largest scaled residual of the coupled system", "res"),
     "force_residual": _run("1", "force left over by film, contacts and load, over the load", "d_load"),
-    "carried_by": _run("", "what carries the load", "carried by", Kind.STR),
-    "mass_balance": _run("1", "relative defect of the mass balance of the film", "d_mass"),
-    "reaction_balance": _run("1", "relative defect of the balance of loads and reactions of the petals", "d_force"),
-    "iterations": _run("1", "iterations of the coupled system", "N_it", Kind.INT),
-    "factorizations": _run("1", "factorisations of the coupled system", "N_lu", Kind.INT),
-    "package_iterations": _run("1", "iterations of the package alone", "N_pk", Kind.INT),
-    "probe_factorizations": _run(
-        "1", "factorisations that only asked a question: stability, other equilibria", "N_probe", Kind.INT
+    "carried_by": _run("", "what carries the load", "carried by", DataType.STR),
+    "mass_balance_error": _run("1", "relative error of the mass balance of the film", "d_mass"),
+    "reaction_balance_error": _run(
+        "1", "relative defect of the balance of loads and reactions of the petals", "d_force"
     ),
-    "cells_per_pitch": _run("1", "cells along a pitch; of a plain bearing, round the circle", "N", Kind.INT),
-    "axial_cells": _run("1", "cells over the whole length", "N_z", Kind.INT),
-    "film_scale": _run("m", "film thickness the film equation is scaled with", "h_ref"),
+    "iterations": _run("1", "iterations of the coupled system", "N_it", DataType.INT),
+    "factorizations": _run("1", "factorisations of the coupled system", "N_lu", DataType.INT),
+    "pack_iterations": _run("1", "iterations of the package alone", "N_pk", DataType.INT),
+    "probe_factorizations": _run(
+        "1", "factorisations that only asked a question: stability, other equilibria", "N_probe", DataType.INT
+    ),
+    "cells_per_pitch": _run("1", "cells along a pitch; of a plain bearing, round the circle", "N", DataType.INT),
+    "axial_cells": _run("1", "cells over the whole length", "N_z", DataType.INT),
+    "reference_film_thickness": _run("m", "film thickness the film equation is scaled with", "h_ref"),
     "wall_time": _run("s", "time spent", "t_wall"),
-    "converged": _run("", "the state satisfies the equations to tolerance", "converged", Kind.BOOL),
-    "status": _run("", "how the run ended", "status", Kind.STR),
-    "branch": _run("", "how the equilibrium was reached", "branch", Kind.STR),
-    "branches_known": _run("1", "equilibria known at this position", "N_eq", Kind.INT),
-    "jump": _run("", "this point left the branch of the point before", "jump", Kind.BOOL),
+    "converged": _run("", "the state satisfies the equations to tolerance", "converged", DataType.BOOL),
+    "status": _run("", "how the run ended", "status", DataType.STR),
+    "solution_path": _run("", "how the equilibrium was reached", "solution_path", DataType.STR),
+    "known_equilibria": _run("1", "equilibria known at this position", "N_eq", DataType.INT),
+    "jump": _run("", "this point left the branch of the point before", "jump", DataType.BOOL),
     "journal_radius": _geometry("m", "radius of the journal", "R_j"),
     "bushing_radius": _geometry("m", "radius of the bushing", "R_B"),
     "length": _geometry("m", "length of the bearing", "L"),
     "petal_thickness": _geometry("m", "thickness of a petal with its coating", "delta"),
     "ambient_pressure": _geometry("Pa", "ambient pressure, absolute", "p_a"),
-    "film_floor": _geometry("m", "film floor, below which the journal touches", "h_min"),
+    "contact_film_thickness": _geometry("m", "film floor, below which the journal touches", "h_min"),
     "overlap": _geometry("1", "petal angle over pitch", "phi_1/phi_0"),
-    "layers": _geometry("1", "largest number of petals at one angle", "N_layers", Kind.INT),
+    "layers": _geometry("1", "largest number of petals at one angle", "N_layers", DataType.INT),
     "petal_angle": _geometry("rad", "angle a petal spans", "phi_1"),
     "pitch": _geometry("rad", "angle between neighbouring roots", "phi_0"),
     "covered_angle": _geometry("rad", "angle over which a petal is covered by the one before", "phi_3"),
     "metric_radius": _geometry("m", "radius of the mid-surface of a petal on the bore", "r_m"),
-    "room": _geometry("m", "narrowest radial room between journal and bushing", "c"),
-    "room_left": _geometry("m", "room less the package at its thickest and the film floor", "c_left"),
+    "radial_clearance": _geometry("m", "narrowest radial room between journal and bushing", "c"),
+    "pack_clearance": _geometry("m", "room less the package at its thickest and the film floor", "c_left"),
     "compressibility_number": _geometry("1", "compressibility number on the radial clearance", "Lambda"),
     "viscosity": _geometry("Pa s", "dynamic viscosity of the gas", "mu"),
     "mean_free_path": _geometry("m", "mean free path of the gas at ambient pressure", "lambda_a"),

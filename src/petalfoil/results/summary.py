@@ -8,7 +8,7 @@ from decimal import Decimal
 from typing import NamedTuple
 
 from petalfoil.results.record import Record, Scalar
-from petalfoil.results.schema import SCALARS, Kind
+from petalfoil.results.schema import SCALARS, DataType
 
 
 class Row(NamedTuple):
@@ -41,39 +41,39 @@ _SHOWN: dict[str, _Show] = {
     "share": _Show("floats below", "%", 100.0),
     "liftoff_speed": _Show("lift-off speed", "rpm", _RPM),
     "touchdown_speed": _Show("touch-down speed", "rpm", _RPM),
-    "liftoff_by_floor": _Show("d ln lift-off / d ln floor"),
-    "liftoff_by_share": _Show("d ln lift-off / d ln share"),
+    "liftoff_by_contact_film_thickness": _Show("d ln lift-off / d ln floor"),
+    "liftoff_by_contact_fraction": _Show("d ln lift-off / d ln share"),
     "critical_mass": _Show("critical mass", "kg"),
     "whirl_ratio": _Show("whirl ratio"),
     "rotor_mass": _Show("mass of the rotor", "kg"),
     "threshold_speed": _Show("threshold speed", "rpm", _RPM),
     "eccentricity_x": _Show("displacement x", "µm", 1e6),
     "eccentricity_y": _Show("displacement y", "µm", 1e6),
-    "load_capacity": _Show("load capacity", "N"),
+    "bearing_force": _Show("load capacity", "N"),
     "force_x": _Show("force x", "N"),
     "force_y": _Show("force y", "N"),
     "attitude_angle": _Show("attitude angle", "deg", _DEG),
-    "contact_total": _Show("contact reactions", "N"),
-    "contact_share": _Show("contact share", "%", 100.0),
-    "min_film": _Show("smallest film", "µm", 1e6),
-    "min_film_angle": _Show("  at angle", "deg", _DEG),
-    "min_film_z": _Show("  at z", "mm", 1e3),
+    "contact_normal_force": _Show("contact reactions", "N"),
+    "contact_fraction": _Show("contact share", "%", 100.0),
+    "min_film_thickness": _Show("smallest film", "µm", 1e6),
+    "min_film_thickness_angle": _Show("  at angle", "deg", _DEG),
+    "min_film_thickness_z": _Show("  at z", "mm", 1e3),
     "knudsen_number": _Show("Knudsen number", "%", 100.0),
-    "max_pressure": _Show("largest pressure", "kPa", 1e-3),
-    "max_pressure_angle": _Show("  at angle", "deg", _DEG),
+    "peak_pressure": _Show("largest pressure", "kPa", 1e-3),
+    "peak_pressure_angle": _Show("  at angle", "deg", _DEG),
     "friction_torque": _Show("friction torque", "mN·m", 1e3),
     "starting_torque": _Show("starting torque", "mN·m", 1e3),
     "power_loss": _Show("power loss", "W"),
     "side_leakage": _Show("side leakage", "mg/s", 1e6),
-    "max_stress": _Show("largest bending stress", "MPa", 1e-6),
+    "max_bending_stress": _Show("largest bending stress", "MPa", 1e-6),
     "overlap": _Show("overlap"),
     "layers": _Show("layers"),
     "petal_angle": _Show("petal angle", "deg", _DEG),
     "pitch": _Show("pitch", "deg", _DEG),
     "covered_angle": _Show("covered angle", "deg", _DEG),
     "metric_radius": _Show("metric radius", "mm", 1e3),
-    "room": _Show("radial room", "µm", 1e6),
-    "room_left": _Show("room left", "µm", 1e6),
+    "radial_clearance": _Show("radial room", "µm", 1e6),
+    "pack_clearance": _Show("room left", "µm", 1e6),
     "root_tilt": _Show("root tilt", "deg", _DEG),
     "free_petal_height": _Show("free petal height", "µm", 1e6),
     "first_contact_angle": _Show("first contact at", "deg", _DEG),
@@ -84,8 +84,8 @@ _SHOWN: dict[str, _Show] = {
     "stable": _Show("stable"),
     "growth_rate": _Show("growth rate", "1/s"),
     "growth_frequency": _Show("growth frequency", "Hz", 0.5 / math.pi),
-    "branch": _Show("branch"),
-    "branches_known": _Show("branches known"),
+    "solution_path": _Show("solution_path"),
+    "known_equilibria": _Show("branches known"),
     "jump": _Show("jump"),
     "cells_per_pitch": _Show("cells a pitch"),
     "axial_cells": _Show("cells along the axis"),
@@ -149,7 +149,7 @@ def cell(name: str, value: Scalar) -> Row:
     shown = _SHOWN.get(name, _Show(name.replace("_", " "), SCALARS[name].units.removeprefix("1")))
     if isinstance(value, bool):
         return Row(shown.label, "yes" if value else "no", shown.unit)
-    if isinstance(value, str) or SCALARS[name].kind is Kind.INT:
+    if isinstance(value, str) or SCALARS[name].kind is DataType.INT:
         return Row(shown.label, str(value), shown.unit)
     return Row(shown.label, number(value * shown.factor), shown.unit)
 

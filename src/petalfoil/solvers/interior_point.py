@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.solvers.cone import ConePoint, ConeProblem, Linearized, scaled_residual
-from petalfoil.solvers.linear import Factor, LinearSolver
+from petalfoil.solvers.sparse_lu import Factor, LinearSolver
 
 Array = NDArray[np.float64]
 

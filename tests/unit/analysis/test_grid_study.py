@@ -18,7 +18,7 @@ from tests.cases import case
 
 FLAT = case("paper_n8")
 SPATIAL = case("paper_n8_spatial")
-JOURNAL = case("plain_journal", **{"model.kind": "flat", "model.cells_per_pitch": 64})
+JOURNAL = case("plain_journal", **{"model.kind": "2d", "model.cells_per_pitch": 64})
 
 
 def cells_of(cases: list[Case]) -> list[tuple[int, int]]:
@@ -82,8 +82,8 @@ def smooth() -> list[Record]:
 
 
 def test_a_smooth_figure_has_order_two_and_its_limit(smooth: list[Record]) -> None:
-    found = named(table(smooth))["load_capacity"]
-    fine = named(table(run(JOURNAL, levels=3, coarsest=128)))["load_capacity"]
+    found = named(table(smooth))["bearing_force"]
+    fine = named(table(run(JOURNAL, levels=3, coarsest=128)))["bearing_force"]
     assert found.trusted
     assert_allclose(found.order, 2.0, atol=0.1)
     assert abs(found.limit - fine.limit) < found.error
@@ -94,7 +94,7 @@ def test_a_smooth_figure_has_order_two_and_its_limit(smooth: list[Record]) -> No
 
 def test_figures_without_a_value_are_left_out_and_no_bookkeeping_is_in(smooth: list[Record]) -> None:
     names = named(table(smooth))
-    assert {"load_capacity", "min_film", "max_pressure", "friction_torque", "attitude_angle"} <= set(names)
+    assert {"bearing_force", "min_film_thickness", "peak_pressure", "friction_torque", "attitude_angle"} <= set(names)
     assert not {"wall_time", "residual", "speed", "iterations", "stable", "converged"} & set(names)
     centred = run(JOURNAL, eccentricity=(0.0, 0.0), levels=2, coarsest=16)
     assert "attitude_angle" not in named(table(centred))
@@ -103,9 +103,9 @@ def test_figures_without_a_value_are_left_out_and_no_bookkeeping_is_in(smooth: l
 def test_error_bars_belong_to_the_own_grid(smooth: list[Record]) -> None:
     own = equilibrium.run(JOURNAL)
     bars = error_bars(own)
-    load = named(table(smooth))["load_capacity"]  # 32, 64, 128: the grids of a case with 64 cells, too
-    assert_allclose(bars["load_capacity"], abs(load.values[1] - load.values[2]) + load.error, rtol=1e-6)
-    assert abs(load.values[1] - load.limit) < bars["load_capacity"]
+    load = named(table(smooth))["bearing_force"]  # 32, 64, 128: the grids of a case with 64 cells, too
+    assert_allclose(bars["bearing_force"], abs(load.values[1] - load.values[2]) + load.error, rtol=1e-6)
+    assert abs(load.values[1] - load.limit) < bars["bearing_force"]
 
 
 # ---------------------------------------------------------------------------------------------- failures
@@ -131,7 +131,7 @@ def test_a_failed_grid_is_recorded_and_the_others_go_on(monkeypatch: pytest.Monk
     assert [record.converged for record in records] == [True, False, True]
     assert records[1].scalars["status"] == "not converged: no equilibrium found"
     assert records[1].history == [{"phase": "film"}]
-    load = named(table(records))["load_capacity"]
+    load = named(table(records))["bearing_force"]
     assert [math.isnan(value) for value in load.values] == [False, True, False]
     assert load.limit == load.values[2]
     assert_allclose(load.error, 3.0 * abs(load.values[2] - load.values[0]), rtol=1e-12)
@@ -143,7 +143,7 @@ def test_a_failed_grid_is_recorded_and_the_others_go_on(monkeypatch: pytest.Monk
     [((), 1.0), ((0,), 1.0), ((3,), 1.0), ((1,), 1.0 + 2.0**-6), ((0, 1), 1.0 + 2.0**-6)],
 )
 def test_the_last_unbroken_grids_count(lost: tuple[int, ...], limit: float) -> None:
-    figures = [{"load_capacity": 1.0 + 4.0**-level} for level in range(4)]
+    figures = [{"bearing_force": 1.0 + 4.0**-level} for level in range(4)]
     records = [point(16 * 2**k, **({} if k in lost else figures[k])) for k in range(4)]
     (load,) = table(records)
     assert load.limit == limit
@@ -151,25 +151,27 @@ def test_the_last_unbroken_grids_count(lost: tuple[int, ...], limit: float) -> N
 
 
 def test_a_force_that_is_rounding_is_no_failure_to_converge() -> None:
-    records = [point(16 * 2**k, load_capacity=force, min_film=force) for k, force in enumerate((3e-13, 1e-13, 4e-13))]
+    records = [
+        point(16 * 2**k, bearing_force=force, min_film_thickness=force) for k, force in enumerate((3e-13, 1e-13, 4e-13))
+    ]
     found = named(table(records))
-    assert found["load_capacity"].trusted
-    assert found["load_capacity"].error == resolution(records[0])["N"] == 1e-8 * 1e5 * 0.04 * 0.04
-    assert not found["min_film"].trusted
+    assert found["bearing_force"].trusted
+    assert found["bearing_force"].error == resolution(records[0])["N"] == 1e-8 * 1e5 * 0.04 * 0.04
+    assert not found["min_film_thickness"].trusted
 
 
 def test_two_answers_are_the_least() -> None:
     with pytest.raises(ConvergenceError, match=r"two grids at least.*32: not converged: lost"):
-        table([point(16, load_capacity=1.0), point(32), point(64)])
+        table([point(16, bearing_force=1.0), point(32), point(64)])
 
 
 def test_angles_are_compared_the_short_way_round() -> None:
     turn = 2.0 * math.pi
-    records = [point(16 * 2**k, min_film_angle=(0.02 - 0.01 * k) % turn) for k in range(4)]
+    records = [point(16 * 2**k, min_film_thickness_angle=(0.02 - 0.01 * k) % turn) for k in range(4)]
     (angle,) = table(records)
     assert_allclose(angle.values[-1], turn - 0.01, rtol=1e-12)
     assert angle.error < 0.1
-    (halved,) = table([point(16, min_film_angle=0.0), point(32, min_film_angle=3.0)])
+    (halved,) = table([point(16, min_film_thickness_angle=0.0), point(32, min_film_thickness_angle=3.0)])
     assert halved.error == math.pi
 
 

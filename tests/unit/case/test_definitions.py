@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from petalfoil.case import Bearing, Case, Edges, Gas, Kind, Method, Model, Mount, Operation, Petals, Surface
+from petalfoil.case import Bearing, Case, Edges, Gas, Method, Model, ModelKind, Mount, Operation, Petals, Surface
 from petalfoil.errors import DefinitionError, PackageError, UnitError
 from tests.cases import EXAMPLES, case, put, tables
 
@@ -32,9 +32,9 @@ def python_made(**petals: Any) -> Case:
             }
         ),
         gas=Gas(viscosity=1.85e-5, ambient_pressure="100 kPa"),
-        surface=Surface(film_floor=1e-6),
+        surface=Surface(contact_film_thickness=1e-6),
         operation=Operation(speed=8000, eccentricity=(0.0, "-100 um")),
-        model=Model(kind="flat"),
+        model=Model(kind="2d"),
     )
 
 
@@ -74,7 +74,7 @@ def test_defaults() -> None:
     assert one.petals is not None
     assert (one.petals.coating, one.petals.root_tilt, one.petals.first_root) == (0.0, "chordal", 0.0)
     assert one.petals.free_shape is None
-    assert (one.surface.film_floor, one.surface.friction_coefficient) == (1e-6, 0.3)
+    assert (one.surface.contact_film_thickness, one.surface.friction_coefficient) == (1e-6, 0.3)
     assert one.operation.eccentricity == (0.0, 0.0)
     assert one.operation.load is None
     assert one.model.edges is Edges.AMBIENT
@@ -112,7 +112,7 @@ def test_replace_takes_texts_sections_and_none() -> None:
     assert changed.operation.eccentricity == paper.operation.eccentricity
     assert changed.petals is not None
     assert (changed.petals.count, changed.title) == (10, "changed")
-    assert paper.replace(model=Model(kind=Kind.SPATIAL)).model.kind is Kind.SPATIAL
+    assert paper.replace(model=Model(kind=ModelKind.THREE_D)).model.kind is ModelKind.THREE_D
     assert paper.replace(petals=None).petals is None
     assert paper.replace() == paper
 
@@ -187,7 +187,7 @@ CASES = st.fixed_dictionaries(
         "operation.speed": st.one_of(st.floats(0.0, 1e6), st.integers(0, 10**6)),
         "operation.eccentricity": st.tuples(st.floats(-1e-5, 1e-5), st.floats(-1e-5, 1e-5)),
         "operation.load": st.one_of(st.none(), st.tuples(st.floats(-1e9, 1e9), st.floats(-1e9, 1e9))),
-        "model.kind": st.sampled_from(Kind),
+        "model.kind": st.sampled_from(ModelKind),
         "model.edges": st.sampled_from(Edges),
         "model.cells_per_pitch": st.one_of(st.none(), st.integers(4, 4096)),
         "model.symmetry": st.booleans(),

@@ -32,15 +32,15 @@ def test_layers(name: str, layers: int) -> None:
 def test_room() -> None:
     paper = case("paper_n8", **{"operation.eccentricity": (3e-5, -4e-5)})
     assert paper.room == pytest.approx(1e-3 - 5e-5, rel=1e-12)
-    assert paper.room_left == pytest.approx(1e-3 - 5e-5 - 3 * 0.176e-3 - 1e-6, rel=1e-12)
-    assert case("plain_journal").room_left == pytest.approx(14e-6, rel=1e-9)
+    assert paper.pack_clearance == pytest.approx(1e-3 - 5e-5 - 3 * 0.176e-3 - 1e-6, rel=1e-12)
+    assert case("plain_journal").pack_clearance == pytest.approx(14e-6, rel=1e-9)
 
 
 def test_a_package_is_refused_exactly_where_it_no_longer_fits() -> None:
     paper = case("paper_n8", **{"operation.eccentricity": (0.0, 0.0)})
-    left = paper.room_left
+    left = paper.pack_clearance
     fits = paper.replace(**{"operation.eccentricity": (0.0, -0.999999 * left)})
-    assert fits.room_left > 0.0
+    assert fits.pack_clearance > 0.0
     with pytest.raises(PackageError, match="too much") as caught:
         paper.replace(**{"operation.eccentricity": (0.0, -(left + 2e-6))})
     assert caught.value.key == "operation.eccentricity"

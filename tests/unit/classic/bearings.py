@@ -1,11 +1,11 @@
 """Small bearings of every kind that the film and the package of the classic method must serve."""
 
-from petalfoil.problem.build import build_problem
-from petalfoil.problem.coupled import CoupledProblem
+from petalfoil.system.build import build_problem
+from petalfoil.system.coupled import CoupledProblem
 from tests.cases import case
 
 KINDS: dict[str, tuple[str, dict[str, object]]] = {
-    "flat": ("paper_n8", {"model.cells_per_pitch": 8}),
+    "2d": ("paper_n8", {"model.cells_per_pitch": 8}),
     "flat, slip": ("paper_n8", {"model.cells_per_pitch": 8, "model.slip": True}),
     "flat, without ends": ("paper_n8", {"model.cells_per_pitch": 8, "model.edges": "continuous"}),
     "half": ("paper_n8_spatial", {"model.cells_per_pitch": 6, "model.axial_cells": 6}),
@@ -22,7 +22,7 @@ KINDS: dict[str, tuple[str, dict[str, object]]] = {
     "plain": ("plain_journal", {"model.cells_per_pitch": 24, "model.axial_cells": 6}),
     "plain, flat": (
         "plain_journal",
-        {"model.kind": "flat", "model.cells_per_pitch": 24, "model.axial_cells": None},
+        {"model.kind": "2d", "model.cells_per_pitch": 24, "model.axial_cells": None},
     ),
 }
 

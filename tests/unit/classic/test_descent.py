@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from petalfoil.classic.descent import PackageDescent
 from petalfoil.classic.numpy_kernels import elastic_force, project
 from petalfoil.classic.options import ClassicOptions
-from petalfoil.equilibria.ascent import rest
-from petalfoil.equilibria.work import Work
-from petalfoil.problem.coupled import CoupledProblem
+from petalfoil.equilibrium.ascent import rest
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.system.coupled import CoupledProblem
 from tests.unit.classic.bearings import bearing, package
 
 Array = NDArray[np.float64]
@@ -50,7 +50,7 @@ def test_the_projection_is_the_nearest_point() -> None:
 # ---------------------------------------------------------------------------------------------- descent
 
 
-@pytest.mark.parametrize("kind", ["flat", "half"])
+@pytest.mark.parametrize("kind", ["2d", "half"])
 def test_the_bands_are_the_stiffness(kind: str) -> None:
     problem = bearing(kind)
     W = np.random.default_rng(6).normal(size=problem.layout.n_wall)
@@ -63,11 +63,11 @@ def test_the_bands_are_the_stiffness(kind: str) -> None:
     )
 
 
-@pytest.mark.parametrize("mount", ["rigid", "hinged"])
+@pytest.mark.parametrize("mount", ["clamped", "hinged"])
 @pytest.mark.parametrize("momentum", [False, True])
 def test_the_package_alone_descends_to_newton_s(mount: str, momentum: bool) -> None:
     problem = package(8, 100e-6, **{"petals.mount": mount})
-    wanted = rest(problem, Work())
+    wanted = rest(problem, RunLog())
     assert wanted is not None
     W, load = np.zeros(problem.layout.n_wall), np.zeros(problem.layout.n_wall)
     descent = PackageDescent(problem, ClassicOptions(momentum=momentum))

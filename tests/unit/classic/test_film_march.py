@@ -13,9 +13,9 @@ from petalfoil.classic.film_march import FilmMarch
 from petalfoil.classic.kernels import March
 from petalfoil.classic.options import ClassicOptions
 from petalfoil.classic.relaxation import pressure_unknowns
-from petalfoil.equilibria.cold import solve_cold
-from petalfoil.equilibria.work import Work
-from petalfoil.problem.coupled import CoupledProblem
+from petalfoil.equilibrium.cold_start import solve_cold
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.system.coupled import CoupledProblem
 from tests.unit.classic.bearings import KINDS, bearing
 
 Array = NDArray[np.float64]
@@ -60,10 +60,10 @@ def test_an_explicit_step_conserves_mass(kind: str, monkeypatch: pytest.MonkeyPa
     assert_allclose(gained, dt * given, rtol=0.0, atol=1e-13 * float(np.sum(held[0])))
 
 
-@pytest.mark.parametrize("kind", ["flat", "half", "whole, continuous", "plain", "plain, flat"])
+@pytest.mark.parametrize("kind", ["2d", "half", "whole, continuous", "plain", "plain, flat"])
 def test_the_film_alone_marches_to_newton_s_pressure(kind: str) -> None:
     problem = bearing(kind)
-    answer = solve_cold(problem, Work())
+    answer = solve_cold(problem, RunLog())
     P, wanted = np.ones(problem.layout.balance.mesh.shape), problem.pressure(answer.x)
     film = FilmMarch(problem, ClassicOptions())
     assert film.advance(P, problem.film(answer.x), 1e-6, 2_000_000)
@@ -72,8 +72,8 @@ def test_the_film_alone_marches_to_newton_s_pressure(kind: str) -> None:
 
 
 def test_the_time_step_is_within_a_factor_two_of_the_largest_that_is_stable() -> None:
-    problem = bearing("flat")
-    H = problem.film(solve_cold(problem, Work()).x)
+    problem = bearing("2d")
+    H = problem.film(solve_cold(problem, RunLog()).x)
     settles = {
         share: FilmMarch(problem, ClassicOptions(time_share=share)).advance(np.ones(H.shape), H, 1e-6, 20_000)
         for share in (0.95, 2.2)

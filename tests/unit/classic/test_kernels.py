@@ -61,7 +61,7 @@ def test_the_marches_are_equal(kind: str) -> None:
 
 
 @pytest.mark.parametrize("momentum", [False, True])
-@pytest.mark.parametrize("kind", ["flat", "half"])
+@pytest.mark.parametrize("kind", ["2d", "half"])
 def test_the_descents_are_equal(kind: str, momentum: bool) -> None:
     problem = bearing(kind)
     package = PackageDescent(problem, ClassicOptions(momentum=momentum))

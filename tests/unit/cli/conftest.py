@@ -31,7 +31,7 @@ ambient_pressure = "1 bar"
 speed = "8000 rad/s"
 
 [model]
-kind = "flat"
+kind = "2d"
 """
 
 
@@ -41,9 +41,9 @@ def point(x: float, y: float, *, converged: bool = True, analysis: str = "solve"
         "speed": 8000.0,
         "eccentricity_x": x,
         "eccentricity_y": y,
-        "load_capacity": 1e6 * math.hypot(x, y),
-        "min_film": 5e-6,
-        "contact_total": 12.5,
+        "bearing_force": 1e6 * math.hypot(x, y),
+        "min_film_thickness": 5e-6,
+        "contact_normal_force": 12.5,
         "iterations": 7,
         "converged": converged,
         "status": "converged" if converged else "the film collapsed",

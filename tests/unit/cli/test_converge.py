@@ -28,7 +28,7 @@ class Study:
         self.asked: dict[str, Any] = {}
         self.failing: set[int] = set()
         self.interrupted_at: int | None = None
-        self.bars: dict[str, float] | ConvergenceError = {"load_capacity": 0.25, "min_film": 2e-7}
+        self.bars: dict[str, float] | ConvergenceError = {"bearing_force": 0.25, "min_film_thickness": 2e-7}
 
     def grids(self, case: Any, levels: int = 3, coarsest: int | None = None, **where: Any) -> list[int]:
         self.asked = {"case": case, "levels": levels, "coarsest": coarsest, **where}
@@ -42,11 +42,11 @@ class Study:
             yield _on(count, LOADS[number], number not in self.failing)
 
     def table(self, records: list[Record]) -> list[Estimate]:
-        loads = tuple(float(r.scalars["load_capacity"]) if r.converged else float("nan") for r in records)
+        loads = tuple(float(r.scalars["bearing_force"]) if r.converged else float("nan") for r in records)
         film = tuple(5e-6 if r.converged else float("nan") for r in records)
         return [
-            Estimate(name="load_capacity", values=loads, limit=10.0, order=2.0, error=0.02, trusted=True),
-            Estimate(name="min_film", values=film, limit=5e-6, order=float("nan"), error=3e-7, trusted=False),
+            Estimate(name="bearing_force", values=loads, limit=10.0, order=2.0, error=0.02, trusted=True),
+            Estimate(name="min_film_thickness", values=film, limit=5e-6, order=float("nan"), error=3e-7, trusted=False),
         ]
 
     def error_bars(self, record: Record, progress: Any) -> dict[str, float]:
@@ -57,7 +57,7 @@ class Study:
 
 
 def _on(cells: int, force: float, converged: bool) -> Record:
-    record = point(0.0, -1e-4, converged=converged, cells_per_pitch=cells, load_capacity=force)
+    record = point(0.0, -1e-4, converged=converged, cells_per_pitch=cells, bearing_force=force)
     return Record(analysis="solve", scalars=record.scalars, title=record.title, case_toml=CASE)
 
 
@@ -103,15 +103,15 @@ def test_json_has_the_grids_and_the_quantities(cli, study: Study, case: str) -> 
     answer = json.loads(result.stdout)
     assert list(answer) == ["grids", "quantities"]
     assert [grid["cells_per_pitch"] for grid in answer["grids"]] == [32, 64, 128]
-    assert [grid["load_capacity"] for grid in answer["grids"]] == list(LOADS)
-    assert answer["quantities"]["load_capacity"] == {
+    assert [grid["bearing_force"] for grid in answer["grids"]] == list(LOADS)
+    assert answer["quantities"]["bearing_force"] == {
         "values": list(LOADS),
         "order": 2.0,
         "limit": 10.0,
         "error": 0.02,
         "trusted": True,
     }
-    assert answer["quantities"]["min_film"]["order"] is None
+    assert answer["quantities"]["min_film_thickness"]["order"] is None
 
 
 def test_a_failed_grid_is_named_and_left_blank(cli, study: Study, case: str) -> None:
@@ -120,8 +120,8 @@ def test_a_failed_grid_is_named_and_left_blank(cli, study: Study, case: str) -> 
     assert result.exit_code == 3
     assert "the grid of 64 cells did not converge: the film collapsed" in result.stderr
     answer = json.loads(result.stdout)
-    assert answer["quantities"]["load_capacity"]["values"] == [LOADS[0], None, LOADS[2]]
-    assert answer["grids"][1]["load_capacity"] is None
+    assert answer["quantities"]["bearing_force"]["values"] == [LOADS[0], None, LOADS[2]]
+    assert answer["grids"][1]["bearing_force"] is None
 
 
 def test_interrupted_it_keeps_what_is_finished(cli, study: Study, case: str) -> None:
@@ -145,12 +145,12 @@ def test_out_holds_the_study_and_show_repeats_it(cli, study: Study, case: str, t
         assert again.stdout == run.stdout
         assert (again.exit_code, again.stderr) == (run.exit_code, run.stderr)
     ds = load(out)
-    assert ds["load_capacity"].dims == ("grid",)
-    assert_allclose(ds["load_capacity"].values, [float("nan"), *LOADS[1:]], rtol=1e-15)
-    assert float(ds["load_capacity_limit"]) == 10.0
-    assert ds["load_capacity_error"].attrs["units"] == "N"
-    assert bool(ds["load_capacity_trusted"]) is True
-    assert bool(ds["min_film_trusted"]) is False
+    assert ds["bearing_force"].dims == ("grid",)
+    assert_allclose(ds["bearing_force"].values, [float("nan"), *LOADS[1:]], rtol=1e-15)
+    assert float(ds["bearing_force_limit"]) == 10.0
+    assert ds["bearing_force_error"].attrs["units"] == "N"
+    assert bool(ds["bearing_force_trusted"]) is True
+    assert bool(ds["min_film_thickness_trusted"]) is False
 
 
 def test_plot_is_drawn(cli, study: Study, case: str, tmp_path: Path) -> None:
@@ -167,16 +167,16 @@ def test_solve_shows_error_bars_on_request(cli, study: Study, case: str) -> None
     assert ["load", "capacity", "100.00", "±", "0.25", "N"] in lines
     assert ["smallest", "film", "5.00", "±", "0.20", "µm"] in lines
     assert ["contact", "reactions", "12.50", "N"] in lines  # no bar is known
-    assert float(study.asked["own"].scalars["load_capacity"]) == 100.0
+    assert float(study.asked["own"].scalars["bearing_force"]) == 100.0
     assert "±" not in cli("solve", case).stdout
 
 
 def test_solve_json_and_file_have_the_error_bars(cli, study: Study, case: str, tmp_path: Path) -> None:
     out = str(tmp_path / "point.nc")
     run = cli("solve", case, "--error", "--json", "--out", out)
-    assert json.loads(run.stdout)["error"] == {"load_capacity": 0.25, "min_film": 2e-7}
+    assert json.loads(run.stdout)["error"] == {"bearing_force": 0.25, "min_film_thickness": 2e-7}
     assert "error" not in json.loads(cli("solve", case, "--json").stdout)
-    assert load(out)["load_capacity"].attrs["grid_error"] == 0.25
+    assert load(out)["bearing_force"].attrs["grid_error"] == 0.25
     for flags in ([], ["--json"]):
         assert cli("show", out, *flags).stdout == cli("solve", case, "--error", *flags).stdout
 
@@ -187,4 +187,4 @@ def test_without_a_second_grid_the_answer_is_given_without_bars(cli, study: Stud
     assert result.exit_code == 3
     assert result.stderr == "no error bars: a grid study needs answers on two grids at least\n"
     answer = json.loads(result.stdout)
-    assert (answer["load_capacity"], answer["error"]) == (pytest.approx(100.0), {})
+    assert (answer["bearing_force"], answer["error"]) == (pytest.approx(100.0), {})

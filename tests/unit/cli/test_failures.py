@@ -47,7 +47,7 @@ def test_a_record_that_did_not_converge_counts_as_none(cli, played, case) -> Non
     result = cli("solve", case, "--json")
     assert result.exit_code == 3
     assert result.stderr == "the run at (0, -100) um did not converge: the film collapsed\n"
-    assert json.loads(result.stdout)["load_capacity"] is None
+    assert json.loads(result.stdout)["bearing_force"] is None
 
 
 def test_failed_points_are_named_and_the_rest_is_given_out(cli, played, case, tmp_path: Path) -> None:
@@ -56,7 +56,7 @@ def test_failed_points_are_named_and_the_rest_is_given_out(cli, played, case, tm
     result = cli("curve", case, "--eccentricity", "0 um : 200 um : 3", "--json", "--out", str(out))
     assert result.exit_code == 3
     assert result.stderr.splitlines() == ["point 2 at (6.123e-15, -100) um did not converge: the film collapsed"]
-    assert [p["load_capacity"] is None for p in json.loads(result.stdout)["points"]] == [False, True, False]
+    assert [p["bearing_force"] is None for p in json.loads(result.stdout)["points"]] == [False, True, False]
     assert load(out)["converged"].values.tolist() == [True, False, True]
 
 

@@ -56,7 +56,11 @@ class Loads:
         for index, size in enumerate(loads):
             failed, up = self._point(index), 10.0 * size if size < 100.0 else math.inf
             own = {"load_x": 0.0, "load_y": -size, "share": kwargs["share"], "liftoff_speed": up}
-            own |= {"touchdown_speed": 0.9 * up, "liftoff_by_floor": 0.5, "liftoff_by_share": math.nan}
+            own |= {
+                "touchdown_speed": 0.9 * up,
+                "liftoff_by_contact_film_thickness": 0.5,
+                "liftoff_by_contact_fraction": math.nan,
+            }
             ended = {"status": "does not lift off below 9 rpm"} if math.isinf(up) else {}
             given = scalars(failed, **own) | ended
             yield Record(analysis="liftoff", scalars=given, title=TITLE, case_toml=CASE)
@@ -197,7 +201,7 @@ def test_liftoff_json_lists_figures_in_the_order_of_the_loads(cli, loads, case) 
         [90.0, None],
     )
     assert answer["status"] == ["converged", "does not lift off below 9 rpm"]
-    assert answer["liftoff_by_share"] == [None, None]
+    assert answer["liftoff_by_contact_fraction"] == [None, None]
 
 
 def test_liftoff_table_is_in_rpm_and_says_why_there_is_no_speed(cli, loads, case) -> None:

@@ -44,11 +44,11 @@ mass = "3 kg"
 unbalance = "2 um"
 
 [model]
-kind = "spatial"
+kind = "3d"
 cells_per_pitch = 16
 axial_cells = 4
 """
-KEYS = {"time", "x", "y", "min_film", "contact_share", "steps", "factorizations", "converged", "status"}
+KEYS = {"time", "x", "y", "min_film_thickness", "contact_fraction", "steps", "factorizations", "converged", "status"}
 
 
 @pytest.fixture
@@ -77,7 +77,9 @@ def test_json_gives_lists_over_time(cli: Run, rotor: str, tmp_path: Path) -> Non
     assert (result.exit_code, result.stderr) == (0, "")
     answer = json.loads(result.stdout)
     assert answer.keys() >= KEYS
-    assert {len(answer[name]) for name in ("time", "x", "y", "min_film", "contact_share")} == {answer["steps"] + 1}
+    assert {len(answer[name]) for name in ("time", "x", "y", "min_film_thickness", "contact_fraction")} == {
+        answer["steps"] + 1
+    }
     assert (answer["converged"], answer["status"]) == (True, "converged")
     assert_allclose([answer["x"][0], answer["y"][0]], [0.0, -1e-5], rtol=0.0, atol=1e-18)
     assert_allclose(answer["time"][-1], 3e-3, rtol=1e-9)

@@ -34,7 +34,7 @@ def test_axes_say_what_they_show(flat: xr.Dataset, texts: Callable[[Figure], str
     for fact in ("Paper, flat study, 8 petals", "76\u2009394 rpm", "e = 100 µm at −90°", "grid 8 petals × 32 cells"):
         assert fact in said
     assert "film floor, 1 µm" in said
-    assert f"smallest {flat['min_film'].item() * 1e6:.4g} µm" in said
+    assert f"smallest {flat['min_film_thickness'].item() * 1e6:.4g} µm" in said
 
 
 def test_petal_edges_are_marked(flat: xr.Dataset, plain: xr.Dataset) -> None:

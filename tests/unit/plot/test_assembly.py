@@ -77,7 +77,7 @@ def test_a_free_petal_that_never_meets_the_journal_has_no_mark(
 
 def test_a_plain_bearing_has_journal_and_bushing_only(texts: Callable[[Figure], str]) -> None:
     geometry = {name: value for name, value in factory.GEOMETRY.items() if name != "petal_thickness"}
-    given = {"eccentricity_x": 0.0, "eccentricity_y": 0.0, "room": 1e-3, "compressibility_number": 5.55}
+    given = {"eccentricity_x": 0.0, "eccentricity_y": 0.0, "radial_clearance": 1e-3, "compressibility_number": 5.55}
     fig = plot.package(to_dataset(Record(analysis="check", scalars={**geometry, **given}, title="Plain")))
     assert "radial room 1000 µm · Λ = 5.55" in texts(fig)
     assert part(fig.axes[1], "journal")

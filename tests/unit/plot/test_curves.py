@@ -18,7 +18,7 @@ def drawn(ax: Axes, gid: str) -> list[Line2D]:
 def test_the_line_is_the_load_over_the_eccentricity_with_gaps(curve: xr.Dataset) -> None:
     (ax,) = plot.load_characteristic([("n = 8", curve)]).axes
     line = ax.lines[0]
-    e, load = -curve["eccentricity_y"].values * 1e6, curve["load_capacity"].values
+    e, load = -curve["eccentricity_y"].values * 1e6, curve["bearing_force"].values
     # a gap at point 4, which failed, and another before point 6, which jumped
     np.testing.assert_allclose(line.get_xdata(), np.insert(e, 6, np.nan), rtol=1e-12)
     np.testing.assert_allclose(line.get_ydata(), np.insert(load, 6, np.nan), rtol=1e-12)
@@ -87,7 +87,7 @@ def test_static_draws_reaction_and_starting_torque(static: xr.Dataset) -> None:
     fig = plot.static(static)
     above, below = fig.axes
     np.testing.assert_allclose(above.lines[0].get_xdata(), [0.0, 50.0, 100.0], rtol=1e-12)
-    np.testing.assert_allclose(above.lines[0].get_ydata(), static["load_capacity"].values, rtol=1e-12)
+    np.testing.assert_allclose(above.lines[0].get_ydata(), static["bearing_force"].values, rtol=1e-12)
     np.testing.assert_allclose(below.lines[0].get_ydata(), static["starting_torque"].values, rtol=1e-12)
     assert above.get_ylabel() == "reaction  |F| [N]"
     assert below.get_ylabel() == "starting torque  M$_0$ [N·m]"

@@ -26,7 +26,7 @@ def record(analysis: str, failed: bool = False, **own: Scalar) -> Record:
     ended: dict[str, Scalar] = {
         "converged": not failed,
         "status": "lost" if failed else "converged",
-        "film_floor": 1e-6,
+        "contact_film_thickness": 1e-6,
     }
     return Record(analysis=analysis, scalars=ended | own, title="Eight petals")
 
@@ -35,7 +35,11 @@ def runup(failing: frozenset[int] = frozenset()) -> xr.Dataset:
     way = [("up", v) for v in (0.0, 100.0, 200.0)] + [("down", v) for v in (100.0, 0.0)]
     records = []
     for number, (leg, speed) in enumerate(way):
-        own = {"friction_torque": 0.4 - 1e-3 * speed, "contact_share": 1.0 - speed / 200.0, "min_film": 1e-6}
+        own = {
+            "friction_torque": 0.4 - 1e-3 * speed,
+            "contact_fraction": 1.0 - speed / 200.0,
+            "min_film_thickness": 1e-6,
+        }
         place = {"eccentricity_x": 3e-5, "eccentricity_y": -4e-5, "load_x": 0.0, "load_y": -20.0}
         records.append(record("runup", number in failing, speed=speed, leg=leg, **own, **place))
     return curve_dataset(records, "runup")

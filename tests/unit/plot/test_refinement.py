@@ -28,8 +28,8 @@ def study(load_error: float = 0.02, **grid: int) -> xr.Dataset:
                 "eccentricity_x": 0.0,
                 "eccentricity_y": -1e-4,
                 "cells_per_pitch": cells,
-                "load_capacity": load,
-                "min_film": film,
+                "bearing_force": load,
+                "min_film_thickness": film,
                 "converged": True,
             },
             title="Eight petals",
@@ -38,8 +38,8 @@ def study(load_error: float = 0.02, **grid: int) -> xr.Dataset:
     ]
     nan = float("nan")
     estimates = [
-        Estimate(name="load_capacity", values=loads, limit=10.0, order=2.0, error=load_error, trusted=True),
-        Estimate(name="min_film", values=films, limit=films[-1], order=nan, error=6e-7, trusted=False),
+        Estimate(name="bearing_force", values=loads, limit=10.0, order=2.0, error=load_error, trusted=True),
+        Estimate(name="min_film_thickness", values=films, limit=films[-1], order=nan, error=6e-7, trusted=False),
     ]
     return study_dataset(records, estimates)
 
@@ -74,4 +74,4 @@ def test_what_cannot_be_drawn_is_refused(flat: xr.Dataset) -> None:
     with pytest.raises(UsageError, match="converge"):
         plot.convergence(flat)
     with pytest.raises(ConvergenceError, match="smaller than its error bar"):
-        plot.convergence(study(load_error=11.0).assign(min_film_error=1.0))
+        plot.convergence(study(load_error=11.0).assign(min_film_thickness_error=1.0))

@@ -9,12 +9,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from petalfoil.case import Mount
-from petalfoil.problem.build import build_problem
 from petalfoil.report.bounds import bounded
 from petalfoil.report.paper import package
 from petalfoil.report.scope import COMPARED, Scope
 from petalfoil.report.variations import DOWNWARD, VARIATIONS, Variation
-from petalfoil.structure.petals import build_mesh
+from petalfoil.system.build import build_problem
+from petalfoil.walls.petals import build_mesh
 from tests.cases import case
 
 NAMED = {variation.name: variation for variation in VARIATIONS}
@@ -51,7 +51,7 @@ def test_a_variation_is_a_case(variation: Variation, count: int) -> None:
 def test_a_clamped_variation_is_clamped_at_its_tilt() -> None:
     petals = NAMED["clamped_5"].case(6, 16).petals
     assert petals is not None
-    assert petals.mount is Mount.RIGID
+    assert petals.mount is Mount.CLAMPED
     assert_allclose(petals.root_tilt, math.radians(5.0), rtol=1e-12)
 
 

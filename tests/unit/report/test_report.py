@@ -65,7 +65,7 @@ def test_the_folder_has_the_page_and_the_data(evidence: Evidence, tmp_path: Path
     assert words.count("<img ") == 8
     assert "@import" not in words
     curve = load(page.parent / "reference_flat_n8.nc")
-    assert_allclose(curve["load_capacity"].values[1:], evidence.flat.curves[1].loads(), rtol=1e-12)
+    assert_allclose(curve["bearing_force"].values[1:], evidence.flat.curves[1].loads(), rtol=1e-12)
 
 
 def test_the_data_are_the_numbers(evidence: Evidence, tmp_path: Path) -> None:
@@ -80,7 +80,7 @@ def test_the_data_are_the_numbers(evidence: Evidence, tmp_path: Path) -> None:
     assert_allclose([float(line["h [m]"]) for line in first], central.fields["film_thickness"][0, :, 0], rtol=1e-8)
     summary = json.loads((folder / "report.json").read_text(encoding="utf-8"))
     points = summary["curves"]["tangent_spatial"]["8"]
-    assert_allclose([p["load_capacity"] for p in points[1:]], evidence.tangent_spatial.curves[1].loads(), rtol=1e-12)
+    assert_allclose([p["bearing_force"] for p in points[1:]], evidence.tangent_spatial.curves[1].loads(), rtol=1e-12)
     assert [row["name"] for row in summary["study"]] == [row.variation.name for row in evidence.study]
 
 

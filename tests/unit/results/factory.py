@@ -25,7 +25,7 @@ GEOMETRY = {
     "length": LENGTH,
     "petal_thickness": DELTA,
     "ambient_pressure": AMBIENT,
-    "film_floor": FLOOR,
+    "contact_film_thickness": FLOOR,
 }
 
 
@@ -93,8 +93,8 @@ def at_rest(eccentricity: float = 0.0) -> Record:
     answer = {
         "force_x": 0.0,
         "force_y": force,
-        "load_capacity": force,
-        "contact_total": 55.0 + force,
+        "bearing_force": force,
+        "contact_normal_force": 55.0 + force,
         "starting_torque": 0.3 * R_J * (55.0 + force),
     }
     return Record(
@@ -121,8 +121,8 @@ def checked() -> Record:
         "pitch": math.pi / 4,
         "covered_angle": float(phi[-1]) - math.pi / 4,
         "metric_radius": R_M,
-        "room": R_B - R_J,
-        "room_left": R_B - R_J - 2 * DELTA - FLOOR,
+        "radial_clearance": R_B - R_J,
+        "pack_clearance": R_B - R_J - 2 * DELTA - FLOOR,
         "compressibility_number": 5.55,
         "bending_stiffness": 0.0998,
         "root_tilt": 0.25,
@@ -146,7 +146,7 @@ def failed(eccentricity: float = 300e-6) -> Record:
         "speed": 8000.0,
         "eccentricity_x": 0.0,
         "eccentricity_y": -eccentricity,
-        "load_capacity": 999.0,
+        "bearing_force": 999.0,
         "force_x": 1.0,
         "force_y": 999.0,
     }
@@ -252,23 +252,23 @@ def figures(
         "eccentricity_y": -eccentricity,
         "force_x": force_x,
         "force_y": force_y,
-        "load_capacity": load,
+        "bearing_force": load,
         "attitude_angle": beta,
         "film_force_x": force_x,
         "film_force_y": force_y,
         "contact_force_x": 0.0,
         "contact_force_y": 0.0,
-        "contact_total": 0.0,
-        "contact_share": 0.0,
-        "min_film": float(film.min()),
-        "min_film_angle": float(theta[thin[0], thin[1]] % (2 * np.pi)),
-        "min_film_z": float(coords["z"][thin[2]]),
-        "max_pressure": float(pressure.max()),
-        "max_pressure_angle": float(theta[high[0], high[1]] % (2 * np.pi)),
+        "contact_normal_force": 0.0,
+        "contact_fraction": 0.0,
+        "min_film_thickness": float(film.min()),
+        "min_film_thickness_angle": float(theta[thin[0], thin[1]] % (2 * np.pi)),
+        "min_film_thickness_z": float(coords["z"][thin[2]]),
+        "peak_pressure": float(pressure.max()),
+        "peak_pressure_angle": float(theta[high[0], high[1]] % (2 * np.pi)),
         "friction_torque": 3.2e-3,
         "power_loss": 25.6,
         "side_leakage": 1.2e-6,
-        "max_stress": 150e6,
+        "max_bending_stress": 150e6,
     }
 
 
@@ -276,14 +276,14 @@ def bookkeeping() -> dict[str, float | int | bool | str]:
     """How the run went."""
     return {
         "residual": 3e-11,
-        "mass_balance": 2e-12,
-        "reaction_balance": 4e-12,
+        "mass_balance_error": 2e-12,
+        "reaction_balance_error": 4e-12,
         "iterations": 18,
         "factorizations": 19,
-        "package_iterations": 9,
+        "pack_iterations": 9,
         "wall_time": 0.05,
         "converged": True,
         "status": "converged",
-        "branch": "from rest",
-        "branches_known": 1,
+        "solution_path": "from rest",
+        "known_equilibria": 1,
     }

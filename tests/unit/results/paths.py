@@ -42,22 +42,28 @@ def moved(path: Path, touching: bool = False) -> Record:
     over = {
         **{"x": path.x, "y": path.y, "velocity_x": path.velocity_x, "velocity_y": path.velocity_y},
         **{"shaft_speed": path.speed, "shaft_angle": path.angle},
-        "min_film": 25e-6 - distance,
-        "contact_share": np.where(distance > 0.5 * distance.max(), 0.25, 0.0) * touching,
-        "max_pressure": np.full(len(path.time), 1.2e5),
+        "min_film_thickness": 25e-6 - distance,
+        "contact_fraction": np.where(distance > 0.5 * distance.max(), 0.25, 0.0) * touching,
+        "peak_pressure": np.full(len(path.time), 1.2e5),
         **{"force_x": 0.0 * path.x, "force_y": 0.0 * path.x + 29.4, "friction_torque": 0.0 * path.x + 1e-3},
         **{"kinetic_energy": kinetic, "elastic_energy": 0.0 * kinetic},
         **{"load_work": kinetic - kinetic[0] - film_work, "film_work": film_work},
         **{"shaft_work": 1e-3 * path.angle, "rubbing_work": 0.0 * path.angle},
     }
     coords, pictures = _pictures(path)
-    geometry = {"journal_radius": 25e-3, "bushing_radius": 25.025e-3, "length": 50e-3, "film_floor": 1e-6}
+    geometry = {"journal_radius": 25e-3, "bushing_radius": 25.025e-3, "length": 50e-3, "contact_film_thickness": 1e-6}
     return Record(
         analysis="orbit",
         scalars={
             **geometry,
-            **{"ambient_pressure": 1e5, "rotor_mass": 3.0, "speed": SPEED, "mass_defect": 1e-5, "energy_defect": 1e-4},
-            **{"amplitude": 1e-5, "dominating_ratio": 0.5, "revolutions": path.turns, "steps": len(path.time) - 1},
+            **{
+                "ambient_pressure": 1e5,
+                "rotor_mass": 3.0,
+                "speed": SPEED,
+                "mass_balance_error": 1e-5,
+                "energy_balance_error": 1e-4,
+            },
+            **{"amplitude": 1e-5, "dominant_whirl_ratio": 0.5, "revolutions": path.turns, "steps": len(path.time) - 1},
             **{"factorizations": 7, "failed_steps": 0, "wall_time": 0.5, "converged": True, "status": "converged"},
         },
         fields={**over, **pictures},
@@ -79,5 +85,5 @@ def _pictures(path: Path) -> tuple[dict[str, npt.NDArray[np.generic]], dict[str,
         "z": np.array([25e-3]),
     }
     pressure = 1e5 * (1.0 + (1e-5 / film) ** 2)
-    fields = {"frame_pressure": pressure.reshape(shape), "frame_film": film.reshape(shape)}
+    fields = {"frame_pressure": pressure.reshape(shape), "frame_film_thickness": film.reshape(shape)}
     return coords, fields | {"frame_x": e_x, "frame_y": e_y}

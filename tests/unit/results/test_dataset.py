@@ -46,7 +46,7 @@ def test_a_point_that_did_not_converge_keeps_no_field_and_no_figure() -> None:
     bad = Record(**{**vars(good), "scalars": {**good.scalars, "converged": False}})
     ds = to_dataset(bad)
     assert [name for name in bad.fields if name in ds] == ["free_radius"]
-    assert np.isnan(ds["load_capacity"])
+    assert np.isnan(ds["bearing_force"])
     assert ds["speed"] == 8000.0
 
 
@@ -55,21 +55,21 @@ def test_a_curve_has_the_points_in_front_and_the_geometry_once() -> None:
     ds = curve_dataset(records)
     assert ds.attrs["analysis"] == "curve"
     assert ds["pressure"].dims == ("point", "petal", "phi_exposed", "z")
-    assert ds["load_capacity"].dims == ("point",)
+    assert ds["bearing_force"].dims == ("point",)
     assert ds["journal_radius"].dims == ()
     assert ds["free_radius"].dims == ("phi",)
     assert ds["status"].dims == ("point",)
     assert len(json.loads(ds.attrs["history"])) == len(records)
     for number in (0, 7):
         np.testing.assert_array_equal(ds["radius"][number].values, records[number].fields["radius"])
-        assert ds["load_capacity"][number] == records[number].scalars["load_capacity"]
+        assert ds["bearing_force"][number] == records[number].scalars["bearing_force"]
 
 
 def test_a_failed_point_of_a_curve_is_nan_and_says_why() -> None:
     ds = curve_dataset(factory.curve())
     assert ds["converged"].values.tolist() == [True] * 4 + [False] + [True] * 3
     assert np.isnan(ds["pressure"][4]).all()
-    assert np.isnan(ds["load_capacity"][4])
+    assert np.isnan(ds["bearing_force"][4])
     assert ds["eccentricity_y"][4] == pytest.approx(-160e-6, rel=1e-12)
     assert ds["status"][4] == "the step length fell below its limit"
     assert not np.isnan(ds["pressure"].isel(point=[0, 1, 2, 3, 5, 6, 7])).any()

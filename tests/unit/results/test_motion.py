@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from petalfoil.results.motion import Path, dominating_ratio, figures_of, settled_amplitude, spectrum, waterfall
+from petalfoil.results.motion import Path, dominant_whirl_ratio, figures_of, settled_amplitude, spectrum, waterfall
 
 from .paths import SPEED, ramped, whirling
 
@@ -44,7 +44,7 @@ def test_a_circle_is_a_peak_of_its_radius_at_its_frequency(ratio: float) -> None
 
 def test_the_larger_of_two_circles_dominates_whatever_drifts() -> None:
     path = whirling(24.0, (0.48, 5e-6), (1.0, 2e-6), drift=4e-4 + 1e-4j)
-    assert_allclose(dominating_ratio(path), 0.48, rtol=2e-3)
+    assert_allclose(dominant_whirl_ratio(path), 0.48, rtol=2e-3)
 
 
 def test_an_ellipse_has_a_line_on_both_sides() -> None:
@@ -55,7 +55,7 @@ def test_an_ellipse_has_a_line_on_both_sides() -> None:
 
 
 def test_a_few_turns_tell_no_frequency() -> None:
-    assert math.isnan(dominating_ratio(whirling(3.0, (1.0, 1e-5))))
+    assert math.isnan(dominant_whirl_ratio(whirling(3.0, (1.0, 1e-5))))
 
 
 def test_the_amplitude_is_that_of_the_last_half() -> None:
@@ -69,7 +69,7 @@ def test_a_start_alone_has_no_amplitude() -> None:
     one = {name: np.zeros(1) for name in ("x", "y", "velocity_x", "velocity_y", "shaft_angle", "shaft_speed")}
     found = figures_of(np.zeros(1), one)
     assert found["amplitude"] == 0.0
-    assert math.isnan(found["dominating_ratio"])
+    assert math.isnan(found["dominant_whirl_ratio"])
 
 
 @pytest.mark.parametrize("ratio", [1.0, 0.5])

@@ -8,8 +8,8 @@ from tests.unit.results import factory
 
 
 def test_an_unknown_scalar_is_refused_with_the_nearest_name() -> None:
-    with pytest.raises(ValueError, match=r"no scalar 'load_capacty'.*Did you mean 'load_capacity'"):
-        Record(analysis="solve", scalars={"load_capacty": 1.0})
+    with pytest.raises(ValueError, match=r"no scalar 'bearing_forse'.*Did you mean 'bearing_force'"):
+        Record(analysis="solve", scalars={"bearing_forse": 1.0})
 
 
 def test_unknown_fields_and_coordinates_are_refused() -> None:
@@ -20,10 +20,10 @@ def test_unknown_fields_and_coordinates_are_refused() -> None:
 
 
 def test_a_figure_is_given_once_or_over_time_but_not_both() -> None:
-    over = {"coords": {"time": np.zeros(2)}, "fields": {"min_film": np.ones(2)}}
-    assert Record(analysis="orbit", scalars={}, **over).fields["min_film"].shape == (2,)
-    with pytest.raises(ValueError, match="'min_film' is given as a scalar and as a field"):
-        Record(analysis="orbit", scalars={"min_film": 1e-6}, **over)
+    over = {"coords": {"time": np.zeros(2)}, "fields": {"min_film_thickness": np.ones(2)}}
+    assert Record(analysis="orbit", scalars={}, **over).fields["min_film_thickness"].shape == (2,)
+    with pytest.raises(ValueError, match="'min_film_thickness' is given as a scalar and as a field"):
+        Record(analysis="orbit", scalars={"min_film_thickness": 1e-6}, **over)
 
 
 @pytest.mark.parametrize(
@@ -35,7 +35,7 @@ def test_a_figure_is_given_once_or_over_time_but_not_both() -> None:
         ("iterations", 2.0),
         ("iterations", True),
         ("status", 0),
-        ("branch", None),
+        ("solution_path", None),
     ],
 )
 def test_a_value_of_another_type_is_refused(name: str, value: object) -> None:
@@ -64,7 +64,7 @@ def test_a_field_of_another_shape_is_refused() -> None:
 
 def test_figures_of_a_state_that_did_not_converge_are_withheld() -> None:
     reported = factory.failed().reported()
-    assert math.isnan(reported["load_capacity"])
+    assert math.isnan(reported["bearing_force"])
     assert math.isnan(reported["force_y"])
     assert reported["stable"] is False
     assert reported["eccentricity_y"] == -300e-6

@@ -3,12 +3,13 @@ import sys
 
 import pytest
 
-from petalfoil.results.schema import COORDINATES, FIELDS, HISTORIES, SCALARS, VARIABLES, Kind, Role
+from petalfoil.results.schema import COORDINATES, FIELDS, HISTORIES, SCALARS, VARIABLES, DataType, Role
 
 SOLVE_KEYS = """
-    speed eccentricity_x eccentricity_y force_x force_y load_capacity attitude_angle film_force_x film_force_y
-    contact_force_x contact_force_y contact_total contact_share min_film max_pressure friction_torque power_loss
-    side_leakage max_stress residual iterations factorizations wall_time converged status""".split()
+    speed eccentricity_x eccentricity_y force_x force_y bearing_force attitude_angle film_force_x film_force_y
+    contact_force_x contact_force_y contact_normal_force contact_fraction min_film_thickness peak_pressure
+    friction_torque power_loss side_leakage max_bending_stress residual iterations
+    factorizations wall_time converged status""".split()
 
 
 @pytest.mark.parametrize("name", VARIABLES)
@@ -17,7 +18,7 @@ def test_every_variable_explains_itself(name: str) -> None:
     assert variable.long_name
     assert variable.symbol
     assert bool(variable.units) == (
-        variable.kind in (Kind.FLOAT, Kind.INT)
+        variable.kind in (DataType.FLOAT, DataType.INT)
     )  # text and flags have no unit, numbers have one
     assert set(variable.dims) <= set(COORDINATES)
 
@@ -42,7 +43,7 @@ def test_the_keys_of_solve_are_declared_as_scalars() -> None:
 def test_no_answer_is_a_whole_number() -> None:
     """An answer that is not there must be able to say so, and a whole number has no NaN."""
     assert [
-        name for name, variable in VARIABLES.items() if variable.role is Role.ANSWER and variable.kind is Kind.INT
+        name for name, variable in VARIABLES.items() if variable.role is Role.ANSWER and variable.kind is DataType.INT
     ] == []
 
 

@@ -15,10 +15,10 @@ from petalfoil.results.summary import with_bar
 
 NAN = float("nan")
 RECORDS = [
-    Record(analysis="solve", scalars={"cells_per_pitch": 32, "load_capacity": 2.5, "converged": True}),
+    Record(analysis="solve", scalars={"cells_per_pitch": 32, "bearing_force": 2.5, "converged": True}),
     Record(analysis="solve", scalars={"cells_per_pitch": 64, "converged": False, "status": "lost"}),
 ]
-ESTIMATE = Estimate(name="load_capacity", values=(2.5, NAN), limit=2.25, order=1.9, error=0.5, trusted=True)
+ESTIMATE = Estimate(name="bearing_force", values=(2.5, NAN), limit=2.25, order=1.9, error=0.5, trusted=True)
 
 
 def test_a_study_goes_through_a_file_unchanged(tmp_path: Path) -> None:
@@ -33,22 +33,22 @@ def test_a_study_goes_through_a_file_unchanged(tmp_path: Path) -> None:
 
 
 def test_error_bars_are_attributes_of_their_figures() -> None:
-    ds = xr.Dataset({"load_capacity": 2.5, "min_film": 1e-6})
-    marked = with_error_bars(ds, {"load_capacity": 0.25})
-    assert error_bars_of(marked) == {"load_capacity": 0.25}
+    ds = xr.Dataset({"bearing_force": 2.5, "min_film_thickness": 1e-6})
+    marked = with_error_bars(ds, {"bearing_force": 0.25})
+    assert error_bars_of(marked) == {"bearing_force": 0.25}
     assert error_bars_of(ds) == {}
 
 
 @pytest.mark.parametrize(
     ("name", "values", "error", "expected"),
     [
-        ("load_capacity", [16.8763, 16.86], 0.1132, (["16.88", "16.86"], "0.11")),
-        ("load_capacity", [16.8763, NAN], 12.0, (["17", "-"], "12")),
-        ("load_capacity", [16.8763], 1200.0, (["17"], "1200")),
-        ("min_film", [7.7438e-6], 4.1e-8, (["7.744"], "0.041")),
-        ("load_capacity", [16.8763], 0.0, (["16.88"], "0")),
-        ("load_capacity", [16.8763], 1e-12, (["16.88"], "1.00e-12")),
-        ("load_capacity", [2e-13], 5e-8, (["2.00e-13"], "5e-08")),
+        ("bearing_force", [16.8763, 16.86], 0.1132, (["16.88", "16.86"], "0.11")),
+        ("bearing_force", [16.8763, NAN], 12.0, (["17", "-"], "12")),
+        ("bearing_force", [16.8763], 1200.0, (["17"], "1200")),
+        ("min_film_thickness", [7.7438e-6], 4.1e-8, (["7.744"], "0.041")),
+        ("bearing_force", [16.8763], 0.0, (["16.88"], "0")),
+        ("bearing_force", [16.8763], 1e-12, (["16.88"], "1.00e-12")),
+        ("bearing_force", [2e-13], 5e-8, (["2.00e-13"], "5e-08")),
     ],
 )
 def test_a_value_has_the_digits_that_its_bar_leaves(

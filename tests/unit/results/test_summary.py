@@ -22,14 +22,17 @@ def test_json_holds_every_scalar_in_si_and_nothing_else() -> None:
 
 def test_json_is_null_where_a_figure_is_missing_or_infinite() -> None:
     given = summary.as_json(
-        Record(analysis="solve", scalars={"min_film": float("nan"), "growth_rate": np.float64("inf"), "force_x": 0.0})
+        Record(
+            analysis="solve",
+            scalars={"min_film_thickness": float("nan"), "growth_rate": np.float64("inf"), "force_x": 0.0},
+        )
     )
-    assert given == {"force_x": 0.0, "min_film": None, "growth_rate": None}
+    assert given == {"force_x": 0.0, "min_film_thickness": None, "growth_rate": None}
 
 
 def test_json_of_a_failed_state_reports_no_figure_as_an_answer() -> None:
     given = summary.as_json(factory.failed())
-    assert given["load_capacity"] is None
+    assert given["bearing_force"] is None
     assert given["converged"] is False
 
 
@@ -51,7 +54,7 @@ def test_rows_show_a_dash_for_a_missing_figure() -> None:
 
 
 def test_a_cell_of_a_name_without_a_unit_of_its_own_is_shown_in_si() -> None:
-    assert summary.cell("mass_balance", 2e-12) == ("mass balance", "2.00e-12", "")
+    assert summary.cell("mass_balance_error", 2e-12) == ("mass balance error", "2.00e-12", "")
     assert summary.cell("film_force_x", 1.0) == ("film force x", "1.000", "N")
     assert summary.cell("stable", True) == ("stable", "yes", "")
 

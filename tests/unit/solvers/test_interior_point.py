@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 
 from petalfoil.solvers.cone import ConePoint
 from petalfoil.solvers.interior_point import InteriorOptions, Pace, Step, Watch, interior_point, recentre, room
-from petalfoil.solvers.linear import LinearSolver
+from petalfoil.solvers.sparse_lu import LinearSolver
 from tests.unit.solvers.problems import CELLS, Spring, string, string_answer
 from tests.verification.shell_helpers import ElasticProblem, cold_point
 

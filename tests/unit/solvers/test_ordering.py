@@ -5,7 +5,7 @@ import pytest
 import scipy.sparse as sp
 from numpy.testing import assert_allclose, assert_array_equal
 
-from petalfoil.solvers.linear import LinearSolver, symmetric_lu, without_zeros
+from petalfoil.solvers.sparse_lu import LinearSolver, symmetric_lu, without_zeros
 from petalfoil.sparsity import Elimination, TiedOrder, postorder
 from petalfoil.sparsity.ordering import GROWN, parents
 

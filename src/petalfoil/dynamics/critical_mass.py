@@ -1,0 +1,92 @@
+"""Stability of a rigid rotor on the bearing: `det(Z(i Omega) - m Omega^2) = 0` with a real mass `m` (E6)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from petalfoil.equilibrium.linear_response import Motion
+from petalfoil.equilibrium.run_log import RunLog
+
+Complex = NDArray[np.complex128]
+
+SCAN = np.concatenate([[0.006, 0.012, 0.025], np.linspace(0.05, 1.2, 24), [1.5, 2.0, 3.0]])
+"""Whirl ratios between which changes of sign are looked for; whirl of gas bearings is near a half and below, that of a
+heavy rotor on soft petals far below."""
+
+
+@dataclass(frozen=True)
+class Whirl:
+    """The first neutral whirl.
+
+    Attributes
+    ----------
+    mass : float
+        Smallest mass of a rigid rotor (share on this bearing) that whirls [kg]; infinite where none does.
+    ratio : float
+        Whirl frequency over speed [1]; nan where none does.
+    """
+
+    mass: float
+    ratio: float
+
+
+def neutral_whirl(motion: Motion, speed: float, work: RunLog, scanned: Complex | None = None) -> Whirl:
+    """Find the smallest whirling mass about the state of `motion`; `scanned` if the impedances of `scan` are known.
+
+    For a mass at the threshold the two eigenvalues of `Z(i Omega)` include a real one, `m Omega^2`: the branches of
+    their imaginary part are followed over whirl ratio and their zeros bracketed.
+    """
+    roots: list[Whirl] = []
+    values = list(np.linalg.eigvals(scan(motion, work) if scanned is None else scanned))
+    for k in range(len(SCAN) - 1):
+        ahead = matched(values[k], values[k + 1])
+        for branch in (0, 1):
+            if np.sign(values[k][branch].imag) != np.sign(ahead[branch].imag):
+                roots += crossing(motion, (SCAN[k], SCAN[k + 1]), values[k][branch], speed, work)
+        values[k + 1] = ahead
+    return min(roots, key=lambda root: root.mass, default=Whirl(np.inf, np.nan))
+
+
+def scan(motion: Motion, work: RunLog) -> Complex:
+    """Impedances at the whirl ratios of `SCAN`, (n, 2, 2) [N/m]."""
+    return np.array([whirl_impedance(motion, nu, work) for nu in SCAN])
+
+
+def whirl_impedance(motion: Motion, nu: float, work: RunLog) -> Complex:
+    """`Z` at whirl ratio `nu`, (2, 2) [N/m]; one factorisation."""
+    scales = motion.problem.layout.scales
+    gradient = motion.respond(float(nu), work.probe_solver).force_gradient()
+    return np.asarray(-gradient * scales.force / scales.length, dtype=np.complex128)
+
+
+def eigenvalues(motion: Motion, nu: float, work: RunLog) -> Complex:
+    """Eigenvalues of the impedance at whirl ratio `nu`, (2,) [N/m]."""
+    return np.asarray(np.linalg.eigvals(whirl_impedance(motion, nu, work)), dtype=np.complex128)
+
+
+def matched(before: Complex, after: Complex) -> Complex:
+    """`after`, ordered so that each eigenvalue continues its own branch."""
+    straight = np.abs(after - before).sum()
+    crossed = np.abs(after[::-1] - before).sum()
+    return after if straight <= crossed else after[::-1]
+
+
+def crossing(motion: Motion, between: tuple[float, float], start: complex, speed: float, work: RunLog) -> list[Whirl]:
+    """The neutral whirl in a bracket of whirl ratios, if it belongs to a positive mass."""
+    nearest = start
+
+    def imaginary(nu: float) -> float:
+        values = eigenvalues(motion, nu, work)
+        return float(values[np.argmin(np.abs(values - nearest))].imag)
+
+    low, high = imaginary(between[0]), imaginary(between[1])
+    if np.sign(low) == np.sign(high):
+        return []
+    nu = float(brentq(imaginary, *between, xtol=1e-6, rtol=1e-8))
+    values = eigenvalues(motion, nu, work)
+    mass = float(values[np.argmin(np.abs(values.imag))].real) / (nu * speed) ** 2
+    return [Whirl(mass, nu)] if mass > 0.0 else []

@@ -1,0 +1,150 @@
+"""The rotor's equation of motion (65) in the units of the problem.
+
+    M e'' = F_film + F_contact + load + rotating load + unbalance      (O1)
+
+A rigid rotor whose mass centre is `u` off the axis: the unbalance is `m u (omega^2 n - alpha t)` with `n` the direction
+of the mass centre and `t` across it, turned with the shaft. In two equal bearings, `l` to both sides of the mass
+centre, the shaft's slopes `a` move too, as `l a`, with the moments over `l`:
+
+    I_t a_x'' + I_p omega a_y' = M_x + (I_t - I_p) chi omega^2 n_x,  I_t a_y'' - I_p omega a_x' = M_y + ...        (O5)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.case import Case
+from petalfoil.dynamics.speed_schedule import Schedule
+from petalfoil.errors import UsageError
+from petalfoil.system.scales import Scales
+
+Array = NDArray[np.float64]
+
+GRAVITY = 9.80665
+"""Standard gravity [m/s^2]."""
+
+
+@dataclass(frozen=True)
+class Clock:
+    """Units of time.
+
+    Attributes
+    ----------
+    rate : float
+        Units of time in a second [rad/s].
+    bearing_number : float
+        Bearing number of one radian per unit of time, `Lam_t` [1].
+    """
+
+    rate: float
+    bearing_number: float
+
+    @classmethod
+    def of(cls, case: Case, scales: Scales, schedule: Schedule) -> Clock:
+        """A radian at the highest speed; where nothing turns, the time in which a film of reference size drains."""
+        radius, viscosity = case.bearing.journal_radius, case.gas.viscosity
+        rate = schedule.top or 1.0 / scales.bearing_number(viscosity, 1.0, radius)
+        return cls(rate, scales.bearing_number(viscosity, rate, radius))
+
+
+@dataclass(frozen=True)
+class RotorMotion:
+    """Masses and loads of the rotor; `d` is 2, or 4 for two bearings on a shaft that tilts.
+
+    Attributes
+    ----------
+    inertia : (d, d) array
+        `M`: masses times `h_ref rate^2 / F_ref` [1].
+    turning : (d, d) array
+        Gyroscopic matrix at one unit of speed, `rate` [1].
+    load : (d,) array
+        Constant load over the unit of force [1].
+    unbalance : (along, tilt)
+        `m u / F_ref`, and `(I_t - I_p) chi / (l F_ref)` of a shaft whose principal axis is askew by `chi` [s^2].
+    rotating : (force, speed)
+        Rotating load over the unit of force [1] and its speed [rad/s]; None turns with the shaft.
+    schedule : Schedule
+        Speed of the shaft.
+    clock : Clock
+        Units of time.
+    """
+
+    inertia: Array
+    turning: Array
+    load: Array
+    unbalance: tuple[float, float]
+    rotating: tuple[float, float | None]
+    schedule: Schedule
+    clock: Clock
+
+    @classmethod
+    def of(cls, case: Case, scales: Scales, schedule: Schedule, load: tuple[float, float] | None = None) -> RotorMotion:
+        """The rotor of `case` under `load` [N], by default the case's load, without one its weight along -y.
+
+        Raises
+        ------
+        UsageError
+            The case has no rotor.
+        """
+        if case.rotor is None:
+            raise UsageError(NO_ROTOR)
+        rotor, clock, given = case.rotor, Clock.of(case, scales, schedule), constant_load(case, load)
+        unit, lever = scales.length * clock.rate**2 / scales.force, rotor.lever
+        masses, turning, force = [rotor.mass, rotor.mass], np.zeros((2, 2)), np.array(given) / scales.force
+        askew = 0.0
+        if lever:
+            masses += [rotor.transverse_inertia / lever**2] * 2
+            turning = np.zeros((4, 4))
+            turning[2, 3], turning[3, 2] = (sign * rotor.polar_inertia / lever**2 * unit for sign in (1.0, -1.0))
+            force = np.append(force, [0.0, 0.0])
+            askew = (rotor.transverse_inertia - rotor.polar_inertia) * rotor.skew / (lever * scales.force)
+        return cls(
+            inertia=unit * np.diag(masses),
+            turning=turning,
+            load=force,
+            unbalance=(rotor.mass * rotor.unbalance / scales.force, askew),
+            rotating=(rotor.rotating_load / scales.force, rotor.rotating_speed),
+            schedule=schedule,
+            clock=clock,
+        )
+
+    def gyroscopic(self, tau: float) -> Array:
+        """Gyroscopic matrix at time `tau`, (d, d) [1]."""
+        return self.turning * (self.schedule.speed(tau / self.clock.rate) / self.clock.rate)
+
+    def outside(self, tau: float) -> Array:
+        """All that acts on the rotor but the bearings, at time `tau` [units of time], (d,) [1]."""
+        t = tau / self.clock.rate
+        omega, alpha, angle = self.schedule.speed(t), self.schedule.acceleration(t), self.schedule.angle(t)
+        along, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+        turning = omega**2 * along - alpha * across
+        force, speed = self.rotating
+        turned = angle if speed is None else speed * t
+        total: Array = self.load.copy()
+        total[:2] += force * np.array([np.cos(turned), np.sin(turned)]) + self.unbalance[0] * turning
+        if len(total) > 2:
+            total[2:] += self.unbalance[1] * turning
+        return total
+
+    def bearing_number(self, tau: float) -> float:
+        """Bearing number at time `tau` [1]."""
+        return self.clock.bearing_number * self.schedule.speed(tau / self.clock.rate) / self.clock.rate
+
+
+NO_ROTOR = "the motion of a rotor needs a case with [rotor]: give its mass there"
+
+
+def constant_load(case: Case, load: tuple[float, float] | None = None) -> tuple[float, float]:
+    """The constant load [N]: `load`, by default the case's, without one the rotor's weight along -y.
+
+    Raises
+    ------
+    UsageError
+        The case has no rotor.
+    """
+    if case.rotor is None:
+        raise UsageError(NO_ROTOR)
+    return load or case.operation.load or (0.0, -case.rotor.mass * GRAVITY)

@@ -1,0 +1,79 @@
+"""What is known of film, wall, contacts and rotor at an instant."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.system.friction import FrictionState
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class TimeState:
+    """What time changes: gas in each cell, position and velocity of the journal. A point, or a rate of change.
+
+    Attributes
+    ----------
+    mass : (n_film,) array
+        Gas in the cell of each pressure unknown [1].
+    e, v : (2,) array
+        Displacement over the reference length and its change per unit of time [1].
+    """
+
+    mass: Array
+    e: Array
+    v: Array
+
+    def plus(self, step: float, *rates: tuple[float, TimeState]) -> TimeState:
+        """This plus `step` times the weighted `rates`."""
+        mass, e, v = self.mass, self.e, self.v
+        for weight, rate in rates:
+            mass = mass + step * weight * rate.mass
+            e = e + step * weight * rate.e
+            v = v + step * weight * rate.v
+        return TimeState(mass, e, v)
+
+    def minus(self, base: TimeState, rate: float) -> TimeState:
+        """Rate of change since `base`: the difference times `rate`."""
+        return TimeState(rate * (self.mass - base.mass), rate * (self.e - base.e), rate * (self.v - base.v))
+
+
+@dataclass(frozen=True)
+class Instant:
+    """The whole state at a time.
+
+    Attributes
+    ----------
+    tau : float
+        Time [units of time].
+    x : (n,) array
+        Deflections and pressures [1].
+    lam : (m,) array
+        Contact reactions over the unit of nodal force [1].
+    closed : (m,) bool array
+        Gaps that carry load.
+    moving : TimeState
+        Gas, position, velocity.
+    change : TimeState
+        Their rates of change.
+    rubbed : FrictionState or None
+        Slip and friction of the petals.
+    """
+
+    tau: float
+    x: Array
+    lam: Array
+    closed: Mask
+    moving: TimeState
+    change: TimeState
+    rubbed: FrictionState | None = None
+
+    @property
+    def e(self) -> Array:
+        """Displacement over the reference length, (2,) [1]."""
+        return self.moving.e

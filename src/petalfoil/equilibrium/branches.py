@@ -1,0 +1,55 @@
+"""Is there more than one equilibrium at this position? A coarse grid tells at little cost.
+
+Petals may sit in more than one state (resting on the next along a stretch or along a line), and they do so on every
+grid. Which state the interior point finds depends on the barrier at which the film joins.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.equilibrium.cold_start import attempt
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.physics.forces import node_area
+from petalfoil.system.coupled import CoupledProblem
+
+Array = NDArray[np.float64]
+
+PROBE_BARRIERS = (3.0, 30.0, 0.3)
+DIFFERENT = 1e-3
+"""Equilibria whose total push on the journal differs by more than this share are different ones."""
+
+
+def fingerprint(answer: Solution) -> Array:
+    """Push of film and contact on the journal: total size, sum, and along both axes; (4,) [N]."""
+    problem = answer.problem
+    film, radius = problem.layout.wall.film, problem.layout.balance.radius
+    push = (problem.pressure(answer.x) - 1.0) * node_area(film, radius) * problem.layout.scales.pressure
+    reactions = answer.lam[problem.layout.wall.contacts.journal] * problem.layout.scales.force
+    if len(reactions):
+        push = push + reactions.reshape(push.shape)
+    radial = push.sum(axis=2)
+    parts = [np.abs(push), radial, radial * np.cos(film.theta), radial * np.sin(film.theta)]
+    return np.array([part.sum() for part in parts])
+
+
+def distinct(answers: list[Solution]) -> int:
+    """Number of different equilibria among `answers`, which share a grid and a position."""
+    found: list[Array] = []
+    for answer in answers:
+        mark = fingerprint(answer)
+        if all(np.max(np.abs(mark - other)) > DIFFERENT * max(mark[0], other[0]) for other in found):
+            found.append(mark)
+    return len(found)
+
+
+def probe(problem: CoupledProblem, work: RunLog) -> int:
+    """Number of different equilibria that a few cold starts find, at least 1."""
+    question = RunLog()
+    answers = [attempt(problem, barrier, question) for barrier in PROBE_BARRIERS]
+    work.probes.factorizations += question.film.factorizations + question.package.factorizations
+    count = max(1, distinct([answer for answer in answers if answer is not None]))
+    work.note("probe", equilibria=count)
+    return count

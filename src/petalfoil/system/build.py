@@ -1,0 +1,40 @@
+"""Case -> coupled problem."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.case import Case
+from petalfoil.physics.mass_balance import FilmBalance
+from petalfoil.system.coupled import CoupledProblem, Layout
+from petalfoil.system.scales import scales_of
+from petalfoil.walls import Wall, build_wall
+from petalfoil.walls.two_bearings import paired
+
+
+def build_problem(case: Case) -> CoupledProblem:
+    """Discretise `case` at its speed and eccentricity."""
+    return discretised(case, build_wall(case), np.array(case.operation.eccentricity))
+
+
+def build_pair(case: Case) -> CoupledProblem:
+    """Two of the bearings of `case` on a shaft that tilts, as its rotor has them; the whole length of each."""
+    if case.rotor is None or case.rotor.span is None:
+        raise ValueError("this rotor runs in one bearing")
+    whole = case.replace(**{"model.symmetry": False})
+    return discretised(
+        whole, paired(build_wall(whole), case.rotor.span), np.append(case.operation.eccentricity, [0, 0])
+    )
+
+
+def discretised(case: Case, wall: Wall, displacement: NDArray[np.float64]) -> CoupledProblem:
+    """The equations on a wall at a displacement [m]."""
+    scales = scales_of(case, wall)
+    radius, speed = case.bearing.journal_radius, case.operation.speed
+    knudsen = case.slip_length / scales.length
+    return CoupledProblem(
+        layout=Layout(wall, FilmBalance(wall.film, radius, knudsen), scales),
+        bearing_number=scales.bearing_number(case.gas.viscosity, speed, radius),
+        displacement=displacement / scales.length,
+    )

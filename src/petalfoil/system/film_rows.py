@@ -1,0 +1,108 @@
+"""The film's rows of the coupled system: cell balances, and the content of a film without ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.physics.gas_inventory import GasContent
+from petalfoil.physics.mass_balance import Entries, FilmBalance
+from petalfoil.physics.reynolds import Flux
+from petalfoil.sparsity import add_up
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FilmRows:
+    """One equation for each pressure unknown, its derivatives and their places."""
+
+    balance: FilmBalance
+
+    @cached_property
+    def content(self) -> GasContent | None:
+        """The condition that stands in place of the first balance; None where the film has ends."""
+        content = GasContent(self.balance.mesh, self.balance.area, self.balance.knudsen)
+        return content if content.needed else None
+
+    @cached_property
+    def by_pressure(self) -> Entries:
+        """Places of the derivatives by the pressure unknowns."""
+        return _joined(self.balance.by_pressure, None if self.content is None else self.content.by_pressure)
+
+    @cached_property
+    def by_film(self) -> Entries:
+        """Places of the derivatives by the film thickness at every film node (flat number)."""
+        return _joined(self.balance.by_film, None if self.content is None else self.content.by_film)
+
+    def at(self, P: Array, H: Array, Lam: float) -> FilmState:
+        """The rows at one state."""
+        return FilmState(self, P, H, Lam)
+
+    def give_way(self, values: Array, places: Entries) -> Array:
+        """Drop the balance that gives way to the content."""
+        return values if self.content is None else np.where(places.rows == 0, 0.0, values)
+
+
+@dataclass(frozen=True)
+class FilmState:
+    """The film's rows at one state: pressures and film thicknesses at all nodes, bearing number."""
+
+    rows: FilmRows
+    P: Array
+    H: Array
+    Lam: float
+
+    @cached_property
+    def fluxes(self) -> tuple[Flux, Flux]:
+        """Flows through all faces."""
+        return self.rows.balance.fluxes(self.P, self.H, self.Lam)
+
+    @cached_property
+    def residual(self) -> Array:
+        """Net outflow of every cell, (n_unknown,) [1]."""
+        residual = self.rows.balance.residual(self.fluxes)
+        if self.rows.content is not None:
+            residual[0] = self.rows.content.value(self.P, self.H)
+        return residual
+
+    @cached_property
+    def size(self) -> Array:
+        """What each row's residual is measured by, (n_unknown,) [1]."""
+        size = self.rows.balance.size(self.fluxes)
+        if self.rows.content is not None:
+            size[0] = self.rows.content.size(self.P, self.H)
+        return size
+
+    @cached_property
+    def tangent(self) -> tuple[Array, Array]:
+        """Derivatives in the order of `by_pressure` and `by_film`."""
+        balance, content = self.rows.balance, self.rows.content
+        by_P, by_H = balance.tangent(self.fluxes)
+        if content is None:
+            return by_P, by_H
+        more_P, more_H = content.tangent(self.P, self.H)
+        by_P, by_H = self.rows.give_way(by_P, balance.by_pressure), self.rows.give_way(by_H, balance.by_film)
+        return np.concatenate([by_P, more_P]), np.concatenate([by_H, more_H])
+
+    @cached_property
+    def storage(self) -> tuple[Array, Array]:
+        """Derivatives of the stored mass by pressure and film, in the order of `balance.storage_entries`."""
+        balance = self.rows.balance
+        by_P, by_H = balance.storage_tangent(self.P, self.H, self.Lam)
+        return self.rows.give_way(by_P, balance.storage_entries), self.rows.give_way(by_H, balance.storage_entries)
+
+    def moved(self, change: Array, rate: float) -> Array:
+        """Derivative of the rows (and of `rate` times the storage) by the film, applied to `change` (flat nodes)."""
+        steady, held, n = self.rows.by_film, self.rows.balance.storage_entries, self.rows.balance.mesh.n_unknown
+        moved = add_up(steady.rows, self.tangent[1] * change[steady.cols], n)
+        return moved + rate * add_up(held.rows, self.storage[1] * change[held.cols], n)
+
+
+def _joined(first: Entries, second: Entries | None) -> Entries:
+    if second is None:
+        return first
+    return Entries(np.concatenate([first.rows, second.rows]), np.concatenate([first.cols, second.cols]))

@@ -1,0 +1,104 @@
+"""The wall alone under a frozen film pressure: `min w K w / 2 - w f` over non-negative gaps, a convex programme."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from petalfoil.sparsity import Elimination, Pattern
+from petalfoil.system.coupled import CoupledProblem, Layout, wall_size
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PackageProblem:
+    """Package equilibrium at one journal position; unknowns are the deflections `w` alone.
+
+    Attributes
+    ----------
+    coupled : CoupledProblem
+        The bearing that it is part of.
+    load : (n_wall,) array
+        Nodal forces of the frozen film over the unit of force [1]; zero for a shaft at rest.
+    """
+
+    coupled: CoupledProblem
+    load: Array
+
+    @property
+    def layout(self) -> Layout:
+        """Mesh and constant entries."""
+        return self.coupled.layout
+
+    @property
+    def G(self) -> sp.csr_array:
+        """Derivative of the gaps by the deflections, (m, n_wall)."""
+        return self.layout.wall.contacts.G
+
+    @property
+    def weight(self) -> Array:
+        """Weights of the gaps."""
+        return self.layout.weight
+
+    @property
+    def positive(self) -> slice:
+        """No unknown is bound to stay positive."""
+        return slice(0, 0)
+
+    @property
+    def rank(self) -> Elimination:
+        """Orders of elimination, kept for all loads and positions."""
+        return self.layout.package_elimination
+
+    @cached_property
+    def pattern(self) -> Pattern:
+        """Sparsity of `K + G^T diag G`."""
+        K = self.layout.stiffness.tocoo()
+        rows, cols, _, _ = self.layout.gap_products
+        return Pattern.of(np.concatenate([K.row, rows]), np.concatenate([K.col, cols]), self.layout.n_wall)
+
+    def gaps(self, x: Array) -> Array:
+        """Gaps over the reference length, (m,) [1]."""
+        return self.coupled.gaps(x)
+
+    def admits(self, x: Array) -> bool:
+        """The package alone can be evaluated anywhere."""
+        return True
+
+    def linearize(self, x: Array, shift: Array | None = None) -> PackageLinearization:
+        """Residual and tangent; the gaps' shift does not enter them."""
+        return PackageLinearization(self, x)
+
+
+@dataclass(frozen=True)
+class PackageLinearization:
+    """The package at one state."""
+
+    problem: PackageProblem
+    x: Array
+
+    @cached_property
+    def residual(self) -> Array:
+        """`K w - f`, reactions apart, shape (n_wall,) [1]."""
+        out: Array = self.problem.layout.elastic_force(self.x) - self.problem.load
+        return out
+
+    @cached_property
+    def size(self) -> Array:
+        """What each row's residual is measured by, as in the coupled system (C4)."""
+        return wall_size(self.problem.layout, self.x)
+
+    def matrix(self, theta: Array, rate: float = 0.0) -> sp.csc_array:
+        """`K + G^T diag(theta) G`; nothing is stored, so `rate` adds nothing."""
+        _, _, gap, factor = self.problem.layout.gap_products
+        K = self.problem.layout.stiffness.tocoo()
+        return self.problem.pattern.assemble(np.concatenate([K.data, theta[gap] * factor]))
+
+    def by_shift(self, shift: Array, rate: float = 0.0) -> Array:
+        """The residual does not depend on the gaps."""
+        return np.zeros(len(self.x))

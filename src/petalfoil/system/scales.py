@@ -1,0 +1,31 @@
+"""Units of the unknowns, chosen once for a case so that numbers near 1 mean what matters."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from petalfoil.case import Case
+from petalfoil.walls.base import Wall
+
+PETAL_FILM = 1e-5
+"""Reference film of a petal bearing [m]: its films are some micrometres to some tens thick."""
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Reference length `h_ref` [m], pressure `p_a` [Pa], nodal force `p_a` times a node's area [N]."""
+
+    length: float
+    pressure: float
+    force: float
+
+    def bearing_number(self, viscosity: float, speed: float, radius: float) -> float:
+        """`Lam = 6 mu omega R_j^2 / (p_a h_ref^2)` [1]."""
+        return 6.0 * viscosity * speed * radius**2 / (self.pressure * self.length**2)
+
+
+def scales_of(case: Case, wall: Wall) -> Scales:
+    """Units for `case`: the clearance of a plain bearing, 10 um for petals."""
+    length = PETAL_FILM if wall.n_unknown else case.bearing.clearance
+    pressure = case.gas.ambient_pressure
+    return Scales(length, pressure, pressure * wall.node_area)

@@ -1,0 +1,96 @@
+"""Two equal bearings on one shaft that tilts: one wall with twice the unknowns and four displacements of the journal.
+
+The shaft's axis is at `(x, y) + (z - z_0) (a_x, a_y)`. With the lever `l`, half the distance of the bearings, the
+displacement is `q = (x, y, l a_x, l a_y)`, and a node at `z` along the shaft sees `(x, y) + (z - z_0) / l (l a)`.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from petalfoil.mesh.strips import FilmMesh
+from petalfoil.physics.contact import Contacts
+from petalfoil.walls.base import Elasticity, Wall
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+
+def paired(wall: Wall, span: float) -> Wall:
+    """`wall` twice, its middles `span` [m] apart; the first at `-span / 2`.
+
+    Raises
+    ------
+    ValueError
+        The wall is that of half a length, which cannot tilt.
+    """
+    if wall.film.axial.half:
+        raise ValueError("half a length cannot tilt")
+    order = by_kind(wall.contacts)
+    n = wall.n_unknown
+    film = FilmMesh(
+        wall.film.phi,
+        np.vstack([wall.film.theta, wall.film.theta]),
+        wall.film.axial,
+        twice_numbered(wall.film.unknown, wall.film.n_unknown),
+    )
+    return Wall(
+        name=wall.name,
+        film=film,
+        elasticity=Elasticity(
+            twice(wall.elasticity.difference), twice(wall.elasticity.strain), twice(wall.elasticity.rigidity)
+        ),
+        film_unknown=twice_numbered(wall.film_unknown, n),
+        load_area=np.concatenate([wall.load_area, wall.load_area]),
+        rest_film=np.concatenate([wall.rest_film, wall.rest_film]),
+        contacts=paired_contacts(wall, span, order),
+        node_area=wall.node_area,
+        free_motions=twice(wall.free_motions),
+        support=twice(wall.support),
+        slip=twice(wall.slip),
+        share=sp.csr_array(twice(wall.share)[:, order]),
+    )
+
+
+def twice(matrix: sp.csr_array) -> sp.csr_array:
+    """Block diagonal of a matrix with itself."""
+    return sp.csr_array(sp.block_diag([matrix, matrix], format="csr"))
+
+
+def twice_numbered(numbers: Index, count: int) -> Index:
+    """Numbers of both bearings' unknowns, -1 where there is none."""
+    both: Index = np.concatenate([numbers, np.where(numbers >= 0, numbers + count, -1)])
+    return both
+
+
+def by_kind(contacts: Contacts) -> Index:
+    """Gaps of both bearings, all on the journal first, then on the bushing, then between petals."""
+    m = len(contacts.rest)
+    every = np.arange(m)
+    kinds = [every[rows] for rows in (contacts.journal, contacts.bushing, contacts.petals)]
+    return np.concatenate([part + first for part in kinds for first in (0, m)])
+
+
+def paired_contacts(wall: Wall, span: float, order: Index) -> Contacts:
+    """Gaps of both bearings, with the part of each that the tilt of the shaft moves."""
+    contacts, film = wall.contacts, wall.film
+    lever, m = 0.5 * span, len(contacts.rest)
+    along = np.broadcast_to((film.axial.z - 0.5 * film.axial.length) / lever, film.shape).ravel()
+    sides = []
+    for place in (-1.0, 1.0):
+        arm = np.zeros(m)
+        arm[contacts.journal] = place + along
+        sides.append(np.hstack([contacts.by_e, arm[:, None] * contacts.by_e]))
+    sizes = [2 * len(np.arange(m)[rows]) for rows in (contacts.journal, contacts.bushing, contacts.petals)]
+    ends = np.concatenate([[0], np.cumsum(sizes)])
+    return Contacts(
+        sp.csr_array(twice(contacts.G)[order]),
+        np.concatenate([contacts.rest, contacts.rest])[order],
+        np.vstack(sides)[order],
+        np.concatenate([contacts.area, contacts.area])[order],
+        *(slice(int(a), int(b)) for a, b in pairwise(ends)),
+    )

@@ -1,0 +1,57 @@
+"""Tests of the sparse factorisation."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from numpy.testing import assert_allclose
+
+from petalfoil.solvers.sparse_lu import LinearSolver, SingularMatrixError, equilibrate
+
+
+def badly_scaled(n: int = 30) -> sp.csc_array:
+    rng = np.random.default_rng(7)
+    matrix = sp.random_array((n, n), density=0.2, rng=rng) + sp.diags_array(rng.uniform(1.0, 2.0, n))
+    rows, cols = 10.0 ** rng.uniform(-9.0, 9.0, (2, n))
+    return sp.csc_array(sp.diags_array(rows) @ matrix @ sp.diags_array(cols))
+
+
+def test_equilibrate_scales_to_one() -> None:
+    matrix = badly_scaled()
+    scaled, row, col = equilibrate(matrix)
+    assert_allclose(scaled.toarray(), row[:, None] * matrix.toarray() * col[None, :], rtol=1e-12)
+    assert_allclose(abs(scaled).max(axis=0).toarray().ravel(), 1.0, rtol=1e-12)
+    assert abs(scaled).max() <= 1.0 + 1e-12
+
+
+def test_equilibrate_leaves_empty_lines_alone() -> None:
+    matrix = sp.csc_array(np.array([[0.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, -8.0]]))
+    scaled, row, col = equilibrate(matrix)
+    assert_allclose(scaled.toarray(), np.diag([0.0, 1.0, -1.0]), rtol=0.0)
+    assert row[0] == col[0] == 1.0
+
+
+def test_solve_of_one_and_several_right_hand_sides() -> None:
+    matrix = badly_scaled()
+    x = np.random.default_rng(8).uniform(1.0, 2.0, (30, 3))
+    x /= abs(matrix).max(axis=0).toarray().ravel()[:, None]  # so that no unknown drowns in another one's rounding
+    factor = LinearSolver().factor(matrix)
+    assert_allclose(factor.solve(matrix @ x), x, rtol=1e-9)
+    assert_allclose(factor.solve(matrix @ x[:, 0]), x[:, 0], rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "matrix",
+    [np.zeros((2, 2)), np.array([[1.0, 0.0], [2.0, 0.0]]), np.array([[1.0, np.nan], [0.0, 1.0]]), [[np.inf]]],
+    ids=["zero", "empty column", "nan", "inf"],
+)
+def test_what_has_no_inverse(matrix: object) -> None:
+    with pytest.raises(SingularMatrixError):
+        LinearSolver().factor(sp.csc_array(matrix))
+
+
+def test_counts() -> None:
+    solver = LinearSolver()
+    for n in (3, 5, 2):
+        solver.factor(sp.csc_array(sp.eye_array(n)))
+    assert solver.counter.factorizations == 3
+    assert solver.counter.largest == 5
