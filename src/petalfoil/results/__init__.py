@@ -12,6 +12,7 @@ In the order data flows:
 - ``export``   coefficients for other programs: CSV, ROSS
 - ``study``    the records of a grid study and its estimates to ``xarray.Dataset``, and back
 - ``atomic``   a file is replaced whole or left alone
+- ``seal``     proof that a file is what was written
 - ``store``    datasets to NetCDF and back
 
 Conventions: SI units inside; a figure of a state that did not converge is NaN; ``dataset``, ``chart``, ``study`` and

@@ -18,16 +18,17 @@ def replacing(path: Path) -> Iterator[Path]:
     Parameters
     ----------
     path : Path
-        Where the finished file goes.
+        Where the finished file goes; a symbolic link stays, what it points to is replaced.
 
     Yields
     ------
     Path
         The name to write under.
     """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}-{secrets.token_hex(4)}.part")
+    target = path.resolve()  # a link stays a link: what it points to is replaced
+    temporary = target.with_name(f".{target.name}.{os.getpid()}-{secrets.token_hex(4)}.part")
     try:
         yield temporary
-        os.replace(temporary, path)
+        os.replace(temporary, target)
     finally:
         temporary.unlink(missing_ok=True)

@@ -9,8 +9,11 @@ import xarray as xr
 
 from petalfoil.errors import StoreError
 from petalfoil.results.atomic import replacing
+from petalfoil.results.seal import add_seal, digest_of_data, is_sealed
 
 _MARKS = ("petalfoil_version", "analysis", "case")
+DIGEST = "petalfoil_digest"
+"""Attribute of a file that holds the checksum of its data; a dataset in memory does not have it."""
 _UNREADABLE = (
     OSError,
     RuntimeError,
@@ -42,7 +45,9 @@ def save(ds: xr.Dataset, path: str | Path) -> None:
     }
     try:
         with replacing(target) as temporary:
-            ds.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
+            stored = ds.assign_attrs({DIGEST: digest_of_data(ds)})
+            stored.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
+            add_seal(temporary)
     except (OSError, RuntimeError) as error:
         raise StoreError(f"cannot write {target}: {error}") from error
 
@@ -63,11 +68,12 @@ def load(path: str | Path) -> xr.Dataset:
     Raises
     ------
     StoreError
-        There is no such file, it cannot be read, or petalfoil did not write it.
+        There is no such file, it cannot be read, petalfoil did not write it, or it was changed since.
     """
     source = Path(path)
     if not source.is_file():
         raise StoreError(f"no result file {source}")
+    sealed = _seal_of(source)
     try:
         ds = xr.load_dataset(source, engine="netcdf4")
     except _UNREADABLE as error:
@@ -75,4 +81,30 @@ def load(path: str | Path) -> xr.Dataset:
     missing = [mark for mark in _MARKS if mark not in ds.attrs]
     if missing:
         raise StoreError(f"{source} was not written by petalfoil: it has no attribute {missing[0]!r}")
+    digest = ds.attrs.pop(DIGEST, None)
+    if not sealed and digest != digest_of_data(ds):
+        raise StoreError(
+            f"{source} is not as petalfoil wrote it: its data do not match their checksum ({DIGEST}); "
+            "run the analysis again, or restore the file from a copy"
+        )
     return ds
+
+
+def _seal_of(source: Path) -> bool | None:
+    """Whether the file carries a seal that fits its bytes; None where it has none.
+
+    Raises
+    ------
+    StoreError
+        The file cannot be read, or its bytes are not those that were sealed.
+    """
+    try:
+        sealed = is_sealed(source)
+    except OSError as error:
+        raise StoreError(f"cannot read {source}: {error.strerror}") from error
+    if sealed is False:
+        raise StoreError(
+            f"{source} is damaged: its bytes do not match the checksum at its end; run the analysis again, or restore "
+            "the file from a copy"
+        )
+    return sealed

@@ -112,3 +112,53 @@ def test_a_netcdf_file_of_someone_else_is_a_store_error(tmp_path: Path) -> None:
     xr.Dataset({"t": ("x", [1.0, 2.0])}).to_netcdf(tmp_path / "other.nc")
     with pytest.raises(StoreError, match="not written by petalfoil"):
         load(tmp_path / "other.nc")
+
+
+def test_a_file_that_others_copied_keeps_its_data_checksum(tmp_path: Path) -> None:
+    save(DATASETS["solve"], tmp_path / "result.nc")
+    xr.load_dataset(tmp_path / "result.nc").to_netcdf(tmp_path / "copy.nc")
+    assert load(tmp_path / "copy.nc").identical(DATASETS["solve"])
+
+
+def test_a_number_changed_by_hand_is_refused(tmp_path: Path) -> None:
+    save(DATASETS["solve"], tmp_path / "result.nc")
+    changed = xr.load_dataset(tmp_path / "result.nc")
+    changed["bearing_force"] = changed["bearing_force"] + 8.0
+    changed.to_netcdf(tmp_path / "changed.nc")
+    with pytest.raises(StoreError, match="do not match their checksum"):
+        load(tmp_path / "changed.nc")
+    del changed.attrs["petalfoil_digest"]
+    changed.to_netcdf(tmp_path / "bare.nc")
+    with pytest.raises(StoreError, match="do not match their checksum"):
+        load(tmp_path / "bare.nc")
+
+
+def flipped(whole: bytes, rng: np.random.Generator) -> bytes:
+    place, bit = int(rng.integers(len(whole))), int(rng.integers(8))
+    return whole[:place] + bytes([whole[place] ^ (1 << bit)]) + whole[place + 1 :]
+
+
+@pytest.mark.parametrize("count", [100, pytest.param(2000, marks=pytest.mark.slow)])
+def test_a_flipped_bit_is_harmless_or_refused(count: int, tmp_path: Path) -> None:
+    rng, file = np.random.default_rng(7), tmp_path / "result.nc"
+    for name in ("solve", "curve"):
+        save(DATASETS[name], file)
+        whole = file.read_bytes()
+        for _ in range(count // 2):
+            file.write_bytes(flipped(whole, rng))
+            try:
+                back = load(file)
+            except StoreError:
+                continue
+            assert back.identical(DATASETS[name])
+
+
+def test_a_symbolic_link_stays_a_link(tmp_path: Path) -> None:
+    target, link = tmp_path / "disk" / "result.nc", tmp_path / "link.nc"
+    target.parent.mkdir()
+    save(DATASETS["curve"], target)
+    link.symlink_to(target)
+    save(DATASETS["solve"], link)
+    assert link.is_symlink()
+    assert load(target).attrs["analysis"] == "solve"
+    assert [path.name for path in target.parent.iterdir()] == ["result.nc"]
