@@ -189,7 +189,8 @@ RUNS = (
         (*MOTION, *ELASTIC, "contact_fraction@mean", "rubbing_work@last", "revolutions")),
     Run("check 2-D", partial(petalfoil.check, FLAT),
         ("radial_clearance", "pack_clearance", "compressibility_number", "overlap", "layers", "petal_angle",
-         "covered_angle", "metric_radius", "bending_stiffness", "root_tilt", "first_contact_angle", "free_petal_height", "radius@mean")),
+         "covered_angle", "metric_radius", "bending_stiffness", "root_tilt", "first_contact_angle",
+         "free_petal_height", "radius@mean")),
     Run("check plain", partial(petalfoil.check, PLAIN),
         ("pack_clearance", "compressibility_number", "mean_free_path", "knudsen_number")),
 )  # fmt: skip
