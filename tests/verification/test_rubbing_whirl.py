@@ -224,7 +224,7 @@ def test_what_cannot_be_asked() -> None:
             run(bearing(), amplitude=amplitude)
     with pytest.raises(UsageError, match="petal_friction is 0"):
         run(bearing(0.0), amplitude=MICRON)
-    with pytest.raises(UsageError, match="no petals"):
+    with pytest.raises(UsageError, match="petals that rub"):
         coefficients.run(case("plain_journal", **{"surface.petal_friction": 0.3}), [1.0], amplitude=MICRON)
     with pytest.raises(UsageError, match="above zero"):
         coefficients.iterate(bearing(), [8000.0], [0.0, 100.0], amplitude=MICRON)

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import math
-
-import numpy as np
-
-from petalfoil.analysis.fields import coordinates, petal_fields
+from petalfoil.analysis.fields import coordinates, wall_state
 from petalfoil.analysis.figures import given
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case, ModelKind
@@ -16,10 +12,7 @@ from petalfoil.errors import ConvergenceError
 from petalfoil.results.record import Record
 from petalfoil.system.build import build_problem
 from petalfoil.system.scales import Scales
-from petalfoil.walls.petals import petals_of
-
-FINE = 2001
-"""Angles at which the free shape is looked at."""
+from petalfoil.walls import Capability, wall_kind
 
 Named = dict[str, float | int | bool | str]
 
@@ -32,8 +25,9 @@ def run(case: Case) -> Record:
     ConvergenceError
         The package did not settle.
     """
-    scalars: Named = {**given(case), **bearing_figures(case)}
-    if case.petals is None:
+    kind = wall_kind(case)
+    scalars: Named = {**given(case), **bearing_figures(case), **kind.check_scalars(case)}
+    if not kind.can(Capability.PACK):
         return Record(analysis="check", scalars=scalars, case_toml=case.to_toml(), title=case.title)
     flat = case.replace(**{"model.kind": ModelKind.TWO_D, "operation.speed": 0.0})
     with one_thread():
@@ -41,11 +35,10 @@ def run(case: Case) -> Record:
         answer = rest(build_problem(flat), work)
     if answer is None:
         raise ConvergenceError("the package did not settle at rest", history=work.history, advice="check its geometry")
-    fields = petal_fields(flat, answer)
     return Record(
         analysis="check",
-        scalars={**scalars, **package_figures(case)},
-        fields={"free_radius": fields["free_radius"], "radius": fields["radius"]},
+        scalars=scalars,
+        fields=dict(kind.cross_section(flat, wall_state(answer).deflection)),
         coords=coordinates(flat, answer),
         case_toml=case.to_toml(),
         title=case.title,
@@ -59,7 +52,8 @@ def bearing_figures(case: Case) -> Named:
     """
     scales = Scales(case.bearing.clearance, case.gas.ambient_pressure, 1.0)
     number = scales.bearing_number(case.gas.viscosity, case.operation.speed, case.bearing.journal_radius)
-    thinnest = case.room if case.petals is None else case.surface.contact_film_thickness
+    on_journal = wall_kind(case).can(Capability.PACK)
+    thinnest = case.surface.contact_film_thickness if on_journal else case.room
     return {
         "radial_clearance": case.room,
         "pack_clearance": case.pack_clearance,
@@ -67,25 +61,4 @@ def bearing_figures(case: Case) -> Named:
         "viscosity": case.gas.viscosity,
         "mean_free_path": case.gas.mean_free_path,
         "knudsen_number": case.gas.mean_free_path / thinnest,
-    }
-
-
-def package_figures(case: Case) -> Named:
-    """Overlap, layers, stiffness, free shape."""
-    petals, package = petals_of(case)
-    phi = np.linspace(0.0, package.petal_angle, FINE)
-    r0 = package.free_radius(phi)
-    inner = r0 - 0.5 * package.thickness - case.bearing.journal_radius
-    touching = np.flatnonzero(inner <= 0.0)
-    return {
-        "overlap": package.overlap,
-        "layers": package.layers,
-        "petal_angle": package.petal_angle,
-        "pitch": package.pitch,
-        "covered_angle": package.covered_angle,
-        "metric_radius": package.metric_radius,
-        "bending_stiffness": petals.bending_stiffness,
-        "root_tilt": package.root_tilt,
-        "first_contact_angle": float(phi[touching[0]]) if len(touching) else math.nan,
-        "free_petal_height": float(np.max(package.metric_radius - r0)),
     }

@@ -31,14 +31,12 @@ def reaction_balance(answer: Solution) -> float:
     """Largest defect of a petal's loads against its support, in motions that bend nothing (S4), over the loads [1]."""
     layout = answer.problem.layout
     w, P = answer.x[: layout.n_wall], answer.x[layout.n_wall :]
-    if not layout.n_wall:
-        return 0.0
     wall, unit = layout.wall, layout.scales.length / layout.scales.force
     loads = layout.push @ (P - 1.0) + wall.contacts.G.T @ answer.lam
     parts = layout.push @ np.abs(P - 1.0) + abs(wall.contacts.G.T) @ answer.lam
     defect = wall.free_motions.T @ loads + unit * (wall.support @ w + wall.support @ answer.state.fine)
     scale = abs(wall.free_motions.T) @ parts
-    return float(np.max(np.abs(defect) / np.maximum(scale, np.finfo(float).tiny)))
+    return float(np.max(np.abs(defect) / np.maximum(scale, np.finfo(float).tiny), initial=0.0))
 
 
 def side_leakage(answer: Solution) -> float:

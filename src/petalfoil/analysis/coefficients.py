@@ -22,6 +22,7 @@ from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.record import Record
 from petalfoil.system.friction import friction_of
+from petalfoil.walls import Capability, required
 
 Array = NDArray[np.float64]
 Load = tuple[float, float]
@@ -120,9 +121,9 @@ def check_amplitude(case: Case, frequencies: Array, amplitude: float | None) -> 
         return
     if not 0.0 < amplitude < math.inf:
         raise UsageError("the amplitude must be positive; without one, petals with friction stick")
-    if not case.surface.petal_friction > 0.0 or case.petals is None:
-        missing = "surface.petal_friction is 0" if case.petals is not None else "there are no petals"
-        raise UsageError(f"an amplitude says how far petals rub, and here none do: {missing}")
+    required(case, Capability.RUBBING, "an amplitude")
+    if not case.surface.petal_friction > 0.0:
+        raise UsageError("an amplitude says how far petals rub, and here none do: surface.petal_friction is 0")
     if np.any(frequencies == 0.0):
         raise UsageError(
             "with an amplitude, whirl frequencies must be above zero: what friction takes in a cycle does not vanish "

@@ -22,6 +22,7 @@ from petalfoil.errors import ConvergenceError
 from petalfoil.results.record import Record
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
+from petalfoil.walls import Capability, wall_kind
 
 PROBE_CELLS, PROBE_AXIAL = 24, 6
 """Grid on which other equilibria are looked for."""
@@ -74,7 +75,8 @@ def chosen(case: Case, work: RunLog) -> tuple[Solution, Named]:
     problem = build_problem(case)
     found = from_nothing(problem, work)
     rates = [leading_eigenvalue(answer, work) for answer in found]
-    known = 1 if case.petals is None else probe(build_problem(coarse(case)), work)
+    several = wall_kind(case).can(Capability.SEVERAL_EQUILIBRIA)
+    known = probe(build_problem(coarse(case)), work) if several else 1
     way = ""
     if known > 1 or not found or rates[0].real > 0.0:
         risen, jumps = ascend(problem, work)

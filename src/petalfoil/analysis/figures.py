@@ -13,6 +13,7 @@ from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.physics.forces import attitude_angle, contact_force, film_force, node_area, viscous_torque
 from petalfoil.results.record import Record
+from petalfoil.walls import wall_kind
 
 Array = NDArray[np.float64]
 Named = dict[str, float | int | bool | str]
@@ -22,10 +23,7 @@ def record_of(analysis: str, case: Case, answer: Solution, extra: Named, work: R
     """The record of an answer: figures, fields, coordinates, history."""
     fields = all_fields(case, answer)
     scalars = {**given(case), **forces(case, answer), **film_figures(case, answer, fields), **trust(answer), **extra}
-    if "bending_stress" in fields:
-        scalars["max_bending_stress"] = float(np.max(np.abs(fields["bending_stress"])))
-    else:
-        scalars["max_bending_stress"] = 0.0
+    scalars.update(wall_kind(case).scalars(fields))
     return Record(
         analysis=analysis,
         scalars=scalars,
@@ -56,7 +54,7 @@ def given(case: Case) -> Named:
         "journal_radius": bearing.journal_radius,
         "bushing_radius": bearing.bushing_radius,
         "length": bearing.length,
-        "petal_thickness": 0.0 if case.petals is None else case.petals.total_thickness,
+        **wall_kind(case).geometry(case),
         "ambient_pressure": case.gas.ambient_pressure,
         "contact_film_thickness": case.surface.contact_film_thickness,
     }

@@ -21,6 +21,7 @@ from petalfoil.equilibrium.loaded import Balance
 from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.record import Record
+from petalfoil.walls import Capability, required
 
 SHARE = 0.01
 """Share of the contacts below which the journal floats."""
@@ -53,12 +54,10 @@ def iterate(
     Raises
     ------
     UsageError
-        A plain bearing (its surfaces touch at rest only in one line: there is no package to lift off from), a load
-        or share out of range.
+        A wall that does not rest on the journal at zero speed, a load or share out of range.
     """
     newton_only(case)
-    if case.petals is None:
-        raise UsageError("lift-off needs a case with [petals]")
+    required(case, Capability.LIFT_OFF, "lift-off")
     if not 0.0 < share < 1.0:
         raise UsageError("the contact share must lie between 0 and 1")
     if not loads or any(not load > 0.0 for load in loads):

@@ -343,8 +343,9 @@ def continued(case: Case, schedule: Schedule, result: xr.Dataset) -> float:
     if "last_position" not in result:
         raise UsageError("this result holds no motion to go on from: give a file that orbit wrote")
     before = Case.from_toml(result.attrs["case"])
-    for section in ("bearing", "petals", "gas", "surface", "model"):
-        if getattr(before, section) != getattr(case, section):
+    walls = [wall.section for wall in (*before.walls, *case.walls)]
+    for section in ("bearing", *walls, "gas", "surface", "model"):
+        if getattr(before, section, None) != getattr(case, section, None):
             raise UsageError(
                 f"the motion to go on from is that of another bearing: its [{section}] differs from the case's"
             )

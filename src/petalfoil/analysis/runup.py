@@ -14,6 +14,7 @@ from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.record import Record
+from petalfoil.walls import Capability, required
 
 POINTS = 25
 """Speeds of a run-up, rest included."""
@@ -34,10 +35,9 @@ def iterate(
     Raises
     ------
     UsageError
-        A plain bearing, no load, or the top speed or the number of points is out of range.
+        A wall that has no pack at zero speed, no load, or the top speed or the number of points is out of range.
     """
-    if case.petals is None:
-        raise UsageError("a run-up needs a case with [petals]: a plain bearing at rest touches in a single line")
+    required(case, Capability.PACK, "a run-up")
     if not top > 0.0:
         raise UsageError("the top speed of a run-up must be above zero")
     if points < 3:

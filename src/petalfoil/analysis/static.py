@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from petalfoil.analysis.classic_method import is_classic, rest_by_classic
-from petalfoil.analysis.fields import coordinates, petal_fields
+from petalfoil.analysis.fields import coordinates, wall_fields
 from petalfoil.analysis.figures import Named, effort, failed_record, forces, given
 from petalfoil.analysis.hysteresis import follow, legs
 from petalfoil.analysis.load_curve import points
@@ -21,6 +21,7 @@ from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.record import Record
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
+from petalfoil.walls import Capability, required, wall_kind
 
 
 def iterate(
@@ -39,12 +40,11 @@ def iterate(
     Raises
     ------
     UsageError
-        The case has no petals; or a loop is asked for where the petals have no friction, or of a single point.
+        The wall has no pack at zero speed; or a loop is asked for where petals have no friction, or of a single point.
     PackageError
         A displacement leaves the package no room.
     """
-    if case.petals is None:
-        raise UsageError("a plain bearing has no package: `static` needs a case with [petals]")
+    required(case, Capability.PACK, "`static`")
     cases = points(case, eccentricities, direction, 0.0)
     if case.surface.petal_friction > 0.0 and not is_classic(case):
         if loop and len(cases) < 2:
@@ -97,13 +97,13 @@ def static_record(case: Case, answer: Solution, work: RunLog, seconds: float, ex
     """Reactions of the package; there is no film to speak of."""
     carried = forces(case, answer)
     torque = case.surface.friction_coefficient * case.bearing.journal_radius * float(carried["contact_normal_force"])
-    fields = petal_fields(case, answer)
+    fields = wall_fields(case, answer)
     scalars = {
         **given(case),
         **carried,
         "starting_torque": torque,
         "friction_torque": torque,
-        "max_bending_stress": float(np.max(np.abs(fields["bending_stress"]))),
+        **wall_kind(case).scalars(fields),
         "residual": answer.residual,
         "stable": True,
         "solution_path": answer.way,

@@ -17,7 +17,7 @@ from petalfoil.dynamics.tr_bdf2 import System
 from petalfoil.physics.forces import node_area, viscous_torque
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.friction import energy_lost
-from petalfoil.walls.petals import build_mesh, petals_of
+from petalfoil.walls import wall_kind
 
 Array = NDArray[np.float64]
 Named = dict[str, Array]
@@ -198,7 +198,7 @@ class Trace:
         problem = self.system.problem
         mesh = problem.layout.wall.film
         whole, instants = mesh.axial.whole, list(self.frames)
-        first = len(mesh.theta) // (1 if len(problem.displacement) == 2 else 2)  # of two bearings the first is shown
+        first = len(mesh.theta) // problem.layout.wall.n_bearings  # of two bearings the first is shown
         coords: dict[str, NDArray[np.generic]] = {
             "frame": np.array([instant.tau for instant in instants]) / rate,
             "petal": np.arange(first),
@@ -213,30 +213,25 @@ class Trace:
             "frame_x": np.array([self._at_first(instant)[0] for instant in instants]),
             "frame_y": np.array([self._at_first(instant)[1] for instant in instants]),
         }
-        if self.case.petals is not None:
-            package = build_mesh(self._whole)
-            coords["phi"] = package.phi
-            free = petals_of(self.case)[1].free_radius(package.phi)
-            fields["frame_radius"] = np.array([self._radii(instant, package.shape, free) for instant in instants])
+        sections = [wall_kind(self.case).cross_section(self._whole, self._deflection(at)) for at in instants]
+        if any(sections):
+            coords |= wall_kind(self.case).coordinates(self._whole, problem.layout.wall)
+            fields["frame_radius"] = np.array([section["radius"] for section in sections])
         return coords, fields
 
     @cached_property
     def _whole(self) -> Case:
         """The case on the grid that is solved: of a shaft that tilts the whole length."""
-        return (
-            self.case if len(self.system.problem.displacement) == 2 else self.case.replace(**{"model.symmetry": False})
-        )
+        tilts = self.system.problem.layout.wall.n_bearings > 1
+        return self.case.replace(**{"model.symmetry": False}) if tilts else self.case
 
     def _at_first(self, instant: Instant) -> Array:
         """Displacement of the journal in the (first) bearing [m]."""
         e = instant.e * self._units[0]
-        return e if len(e) == 2 else e[:2] - e[2:]
+        return e if self.system.problem.layout.wall.n_bearings == 1 else e[:2] - e[2:]
 
-    def _radii(self, instant: Instant, shape: tuple[int, ...], free: Array) -> Array:
-        """Mid-surfaces of the petals at an instant, (petal, node, axial) [m]."""
+    def _deflection(self, instant: Instant) -> Array:
+        """Deflections of the wall of the (first) bearing, (n,) [m]."""
         layout = self.system.problem.layout
-        W = np.zeros(shape)
-        n = int(np.prod(W[:, 1:].shape))  # of two bearings the first
-        W[:, 1:] = instant.x[:n].reshape(shape[0], -1, shape[2]) * layout.scales.length
-        radii: Array = layout.wall.film.axial.whole(free[None, :, None] + W)
-        return radii
+        deflection: Array = instant.x[: layout.n_wall // layout.wall.n_bearings] * layout.scales.length
+        return deflection

@@ -7,6 +7,7 @@ In the order data flows:
 - `definition`: the base of all definitions.
 - `gas_properties`: a gas by its name.
 - `sections`, `petals`, `gas`, `rotor`: the tables of a case.
+- `wall_tables`: base and registry of the tables that describe a wall.
 - `free_shape`: radius of a free petal.
 - `package`: geometry that follows, and whether the package can be assembled.
 - `toml`: files and texts.
@@ -22,6 +23,7 @@ from petalfoil.case.package import Package, package_of
 from petalfoil.case.petals import Mount, Petals
 from petalfoil.case.rotor import Rotor
 from petalfoil.case.sections import Bearing, Edges, Method, Model, ModelKind, Operation, Surface
+from petalfoil.case.wall_tables import WallTable, register_table, unregister_table
 
 __all__ = [
     "Bearing",
@@ -37,7 +39,10 @@ __all__ = [
     "Petals",
     "Rotor",
     "Surface",
+    "WallTable",
     "arc_radius",
     "chordal_tilt",
     "package_of",
+    "register_table",
+    "unregister_table",
 ]

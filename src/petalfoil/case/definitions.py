@@ -17,6 +17,7 @@ from petalfoil.case.petals import Petals
 from petalfoil.case.problems import Problem, joined
 from petalfoil.case.rotor import Rotor
 from petalfoil.case.sections import Bearing, Model, ModelKind, Operation, Surface
+from petalfoil.case.wall_tables import WallTable, with_table
 from petalfoil.errors import DefinitionError, PackageError
 
 # Grids whose error in the load stays under 1 %: measured on the paper's packages (six to ten petals, displaced by 100
@@ -33,7 +34,7 @@ class Case(Definition):
     """One bearing, its gas, what its journal does, and how it is modelled.
 
     All numbers are floats in SI units; a quantity may be given as a text with a unit, such as ``"25 um"``. Without
-    `petals` the case is a plain rigid journal bearing.
+    `petals`, or another table that describes a wall, the case is a plain rigid journal bearing.
 
     Raises
     ------
@@ -51,6 +52,10 @@ class Case(Definition):
     operation: Operation
     rotor: Rotor | None = None
     model: Model
+
+    def __new__(cls, **data: Any) -> Self:
+        """Make room for the table of a registered wall, if `data` has one."""
+        return super().__new__(with_table(cls, data))
 
     # ------------------------------------------------------------------------------------------ in and out
 
@@ -90,6 +95,17 @@ class Case(Definition):
     # ------------------------------------------------------------------------------------------ derived
 
     @property
+    def walls(self) -> list[WallTable]:
+        """Tables given that describe a wall: at most one in a valid case."""
+        sections = [getattr(self, name) for name in type(self).model_fields]
+        return [section for section in sections if isinstance(section, WallTable)]
+
+    @property
+    def wall(self) -> WallTable | None:
+        """Table of the wall that bounds the film, such as `petals`; None for a plain bearing."""
+        return next(iter(self.walls), None)
+
+    @property
     def package(self) -> Package | None:
         """Geometry of the assembled petals; None for a plain bearing."""
         return None if self.petals is None else package_of(self.bearing, self.petals)
@@ -100,11 +116,16 @@ class Case(Definition):
         return self.bearing.clearance - math.hypot(*self.operation.eccentricity)
 
     @property
+    def solid_height(self) -> float | None:
+        """Height over the bushing of the wall that has bottomed out: 0 of a plain bearing, None if unknown [m]."""
+        if (package := self.package) is not None:
+            return package.layers * package.thickness
+        return 0.0 if self.wall is None else self.wall.solid_height
+
+    @property
     def pack_clearance(self) -> float:
-        """Room that the package and the film floor leave, never negative [m]."""
-        package = self.package
-        layers = 0.0 if package is None else package.layers * package.thickness
-        return self.room - layers - self.surface.contact_film_thickness
+        """Clearance above the solid wall and the contact film thickness, never negative [m]."""
+        return self.room - (self.solid_height or 0.0) - self.surface.contact_film_thickness
 
     @property
     def slip_length(self) -> float:
@@ -147,6 +168,9 @@ class Case(Definition):
         return self
 
     def _geometry_problems(self) -> Iterator[Problem]:
+        if len(self.walls) > 1:
+            names = " and ".join(f"[{wall.section}]" for wall in self.walls)
+            yield Problem("", f"{names} both describe the wall; allowed: one of them", names, "one of them")
         found = list(bearing_problems(self.bearing, self.surface, self.operation))
         yield from found
         if not found and self.petals is not None:

@@ -9,8 +9,8 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import BeforeValidator, field_validator
 
-from petalfoil.case.definition import Definition
 from petalfoil.case.fields import VALUE_PROBLEM, Count, Quantity, QuantityOrWord, as_table, refuse
+from petalfoil.case.wall_tables import WallTable
 
 MIN_ROWS = 3  # of a measured free shape: fewer say nothing of a curvature
 
@@ -28,7 +28,7 @@ _Radius = Annotated[
 ]
 
 
-class Petals(Definition):
+class Petals(WallTable):
     """A package of equal petals (leaves); absent in a plain bearing."""
 
     section: ClassVar[str] = "petals"

@@ -8,7 +8,6 @@ import numpy as np
 import xarray as xr
 
 from petalfoil.case import Case
-from petalfoil.case.package import package_of
 from petalfoil.errors import DefinitionError, UsageError
 from petalfoil.plot import style
 from petalfoil.plot.reading import Floats, array, number
@@ -44,19 +43,20 @@ def elapsed(path: Path) -> tuple[Floats, str]:
 def contact_circle(ds: xr.Dataset) -> tuple[float, str] | None:
     """Radius of the circle in which the journal's centre has room [m], and what bounds it; none if the case is lost.
 
-    A plain journal touches the bore when its film is at the floor; in petals it can go no further than where they are
-    pressed solid on the bore, but touches them long before that.
+    A plain journal touches the bore at the contact film thickness. In petals it can go no further than where they have
+    bottomed out, but touches them long before that.
     """
     try:
         case = Case.from_toml(str(ds.attrs.get("case", "")))
     except DefinitionError:
         return None
-    room = case.bearing.clearance - case.surface.contact_film_thickness
-    if case.petals is None:
-        return room, f"journal touches the bore, {room * MICRO:.4g} µm"
-    package = package_of(case.bearing, case.petals)
-    room = case.bearing.clearance - package.layers * package.thickness
-    return room, f"{package.layers} layers of petals pressed solid, {room * MICRO:.4g} µm"
+    if (solid := case.solid_height) is None:
+        return None
+    if not solid:
+        reach = case.bearing.clearance - case.surface.contact_film_thickness
+        return reach, f"journal touches the bore, {reach * MICRO:.4g} µm"
+    reach = case.bearing.clearance - solid
+    return reach, f"leaf pack bottomed out, {reach * MICRO:.4g} µm"
 
 
 def motion_facts(ds: xr.Dataset, path: Path) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from petalfoil.case import Case
 from petalfoil.report.families import TANGENT
 from petalfoil.report.paper import package
+from petalfoil.walls.petals import petals_of
 
 DEGREE = math.pi / 180.0
 DOWNWARD = -0.5 * math.pi
@@ -55,17 +56,15 @@ def edge_below(case: Case) -> Mapping[str, object]:
 
 
 def _turned(case: Case, place: float) -> Mapping[str, object]:
-    if case.petals is None or case.package is None:
-        raise ValueError("a plain bearing has no roots")
-    pitch, end = case.petals.pitch, case.petals.pitch * case.package.overlap
+    petals, geometry = petals_of(case)
+    pitch, end = petals.pitch, petals.pitch * geometry.overlap
     return {"petals.first_root": math.remainder(DOWNWARD - end + (1.0 - place) * pitch, pitch)}
 
 
 def short_arcs(case: Case) -> Mapping[str, object]:
     """Petals as long as 1.8 pitches, whatever their number: the other way to read l = 1.8."""
-    if case.petals is None or case.package is None:
-        raise ValueError("a plain bearing has no petals")
-    return {"petals.arc_length": 1.8 * case.petals.pitch * case.package.metric_radius}
+    petals, geometry = petals_of(case)
+    return {"petals.arc_length": 1.8 * petals.pitch * geometry.metric_radius}
 
 
 def tilted(degrees: float, mount: str) -> Mapping[str, object]:

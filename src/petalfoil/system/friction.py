@@ -101,4 +101,4 @@ def friction_of(case: Case, layout: Layout) -> Friction | None:
     if not surface.petal_friction or not wall.slip.shape[0]:
         return None
     width, none = surface.friction_width / layout.scales.length, np.zeros(wall.slip.shape[0])
-    return Friction(surface.petal_friction, none, wall.slip, wall.share, width)
+    return Friction(surface.petal_friction, none, wall.slip, wall.reaction_share, width)

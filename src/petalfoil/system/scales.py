@@ -7,9 +7,6 @@ from dataclasses import dataclass
 from petalfoil.case import Case
 from petalfoil.walls.base import Wall
 
-PETAL_FILM = 1e-5
-"""Reference film of a petal bearing [m]: its films are some micrometres to some tens thick."""
-
 
 @dataclass(frozen=True)
 class Scales:
@@ -25,7 +22,6 @@ class Scales:
 
 
 def scales_of(case: Case, wall: Wall) -> Scales:
-    """Units for `case`: the clearance of a plain bearing, 10 um for petals."""
-    length = PETAL_FILM if wall.n_unknown else case.bearing.clearance
+    """Units for `case` on its wall."""
     pressure = case.gas.ambient_pressure
-    return Scales(length, pressure, pressure * wall.node_area)
+    return Scales(wall.reference_film, pressure, pressure * wall.node_area)

@@ -1,14 +1,29 @@
 """WHAT bounds the film. Each wall is one file that fills one small protocol.
 
-=============  =====================================================================
-`wall.py`      the protocol: unknowns, stiffness, film over the wall, contacts
-`petals.py`    a package of petals
-`rigid.py`     a rigid bore: plain gas journal bearing
-`registry.py`  case -> wall
-=============  =====================================================================
+===================  ============================================================================
+`kind.py`            the protocol of a kind of wall: how it is built, what it has and can do
+`base.py`            a discretised wall: unknowns, film over the wall, contacts
+`elasticity.py`      elastic forces from deflections
+`petals.py`          a leaf pack
+`rigid.py`           a rigid bore: plain gas journal bearing
+`two_bearings.py`    a wall twice, on one shaft that tilts
+`registry.py`        case -> wall; other kinds are registered at run time
+===================  ============================================================================
 """
 
-from petalfoil.walls.base import Wall
-from petalfoil.walls.registry import build_wall
+from petalfoil.walls.base import Wall, WallState
+from petalfoil.walls.kind import Capability, WallKind
+from petalfoil.walls.registry import build_wall, register, required, unregister, wall_kind, wall_kinds
 
-__all__ = ["Wall", "build_wall"]
+__all__ = [
+    "Capability",
+    "Wall",
+    "WallKind",
+    "WallState",
+    "build_wall",
+    "register",
+    "required",
+    "unregister",
+    "wall_kind",
+    "wall_kinds",
+]

@@ -1,11 +1,12 @@
-"""Two equal bearings on one shaft that tilts: one wall with twice the unknowns and four displacements of the journal.
+"""Two equal bearings on one shaft that tilts: one wall with twice the unknowns and a position of four coordinates.
 
 The shaft's axis is at `(x, y) + (z - z_0) (a_x, a_y)`. With the lever `l`, half the distance of the bearings, the
-displacement is `q = (x, y, l a_x, l a_y)`, and a node at `z` along the shaft sees `(x, y) + (z - z_0) / l (l a)`.
+position is `q = (x, y, l a_x, l a_y)`, and a node at `z` along the shaft sees `(x, y) + (z - z_0) / l (l a)`.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -14,7 +15,8 @@ from numpy.typing import NDArray
 
 from petalfoil.mesh.strips import FilmMesh
 from petalfoil.physics.contact import Contacts
-from petalfoil.walls.base import Elasticity, Wall
+from petalfoil.walls.base import Wall
+from petalfoil.walls.elasticity import Elasticity
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -38,8 +40,8 @@ def paired(wall: Wall, span: float) -> Wall:
         wall.film.axial,
         twice_numbered(wall.film.unknown, wall.film.n_unknown),
     )
-    return Wall(
-        name=wall.name,
+    return replace(
+        wall,
         film=film,
         elasticity=Elasticity(
             twice(wall.elasticity.difference), twice(wall.elasticity.strain), twice(wall.elasticity.rigidity)
@@ -48,11 +50,10 @@ def paired(wall: Wall, span: float) -> Wall:
         load_area=np.concatenate([wall.load_area, wall.load_area]),
         rest_film=np.concatenate([wall.rest_film, wall.rest_film]),
         contacts=paired_contacts(wall, span, order),
-        node_area=wall.node_area,
         free_motions=twice(wall.free_motions),
         support=twice(wall.support),
         slip=twice(wall.slip),
-        share=sp.csr_array(twice(wall.share)[:, order]),
+        reaction_share=sp.csr_array(twice(wall.reaction_share)[:, order]),
     )
 
 
