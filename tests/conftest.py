@@ -1,9 +1,14 @@
 """Marks every test by its folder, and fixes what would make two runs differ."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
+
+from petalfoil.case import Case
+from petalfoil.walls import register, unregister
+from tests.walls.elastic_foundation import ElasticFoundation
 
 HERE = Path(__file__).parent
 FOLDERS = ("unit", "contract", "verification", "validation", "regression", "docs")
@@ -17,3 +22,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         folder = item.path.relative_to(HERE).parts[0] if item.path.is_relative_to(HERE) else ""
         if folder in FOLDERS:
             item.add_marker(getattr(pytest.mark, folder))
+
+
+@pytest.fixture(scope="module")
+def foundation() -> Iterator[Case]:
+    """A bearing on a wall that petalfoil does not have, registered while the tests of a module run."""
+    kind = ElasticFoundation()
+    register(kind)
+    yield Case.load(HERE / "walls" / "elastic_foundation.toml")
+    unregister(kind)
