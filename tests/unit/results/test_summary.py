@@ -40,16 +40,16 @@ def test_rows_are_in_the_units_an_engineer_reads() -> None:
     rows = {row.label: (row.value, row.unit) for row in summary.rows(factory.solved())}
     assert rows["speed"] == ("76394", "rpm")
     assert rows["displacement y"] == ("-100.0", "µm")
-    assert rows["load capacity"] == ("25.00", "N")
+    assert rows["bearing force"] == ("25.00", "N")
     assert rows["attitude angle"] == ("20.00", "deg")
     assert rows["side leakage"] == ("1.200", "mg/s")
-    assert rows["largest bending stress"] == ("150.0", "MPa")
+    assert rows["maximum bending stress"] == ("150.0", "MPa")
     assert rows["status"] == ("converged", "")
 
 
 def test_rows_show_a_dash_for_a_missing_figure() -> None:
     rows = {row.label: row.value for row in summary.rows(factory.failed())}
-    assert rows["load capacity"] == summary.ABSENT
+    assert rows["bearing force"] == summary.ABSENT
     assert rows["status"] == "the step length fell below its limit"
 
 

@@ -1,0 +1,158 @@
+"""The texts speak the field's words: a table of words that are not to be used, each with the word in its place.
+
+`ROOTS` names what is searched. A phrase is matched whole, in any case, across line breaks and comment signs; the only
+exception is the table of renamed keys in the changelog, which no root holds.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.docs.texts import ROOT, name_of, text
+
+ROOTS = ("README.md", "CONTRIBUTING.md", "docs", "examples")
+"""Files and folders that are searched."""
+
+SUFFIXES = {".md", ".py", ".toml", ".csv"}
+
+WORDS = {
+    # film and pressure
+    "(smallest|thinnest|least) films?( thickness)?": "minimum film thickness",
+    "(largest|highest) (absolute )?pressures?": "peak pressure",
+    "(largest|highest) (bending )?stress": "maximum bending stress",
+    "load capacity(?! at)": "bearing force; load capacity is the largest load at a stated minimum film thickness",
+    "(gas )?content(?![-=:])": "gas inventory; stopping criterion",
+    "defects?( of)?": "mass-balance error, energy-balance error, residual",
+    # foil pack
+    "rooms?(?! temperature)": "radial clearance; clearance above the solid pack height; folder",
+    "packages? (is )?at rest": "foil pack at zero speed",
+    "assembled package": "assembled pack",
+    "press(ed|es|ing)? solid": "bottomed out",
+    "solid package": "bottomed-out pack",
+    "rigid(ly)? (mounts?|mounted|roots?)": "clamped",
+    "gives? way": "deflects; is replaced by",
+    # contact
+    "push(es|ed)? (of film and contact )?on the journal": "normal force on the journal",
+    "pushes on (it|the journal)": "normal force",
+    "(?<!solid\\s)contacts? (still )?carr(y|ies)": "solid contact carries",
+    "contact shares?": "contact fraction",
+    "contacts' share|share of the contacts": "contact fraction",
+    "closed gaps?|gaps? (that )?(is|are) closed": "active contacts",
+    "touch(es)? again": "touchdown speed",
+    "touch-downs?": "touchdown",
+    "(journal|which|that|it) floats|floats (at|below|above|under|where)": "lift-off; the journal is above lift-off speed",
+    "journal sits|sits (at|under|where)": "journal position",
+    "(journal central|central journal)": "centred journal",
+    # grid
+    "(cells|nodes) (along )?a (pitch|petal)": "cells per pitch",
+    "(vanishing cells|vanishing mesh)": "grid-converged value",
+    "(?<![._-])flat(?! (plate|top|ends?|index))(?![_(])": "2-D",
+    "spatial(ly)?": "3-D",
+    "in space": "in 3-D",
+    "(steps|pictures|points|factorisations|factorizations) a (turn|step|point|pitch|curve|mode|frequency)": "per",
+    # rotor and whirl
+    "let(s|ting)? (it |them )?go": "releases the rotor",
+    "no (rotor )?mass whirls": "stable for any rotor mass",
+    "(smallest|least) (mass|rotor)( of a rigid rotor)? (that|which) whirls": "critical rotor mass",
+    "smallest whirling mass": "critical rotor mass",
+    "dominating": "dominant",
+    "against the rotation": "backward whirl",
+    "circle with the rotation": "forward whirl",
+    "turns of the shaft|turns? the shaft has made": "revolutions",
+    # numbers and how they were found
+    "(every|each|derived|all|own|no) figures?(?! (\\d|of the page|and (its|claims|data)))": "quantity, result",
+    "figures (of (the|a) (state|step|run|point|failed run)|are|stand)\\b": "quantities, results",
+    "way up from rest": "continuation from zero speed",
+    "exact to the linear response": "linearised about the equilibrium (two digits on petals)",
+    # riddles and sayings
+    "for ever": "(say how long, or leave out)",
+    "is content|was content": "the stopping criterion is met",
+    "what is not (farther|further)": "(say it forward)",
+    "wanted (is|are)": "(subject first)",
+    "(thin|thick) (end|side) decides?": "(name the mean)",
+    "friction's stick|(the|its) stick(?!s|ing|-)": "sticking stiffness",
+    "wants both to": "requires both to",
+    "finds? wanting": "is missing from",
+    "slip of the pen": "typing mistake",
+}
+"""Words not to be used, as regular expressions with a space for any break, and what is said in their place."""
+
+NAMES = {
+    "Moving|Course|Slid|Rubbed|Rubbing": "TimeState, SpeedSchedule, FrictionState, FrictionStep",
+    "load_capacity": "bearing_force",
+    "film_floor": "contact_film_thickness",
+    "(min|smallest)_film(?!_)": "min_film_thickness",
+    "contact_share": "contact_fraction",
+    "contact_total": "contact_normal_force",
+}
+"""The same for names, in their own case."""
+
+GAP = r"(?:\s|\n\s*(?:#|//|\*|>)\s*)+"
+
+
+def pattern(phrase: str) -> str:
+    """The regular expression of a phrase: whole words, any white space or comment sign for a space."""
+    return rf"(?<![\w/-])(?:{phrase.replace(' ', GAP)})(?![\w-])"
+
+
+SPOKEN = [(re.compile(pattern(old), re.IGNORECASE), new) for old, new in WORDS.items()]
+SPOKEN += [(re.compile(pattern(old)), new) for old, new in NAMES.items()]
+
+
+def files(root: str) -> list[Path]:
+    """Texts of a root."""
+    path = ROOT / root
+    return [path] if path.is_file() else sorted(f for f in path.rglob("*") if f.suffix in SUFFIXES)
+
+
+def found_in(words: str) -> Iterator[str]:
+    """Every phrase of the table in `words`: line, phrase, what is said in its place."""
+    for old, new in SPOKEN:
+        for hit in old.finditer(words):
+            line = words.count("\n", 0, hit.start()) + 1
+            yield f"line {line}: {' '.join(hit.group().split())!r} -> {new}"
+
+
+FILES = [path for root in ROOTS for path in files(root)]
+
+
+@pytest.mark.parametrize("path", FILES, ids=name_of)
+def test_a_text_speaks_the_words_of_the_field(path: Path) -> None:
+    assert sorted(found_in(text(path))) == []
+
+
+def test_every_root_has_texts() -> None:
+    assert all(files(root) for root in ROOTS)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "the Smallest\n# film of 3 µm",
+        "on 64 cells a pitch",
+        "its limit for vanishing cells",
+        "petals are pressed solid",
+        "contacts carry 3 %",
+        "the package at rest",
+        "no mass whirls",
+        "a rigid mount",
+        "one pattern for ever",
+        "it is content",
+        "the room left",
+        "film_floor = 1",
+        "it lets it go",
+    ],
+)
+def test_the_search_finds(words: str) -> None:
+    assert list(found_in(words))
+
+
+@pytest.mark.parametrize(
+    "words", ["minimum film thickness", "cells per pitch", "at room temperature", "load capacity at 3 µm", "flatten it"]
+)
+def test_the_search_leaves_the_words_of_the_field_alone(words: str) -> None:
+    assert list(found_in(words)) == []
