@@ -112,7 +112,7 @@ def film_figures(case: Case, answer: Solution, fields: dict[str, Array]) -> Name
 
 
 def leakage(case: Case, answer: Solution) -> float:
-    """Mass flow out of both ends [kg/s]."""
+    """Mass flow out of both ends [kg/s] (J5)."""
     scales, gas = answer.problem.layout.scales, case.gas
     unit = scales.pressure**2 * scales.length**3 / (12.0 * gas.viscosity)  # of `p` times volume flow
     return side_leakage(answer) * unit * gas.ambient_density / gas.ambient_pressure

@@ -181,7 +181,7 @@ class Trace:
         return time, over
 
     def audits(self, over: Named) -> dict[str, float]:
-        """Defects of gas and energy over the histories `over` [1]: both fall as the square of the steps."""
+        """Mass-balance and energy-balance errors (O6) of the histories `over` [1]: both fall as the square of steps."""
         gas, outflow, time = self.column("gas"), self.column("outflow"), self.column("time")
         gained = gas - gas[0] + cumulative_trapezoid(outflow, time, initial=0.0)
         energy = over["kinetic_energy"] + over["elastic_energy"] - over["kinetic_energy"][0]

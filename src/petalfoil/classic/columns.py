@@ -6,7 +6,7 @@ Node to node, `W_q` from the journal outward, with the gaps of the free shapes `
     W_q+1 >= W_q - c_q               petals     (19)
     W_last <= W_+                    bushing    (18), (22)
 
-With `Z_q = W_q + c_0 + ... + c_q-1` a column is an ascending sequence between two bounds.
+With `Z_q = W_q + c_0 + ... + c_q-1` a column is an ascending sequence between two bounds (Q3).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The package at a given pressure: gradient descent on its energy, projected onto the restrictions (45)-(50)."""
+"""The package at a given pressure: gradient descent on its energy, projected onto the restrictions (45)-(50), (Q2)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The film at given deflections, marched in time until it is steady (51)-(59)."""
+"""The film at given deflections, marched in time until it is steady (51)-(59), (Q1)."""
 
 from __future__ import annotations
 

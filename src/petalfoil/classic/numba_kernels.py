@@ -112,7 +112,7 @@ def largest_rate(P: Array, cells: FilmCells, per_hold: Array) -> float:
 
 @compiled
 def content_defect(P: Array, cells: FilmCells) -> float:
-    """Share of its gas that a film without ends holds too much (F6)."""
+    """Share of its gas that a film without ends holds too much (F6), (Q5)."""
     excess, slope = 0.0, 0.0
     for k in range(len(cells.spread)):
         excess += cells.spread[k] * (P[k] * P[k] - 1.0) + cells.spread_slip[k] * (P[k] - 1.0)

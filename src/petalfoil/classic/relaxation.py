@@ -1,4 +1,4 @@
-"""The algorithm of the paper's Figure 5: film and package in turn, each from where it was, relaxed (60), (61)."""
+"""The algorithm of the paper's Figure 5: film and package in turn, each from where it was, relaxed (60), (61), (Q4)."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ class Mode:
     s : complex
         Eigenvalue per radian of rotation, on the upper half plane [1].
     participation : float
-        Share of the rotor: `|d ln s / d ln m|` is half of it. 1 on a plain spring, 0 of film and petals alone [1].
+        Participation of the rotor (E9): twice `|d ln s / d ln m|`. 1 on a spring, 0 for film and petals alone [1].
     direction : float
         1 for a circle with the rotation, -1 against it, 0 along a line [1].
     """

@@ -1,4 +1,4 @@
-"""The contact set of the linearised equations, found exactly among the gaps in doubt.
+"""The contact set of the linearised equations, found exactly among the gaps in doubt (T3).
 
 Swapping all gaps of wrong sign at once advances a bending contact one node a step, and may cycle. Here the equations
 are linearised once and factorised once; the gaps in doubt are kept as a small dense complementarity problem whose
