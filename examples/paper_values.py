@@ -2,8 +2,8 @@
 
     python examples/paper_values.py docs/paper-values.md
 
-6, 8 and 10 petals at four displacements, flat and in space, and the packages at rest; each value extrapolated from
-nested grids, with its error bar. About ten minutes on two cores, nearly all of it for the finest spatial grid.
+6, 8 and 10 petals at four displacements, 2-D and 3-D, and the foil packs at zero speed; each value extrapolated from
+nested grids, with its error bar. About ten minutes on two cores, nearly all of it for the finest 3-D grid.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ from petalfoil.analysis.richardson import Extrapolation, richardson
 
 HERE = Path(__file__).parent
 COUNTS, DISPLACEMENTS = (6, 8, 10), (0, 100, 200, 280)  # the latter in µm, downward
-COARSEST = {"2d": 64, "3d": 24}  # cells along a pitch
+MODELS = {"2d": "2-D", "3d": "3-D"}
+COARSEST = {"2d": 64, "3d": 24}  # cells per pitch
 LEVELS = {"2d": 4, "3d": 3}
 
 RUNNING = {"bearing_force": 1.0, "min_film_thickness": 1e6, "peak_pressure": 1e-3}  # factors to N, µm, kPa
@@ -30,20 +31,20 @@ RESTING = {"contact_normal_force": 1.0, "starting_torque": 1e3}  # factors to N,
 
 HEAD = """# Converged values of the paper's packages
 
-Packages of 6, 8 and 10 petals as in `examples/paper_n6.toml`, `paper_n8.toml` and `paper_n10.toml` (what the paper
+Foil packs of 6, 8 and 10 petals as in `examples/paper_n6.toml`, `paper_n8.toml` and `paper_n10.toml` (what the paper
 does not state is marked there as an assumption), at 8000 rad/s, the journal displaced downward by *e*. This page is
 written by
 
     python examples/paper_values.py docs/paper-values.md
 
-A value is Richardson's limit for vanishing cells, from the last three of the nested grids named above each table,
-with its error bar. **Bold**: the observed order of convergence is within 0.5 of the method's order, 2, and the bar
-is 1.25 times the distance of the finest grid from the limit. Plain: contacts begin and extrema lie at nodes and jump
-as grids are refined, no such order shows, and the bar is three times the largest distance that the differences
-between the grids allow. The rules are those of `petalfoil converge`; see
-[analysis/richardson.py](../src/petalfoil/analysis/richardson.py).
+A value is grid-converged by Richardson extrapolation from the last three of the nested grids above each table, with its
+error bar. **Bold**: the observed order of convergence is within 0.5 (`CREDIBLE`) of the order of the method, 2
+(`DECLARED_ORDER`), and the bar is 1.25 (`richardson.SAFETY`) times the distance of the finest grid from the value.
+Plain: no such order is observed, because contacts begin and extrema lie at nodes and jump as grids are refined; the bar
+is 3 (`SUSPICION`) times the largest distance that the differences between the grids allow. `petalfoil converge` follows
+the same rules; see [analysis/richardson.py](../src/petalfoil/analysis/richardson.py).
 
-The load of the central journal is zero by symmetry. Pressures are absolute, at an ambient pressure of 100 kPa.
+The bearing force on the centred journal is zero by symmetry. Pressures are absolute, at an ambient pressure of 100 kPa.
 """
 
 
@@ -85,7 +86,7 @@ def at_rest(task: Task) -> dict[str, Extrapolation]:
 
 
 def grids(kind: str) -> list[int]:
-    """Cells along a pitch of the nested grids; in space half as many over the length."""
+    """Cells per pitch of the nested grids; in 3-D half as many over the length."""
     return [COARSEST[kind] * 2**level for level in range(LEVELS[kind])]
 
 
@@ -97,13 +98,19 @@ def page(found: dict[Task, dict[str, Extrapolation]]) -> str:
     sections = [HEAD]
     for kind in COARSEST:
         names = [f"{cells} × {cells // 2}" if kind == "3d" else str(cells) for cells in grids(kind)]
-        sections.append(f"## {kind.capitalize()} model, grids {', '.join(names)}\n")
+        sections.append(f"## {MODELS[kind]} model, grids {', '.join(names)}\n")
         sections.append(
-            table(found, kind, DISPLACEMENTS, RUNNING, ("load, N", "smallest film, µm", "peak pressure, kPa"))
+            table(
+                found,
+                kind,
+                DISPLACEMENTS,
+                RUNNING,
+                ("bearing force, N", "minimum film thickness, µm", "peak pressure, kPa"),
+            )
         )
-        sections.append("At rest, journal central:\n")
+        sections.append("At zero speed, centred journal:\n")
         sections.append(
-            table(found, kind, (None,), RESTING, ("contact reactions on the journal, N", "starting torque, mN·m"))
+            table(found, kind, (None,), RESTING, ("contact normal force on the journal, N", "starting torque, mN·m"))
         )
     return "\n".join(sections)
 
