@@ -45,7 +45,9 @@ def homes(name: str) -> list[Path]:
     def defines(node: ast.stmt) -> bool:
         if isinstance(node, ast.ClassDef):
             return node.name == name
-        targets = [node.target] if isinstance(node, ast.AnnAssign) else node.targets if isinstance(node, ast.Assign) else []
+        targets = (
+            [node.target] if isinstance(node, ast.AnnAssign) else node.targets if isinstance(node, ast.Assign) else []
+        )
         flat = [item for target in targets for item in (target.elts if isinstance(target, ast.Tuple) else [target])]
         return any(isinstance(item, ast.Name) and item.id == name for item in flat)
 

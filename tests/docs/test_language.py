@@ -44,7 +44,7 @@ WORDS = {
     "closed gaps?|gaps? (that )?(is|are) closed": "active contacts",
     "touch(es)? again": "touchdown speed",
     "touch-downs?": "touchdown",
-    "(journal|which|that|it) floats|floats (at|below|above|under|where)": "lift-off; the journal is above lift-off speed",
+    "(journal|which|that|it) floats|floats (at|below|above|under|where)": "is above lift-off speed",
     "journal sits|sits (at|under|where)": "journal position",
     "(journal central|central journal)": "centred journal",
     # grid
@@ -117,12 +117,10 @@ def found_in(words: str) -> Iterator[str]:
             yield f"line {line}: {' '.join(hit.group().split())!r} -> {new}"
 
 
-FILES = [path for root in ROOTS for path in files(root)]
-
-
-@pytest.mark.parametrize("path", FILES, ids=name_of)
-def test_a_text_speaks_the_words_of_the_field(path: Path) -> None:
-    assert sorted(found_in(text(path))) == []
+@pytest.mark.parametrize("root", ROOTS)
+def test_the_texts_speak_the_words_of_the_field(root: str) -> None:
+    found = [f"{name_of(path)}, {hit}" for path in files(root) for hit in found_in(text(path))]
+    assert found == [], "\n" + "\n".join(found)
 
 
 def test_every_root_has_texts() -> None:
