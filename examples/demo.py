@@ -2,9 +2,9 @@
 
     python examples/demo.py demo
 
-Flat model: the load characteristic of 6, 8 and 10 petals, the journal displaced downward from 0 to 280 µm (the paper's
-Figure 8), pressure and film around the central journal (its Figures 6 and 7), with grid errors at four displacements.
-Then the bearing with 8 petals in space, with the grid error at the last one. Under a minute on two cores.
+2-D model: the load characteristic of 6, 8 and 10 petals, the journal displaced downward from 0 to 280 µm (the paper's
+Figure 8), pressure and film around the centred journal (its Figures 6 and 7), with grid errors at four displacements.
+Then the bearing with 8 petals in 3-D, with the grid error at the last one. Under a minute on two cores.
 """
 
 from __future__ import annotations
@@ -42,14 +42,16 @@ class Task:
 
     name: str  # of the case file, and of the results
     label: str
-    cells: int  # along a pitch; in space, half as many along the axis
+    cells: int  # per pitch; in 3-D, half as many along the axis
     displacements: str
     studied: tuple[int, ...]  # [µm]
     levels: int  # grids of a study
 
 
-FLAT = [Task(f"paper_n{n}", f"{n} petals", 256, "0 um : 280 um : 15", (0, 100, 200, 280), levels=3) for n in (6, 8, 10)]
-SPATIAL = Task("paper_n8_spatial", "8 petals in space", 32, "0 um : 280 um : 8", (280,), levels=2)
+TWO_D = [
+    Task(f"paper_n{n}", f"{n} petals", 256, "0 um : 280 um : 15", (0, 100, 200, 280), levels=3) for n in (6, 8, 10)
+]
+THREE_D = Task("paper_n8_spatial", "8 petals in 3-D", 32, "0 um : 280 um : 8", (280,), levels=2)
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,7 @@ def main(folder: Path) -> None:
     """Run everything, two packages at a time; what is finished is written at once and outlives an interruption."""
     folder.mkdir(parents=True, exist_ok=True)
     finished: dict[str, Result] = {}
-    tasks = [SPATIAL, *FLAT]  # the longest first
+    tasks = [THREE_D, *TWO_D]  # the longest first
     bar = Progress(TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), console=err, transient=True)
     try:
         # A signal is for this process alone: leaving the block ends the others.
@@ -101,8 +103,8 @@ def main(folder: Path) -> None:
     except KeyboardInterrupt:
         err.print(f"interrupted; {len(finished)} of {len(tasks)} load characteristics are finished and in {folder}/")
         sys.exit(130)
-    draw_family([finished[task.name] for task in FLAT], folder)
-    for task in (*FLAT, SPATIAL):
+    draw_family([finished[task.name] for task in TWO_D], folder)
+    for task in (*TWO_D, THREE_D):
         out.print(table(finished[task.name]))
     out.print(comparison(finished))
     out.print(f"Figures and data are in {folder}/: " + ", ".join(sorted(path.name for path in folder.iterdir())))
@@ -118,12 +120,12 @@ def keep(result: Result, folder: Path) -> None:
     if not bool(last["converged"]):
         return
     plot.save(plot.cross_section(last), folder / f"section_{name}.png")
-    if name == SPATIAL.name:
+    if name == THREE_D.name:
         plot.save(plot.maps(last), folder / f"maps_{name}.png")
 
 
 def draw_family(results: list[Result], folder: Path) -> None:
-    """The figures of the paper's flat study."""
+    """The figures of the paper's 2-D study."""
     family = [(result.task.label, result.curve) for result in results]
     plot.save(plot.load_characteristic(family), folder / "figure8_load_characteristic.png")
     central = [(label, curve.isel(point=0)) for label, curve in family]
@@ -136,7 +138,7 @@ def draw_family(results: list[Result], folder: Path) -> None:
 def table(result: Result) -> Table:
     """The points of a curve, with error bars where they were determined."""
     task, curve = result.task, result.curve
-    grid = f"{task.cells} cells a pitch" + ("" if curve.sizes["z"] == 1 else f", {task.cells // 2} along the axis")
+    grid = f"{task.cells} cells per pitch" + ("" if curve.sizes["z"] == 1 else f", {task.cells // 2} along the axis")
     sheet = Table(title=f"{task.label}, {grid}", title_justify="left", title_style="bold")
     sheet.add_column("e\nµm", justify="right")
     for heading, _, _ in SHOWN.values():
@@ -162,8 +164,8 @@ def figure(point: xr.Dataset, name: str, bars: dict[str, float] | None) -> str:
 
 def comparison(finished: dict[str, Result]) -> str:
     """What the number of petals does to the load, beside what the paper says."""
-    loads = [float(finished[task.name].curve["bearing_force"][-1]) for task in FLAT]
-    carried = ", ".join(f"{load:.1f} N with {task.label}" for load, task in zip(loads, FLAT, strict=True))
+    loads = [float(finished[task.name].curve["bearing_force"][-1]) for task in TWO_D]
+    carried = ", ".join(f"{load:.1f} N with {task.label}" for load, task in zip(loads, TWO_D, strict=True))
     return (
         f"At 280 µm: {carried}. The paper speaks of almost twice the load from 6 to 10 petals; it states neither the\n"
         "material nor the mount and tilt of its petals (see the assumptions in the case files).\n"

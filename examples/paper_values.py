@@ -29,7 +29,7 @@ LEVELS = {"2d": 4, "3d": 3}
 RUNNING = {"bearing_force": 1.0, "min_film_thickness": 1e6, "peak_pressure": 1e-3}  # factors to N, µm, kPa
 RESTING = {"contact_normal_force": 1.0, "starting_torque": 1e3}  # factors to N, mN·m
 
-HEAD = """# Converged values of the paper's packages
+HEAD = """# Grid-converged values of the paper's foil packs
 
 Foil packs of 6, 8 and 10 petals as in `examples/paper_n6.toml`, `paper_n8.toml` and `paper_n10.toml` (what the paper
 does not state is marked there as an assumption), at 8000 rad/s, the journal displaced downward by *e*. This page is

@@ -32,7 +32,7 @@ RPM = math.pi / 30.0  # [rad/s]
 TOP = 30000.0  # [rpm]
 POINTS = 49  # of a run-up
 ARM = 0.16 * 9.80665  # moment over what the rig's sensor shows [N m/kgf]: 1.19 for 0.76, 1.10 for 0.70, 3.79 for 2.42
-GRIDS = (96, 192, 384)  # cells along a pitch
+GRIDS = (96, 192, 384)  # cells per pitch
 SPACE = {"model.kind": "3d", "model.cells_per_pitch": 64, "model.axial_cells": 24}
 
 err = Console(stderr=True, markup=False, highlight=False)
@@ -60,7 +60,7 @@ def rig(**changes: object) -> Case:
 
 
 def starting_moment(case: Case, load: float) -> float:
-    """Friction moment of the package at rest under a load [N m]."""
+    """Friction moment of the foil pack at zero speed under a load [N m]."""
     return float(balance.run(case, (0.0, -load), speed=0.0).scalars["friction_torque"])
 
 
@@ -95,13 +95,13 @@ def percent(ratio: float) -> str:
 
 
 VARIATIONS: dict[str, tuple[dict[str, object], float]] = {
-    **{f"{cells} cells along a pitch": ({"model.cells_per_pitch": cells}, liftoff.SHARE) for cells in GRIDS},
-    "floats below 0.5 % of contacts": ({}, 0.005),
-    "floats below 2 %": ({}, 0.02),
-    "floats below 5 %": ({}, 0.05),
+    **{f"{cells} cells per pitch": ({"model.cells_per_pitch": cells}, liftoff.SHARE) for cells in GRIDS},
+    "lift-off at a contact fraction of 0.5 %": ({}, 0.005),
+    "lift-off at a contact fraction of 2 %": ({}, 0.02),
+    "lift-off at a contact fraction of 5 %": ({}, 0.05),
     "film floor 0.5 µm": ({"surface.contact_film_thickness": 0.5e-6}, liftoff.SHARE),
     "film floor 1.5 µm": ({"surface.contact_film_thickness": 1.5e-6}, liftoff.SHARE),
-    "gas slips at the walls": ({"model.slip": True}, liftoff.SHARE),
+    "slip at the walls": ({"model.slip": True}, liftoff.SHARE),
     "journal radius 10 µm larger": ({"bearing.journal_radius": 28.6414e-3}, liftoff.SHARE),
     "journal radius 10 µm smaller": ({"bearing.journal_radius": 28.6214e-3}, liftoff.SHARE),
 }
@@ -123,12 +123,12 @@ def variations() -> str:
 
 
 def in_space() -> str:
-    """Experiment 1 with the axial coordinate: moment at rest, share of the contacts at speeds, in Markdown."""
+    """Experiment 1 in 3-D: moment at zero speed, contact fraction over speed, in Markdown."""
     first, case = experiments()[0], rig(**SPACE)
     lines = [
-        f"moment at rest {starting_moment(case, first.load):.3f} N·m",
+        f"moment at zero speed {starting_moment(case, first.load):.3f} N·m",
         "",
-        "| rpm | contact share |",
+        "| rpm | contact fraction |",
         "|---:|---:|",
     ]
     line = SpeedLine(case, (0.0, -first.load), RunLog())
@@ -150,7 +150,7 @@ def run(case: Case, load: float) -> Legs:
 
 
 def figure(runs: dict[float, Legs]) -> Figure:
-    """Friction moment, contact share, smallest film over speed under each load: up at the left, down at the right."""
+    """Moment, contact fraction and minimum film thickness over speed under each load: left run-up, right coast-down."""
     fig = style.figure(10.0, 8.0)
     axes = fig.subplots(3, 2, sharey="row", height_ratios=(2.0, 1.0, 1.2))
     for column, (leg, title) in zip(axes.T, LEGS.items(), strict=True):
@@ -159,7 +159,9 @@ def figure(runs: dict[float, Legs]) -> Figure:
         measured(column, leg)
         column[0].set_title(title, fontsize=style.LABEL, loc="left")
         column[2].set_xlabel("speed [rpm]", fontsize=style.LABEL)
-    for ax, label in zip(axes[:, 0], ("friction moment [N m]", "contact share [%]", "smallest film [µm]"), strict=True):
+    for ax, label in zip(
+        axes[:, 0], ("friction moment [N m]", "contact fraction [%]", "minimum film thickness [µm]"), strict=True
+    ):
         ax.set_ylabel(label, fontsize=style.LABEL)
     scale = axes[0, 1].secondary_yaxis("right", functions=(lambda m: m / ARM, lambda f: f * ARM))
     scale.set_ylabel("force at the rig's sensor [kgf]", fontsize=style.LABEL)

@@ -5,7 +5,7 @@
 For every count and mount of the petals, packages are drawn evenly over the ranges (Latin hypercube, seeded), the film
 floor and the friction coefficient are set to what experiments 1 to 3 ask for, and the best package of a count and mount
 is refined (Nelder-Mead). All that explain the experiments are computed again on a fine grid, with the fourth experiment
-as a prediction. Flat model; about an hour on two cores. The same numbers come out each time; everything found is
+as a prediction. 2-D model; about an hour on two cores. The same numbers come out each time; everything found is
 written to FOLDER at once, and a run that was interrupted goes on from there. Told in docs/validation-rig.md.
 """
 
@@ -48,14 +48,11 @@ SCATTER_MOMENT, SCATTER_SPEED = 0.05, 0.03  # standard deviations of experiments
 
 COUNTS, MOUNTS = range(5, 13), ("hinged", "clamped")
 RANGES = {  # of the unknown dimensions
-    "room": (
-        5e-6,
-        900e-6,
-    ),  # above the layers of the package, R_B - R_j less layers * delta [m]; even in its logarithm
-    "overlap": (1.1, 2.95),  # petals over every point of the bore; sets the petals' length
+    "clearance": (5e-6, 900e-6),  # above the solid pack height [m]; uniform in its logarithm
+    "overlap": (1.1, 2.95),  # petal length over pitch
     "coating": (12e-6, 20e-6),  # as stated [m]
     "turn": (0.0, 1.0),  # of the roots against the load [pitches]
-    "tilt": (0.0, 1.2),  # of a rigid root, over the chordal one; a hinged root turns freely
+    "tilt": (0.0, 1.2),  # of a clamped root, over the chordal one; a hinged root turns freely
 }
 FLOORS = (0.3e-6, 5e-6)  # roughness of ground journal and sprayed coating together [m]
 FRICTIONS = (0.05, 0.5)  # solid lubricants to bare metal
@@ -74,7 +71,7 @@ LEVEL = 0.01  # of the mean of the lift-off speeds, which the floor is to meet
 out, err = Console(markup=False, highlight=False), Console(stderr=True, markup=False, highlight=False)
 
 
-SEARCH, FINAL = 48, 192  # cells along a pitch; from 192 to 384 lift-off speeds fall by 1 %
+SEARCH, FINAL = 48, 192  # cells per pitch; from 192 to 384 lift-off speeds fall by 1 %
 
 
 @dataclass(frozen=True)
@@ -83,7 +80,7 @@ class Package:
 
     count: int
     mount: str
-    room: float
+    clearance: float
     overlap: float
     coating: float
     turn: float
@@ -98,7 +95,7 @@ class Package:
         tilt = "chordal" if self.mount == "hinged" else self.tilt * chordal(rig, r_m, length)
         return rig.replace(
             **{
-                "bearing.journal_radius": R_B - (math.floor(self.overlap) + 1) * delta - self.room,
+                "bearing.journal_radius": R_B - (math.floor(self.overlap) + 1) * delta - self.clearance,
                 "petals.count": self.count,
                 "petals.mount": self.mount,
                 "petals.arc_length": length,
@@ -249,8 +246,8 @@ def drawn(count: int, mount: str) -> Iterator[Package]:
     ranges = ranges_of(count, mount)
     for point in qmc.LatinHypercube(len(ranges), seed=count).random(DRAWN):
         values = {name: low + u * (high - low) for u, (name, (low, high)) in zip(point, ranges.items(), strict=True)}
-        low, high = ranges["room"]
-        values["room"] = low * (high / low) ** point[0]
+        low, high = ranges["clearance"]
+        values["clearance"] = low * (high / low) ** point[0]
         yield Package(count, mount, **{name: float(f"{value:.4g}") for name, value in values.items()})
 
 
@@ -277,7 +274,7 @@ def refine(start: Finding, folder: Path) -> Finding:
     package, store = start.package, searched(start.package.count, start.package.mount, folder)
     ranges, names = (
         ranges_of(package.count, package.mount),
-        ["overlap", "room"] + ["tilt"] * (package.mount == "clamped"),
+        ["overlap", "clearance"] + ["tilt"] * (package.mount == "clamped"),
     )
 
     def value(steps: Array) -> float:

@@ -22,7 +22,7 @@ from tests.docs.texts import ROOT, text
 CASES = sorted(EXAMPLES.glob("*.toml"))
 SCRIPTS = sorted(EXAMPLES.glob("*.py"))
 
-# Grid that takes no time; load [N] and friction torque [N m] at the limit for vanishing cells, displaced as the example
+# Grid that takes no time; load [N] and friction torque [N m] grid-converged, displaced as the example
 # says (`petalfoil converge`, `docs/paper-values.md`); how far off that grid may be.
 SMALL = {
     "paper_n6": (32, None, 0.4696, 16.214e-3, 0.02),
@@ -87,13 +87,13 @@ def test_the_demo_writes_tables_figures_and_data(
 ) -> None:
     demo = module(EXAMPLES / "demo.py")
     small = [demo.Task(f"paper_n{n}", f"{n} petals", 64, "0 um : 280 um : 3", (280,), levels=3) for n in (6, 8, 10)]
-    space = demo.Task("paper_n8_spatial", "8 petals in space", 16, "0 um : 100 um : 2", (), levels=2)
-    monkeypatch.setattr(demo, "FLAT", small)
-    monkeypatch.setattr(demo, "SPATIAL", space)
+    space = demo.Task("paper_n8_spatial", "8 petals in 3-D", 16, "0 um : 100 um : 2", (), levels=2)
+    monkeypatch.setattr(demo, "TWO_D", small)
+    monkeypatch.setattr(demo, "THREE_D", space)
     demo.main(tmp_path)
     printed = capsys.readouterr()
-    assert "24.86 ± " in printed.out  # 8 petals at 280 µm on 64 cells a pitch
-    assert "8 petals in space: done" in printed.err
+    assert "24.86 ± " in printed.out  # 8 petals at 280 µm on 64 cells per pitch
+    assert "8 petals in 3-D: done" in printed.err
     written = {path.name for path in tmp_path.iterdir()}
     assert {f"curve_{task.name}.nc" for task in (*small, space)} <= written
     assert {
