@@ -17,7 +17,7 @@ def package(count: int, **changes: object) -> Case:
     """The paper's flat study with `count` petals, the journal central; its silent values as in `SILENT`."""
     case = Case.model_validate(
         {
-            "title": f"Paper, flat study, {count} petals",
+            "title": f"Paper, 2-D study, {count} petals",
             "bearing": {"journal_radius": 0.025, "bushing_radius": 0.026, "length": 0.05},
             "petals": {
                 "count": count,

@@ -17,7 +17,7 @@ NAMES = sorted(path.stem for path in EXAMPLES.glob("*.toml"))
 def python_made(**petals: Any) -> Case:
     """The paper's case, made in Python from numbers and texts."""
     return Case(
-        title="Paper, flat study, 8 petals",
+        title="Paper, 2-D study, 8 petals",
         bearing=Bearing(journal_radius="25 mm", bushing_radius=0.026, length="5 cm"),
         petals=Petals(
             **{

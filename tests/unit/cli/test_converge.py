@@ -94,8 +94,22 @@ def test_the_table_has_every_grid_order_limit_error_and_trust(cli, study: Study,
     assert (result.exit_code, result.stderr) == (0, "")
     lines = [line.split() for line in result.stdout.splitlines()]
     assert ["cells", "32", "64", "128", "order", "limit", "error", "trust"] in lines
-    assert ["load", "capacity", "N", "10.250", "10.062", "10.016", "2.00", "10.000", "±", "0.020", "yes"] in lines
-    assert ["smallest", "film", "µm", "5.00", "5.00", "5.00", "-", "5.00", "±", "0.30", "no", "order"] in lines
+    assert ["bearing", "force", "N", "10.250", "10.062", "10.016", "2.00", "10.000", "±", "0.020", "yes"] in lines
+    assert [
+        "minimum",
+        "film",
+        "thickness",
+        "µm",
+        "5.00",
+        "5.00",
+        "5.00",
+        "-",
+        "5.00",
+        "±",
+        "0.30",
+        "no",
+        "order",
+    ] in lines
 
 
 def test_json_has_the_grids_and_the_quantities(cli, study: Study, case: str) -> None:
@@ -164,9 +178,9 @@ def test_plot_is_drawn(cli, study: Study, case: str, tmp_path: Path) -> None:
 
 def test_solve_shows_error_bars_on_request(cli, study: Study, case: str) -> None:
     lines = [line.split() for line in cli("solve", case, "--error").stdout.splitlines()]
-    assert ["load", "capacity", "100.00", "±", "0.25", "N"] in lines
-    assert ["smallest", "film", "5.00", "±", "0.20", "µm"] in lines
-    assert ["contact", "reactions", "12.50", "N"] in lines  # no bar is known
+    assert ["bearing", "force", "100.00", "±", "0.25", "N"] in lines
+    assert ["minimum", "film", "thickness", "5.00", "±", "0.20", "µm"] in lines
+    assert ["contact", "normal", "force", "12.50", "N"] in lines  # no bar is known
     assert float(study.asked["own"].scalars["bearing_force"]) == 100.0
     assert "±" not in cli("solve", case).stdout
 
