@@ -2,30 +2,29 @@
 
 In the order data flows:
 
-- ``reading``   what figures take from a dataset: one converged point, strips of the film, contacts
-- ``style``     colours, sizes, axes and titles all figures share
-- ``around``    pressure and film against the bushing angle (`pressure_and_film`)
-- ``profiles``  pressure and film over one petal, for a family (`petal_profiles`)
-- ``unrolled``  pressure and film over angle and length (`maps`)
-- ``curves``    characteristics against displacement (`load_characteristic`, `static`)
-- ``loops``     hysteresis of a package with friction (`hysteresis`)
-- ``speeds``    over the speed under a load (`runup`), lift-off over the load (`liftoff`)
-- ``impedance`` stiffness and damping over whirl frequency (`coefficients`)
-- ``whirl``     stability of a rigid rotor over speed and load (`stability`)
-- ``motion``    what figures take from a motion: path, axis, circle of contact
-- ``paths``     path of the journal's centre (`orbit_path`)
-- ``histories`` a motion over time (`orbit_histories`), audit of its energy (`orbit_energy`)
-- ``spectra``   spectrum of the whirl (`orbit_spectrum`), over speed or time (`orbit_waterfall`)
-- ``orbits``    a motion in one figure (`orbit`)
-- ``section``   the loaded bearing, cut across (`cross_section`)
-- ``animation`` the section in motion, as a page or a GIF (`animate`)
-- ``assembly``  the package as it is put together (`package`)
-- ``refinement`` figures against the grid (`convergence`)
-- ``overview``  the figure that suits a result (`summary`)
-- ``files``     figures to files (`save`)
+- ``views``        what figures take from a dataset: one converged point, strips of the film, contacts
+- ``orbit_views``  what figures take from a motion: path, clearance circle
+- ``labels``       quantities with their units, facts of a title, text made safe
+- ``canvas``       the figure as a notebook shows it; figures to files (`save`)
+- ``style``        colours, sizes, axes and titles all figures share
+- ``film_fields``  pressure and film: around (`pressure_and_film`), of one petal (`petal_profiles`), as `maps`
+- ``section``      the section of the loaded bearing (`cross_section`), with its film (`operating_point`)
+- ``assembly``     the foil pack as it is assembled (`package`)
+- ``characteristics`` against displacement: `curve`, `load_characteristic`, `static`, `hysteresis`
+- ``speed_sweeps`` over the speed under a load (`runup`), lift-off over the load (`liftoff`)
+- ``dynamic_coefficients`` stiffness and damping over whirl frequency (`coefficients`)
+- ``stability_maps`` stability of a rigid rotor (`stability`)
+- ``histories``    a motion over time (`orbit_histories`), its energy balance (`orbit_energy`)
+- ``spectra``      spectrum of the whirl (`orbit_spectrum`), over speed or time (`orbit_waterfall`)
+- ``journal_orbit`` path of the journal's centre (`orbit_path`), a motion in one figure (`orbit`)
+- ``animation``    the section in motion, as a page or a GIF (`animate`)
+- ``grid_convergence`` quantities against the grid (`convergence`)
+- ``generic``      any other result (`quantities`)
+- ``registry``     the figure of each analysis (`summary`), and new ones (`register`)
 
 Conventions: a function takes a dataset and returns a ``matplotlib`` figure with its own canvas (no pyplot, no global
-state); a state that did not converge is never drawn. matplotlib is loaded when the first of these names is used.
+state), which a notebook shows by itself; a state that did not converge is never drawn. matplotlib is loaded when a
+figure is drawn.
 """
 
 from __future__ import annotations
@@ -35,33 +34,51 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from petalfoil.plot.animation import animate
-    from petalfoil.plot.around import pressure_and_film
     from petalfoil.plot.assembly import package
-    from petalfoil.plot.curves import load_characteristic, static
-    from petalfoil.plot.files import save
+    from petalfoil.plot.canvas import save
+    from petalfoil.plot.characteristics import curve, hysteresis, load_characteristic, static
+    from petalfoil.plot.dynamic_coefficients import coefficients
+    from petalfoil.plot.film_fields import maps, petal_profiles, pressure_and_film
+    from petalfoil.plot.generic import quantities
+    from petalfoil.plot.grid_convergence import convergence
     from petalfoil.plot.histories import orbit_energy, orbit_histories
-    from petalfoil.plot.impedance import coefficients
-    from petalfoil.plot.loops import hysteresis
-    from petalfoil.plot.orbits import orbit
-    from petalfoil.plot.overview import summary
-    from petalfoil.plot.paths import orbit_path
-    from petalfoil.plot.profiles import petal_profiles
-    from petalfoil.plot.refinement import convergence
-    from petalfoil.plot.section import cross_section
+    from petalfoil.plot.journal_orbit import orbit, orbit_path
+    from petalfoil.plot.registry import register, summary
+    from petalfoil.plot.section import cross_section, operating_point
     from petalfoil.plot.spectra import orbit_spectrum, orbit_waterfall
-    from petalfoil.plot.speeds import liftoff, runup
-    from petalfoil.plot.unrolled import maps
-    from petalfoil.plot.whirl import stability
+    from petalfoil.plot.speed_sweeps import liftoff, runup
+    from petalfoil.plot.stability_maps import stability
+
+_MODULES = {
+    "animation": ("animate",),
+    "assembly": ("package",),
+    "canvas": ("save",),
+    "characteristics": ("curve", "hysteresis", "load_characteristic", "static"),
+    "dynamic_coefficients": ("coefficients",),
+    "film_fields": ("maps", "petal_profiles", "pressure_and_film"),
+    "generic": ("quantities",),
+    "grid_convergence": ("convergence",),
+    "histories": ("orbit_energy", "orbit_histories"),
+    "journal_orbit": ("orbit", "orbit_path"),
+    "registry": ("register", "summary"),
+    "section": ("cross_section", "operating_point"),
+    "spectra": ("orbit_spectrum", "orbit_waterfall"),
+    "speed_sweeps": ("liftoff", "runup"),
+    "stability_maps": ("stability",),
+}
+_HOME = {name: module for module, names in _MODULES.items() for name in names}
 
 __all__ = [
     "animate",
     "coefficients",
     "convergence",
     "cross_section",
+    "curve",
     "hysteresis",
     "liftoff",
     "load_characteristic",
     "maps",
+    "operating_point",
     "orbit",
     "orbit_energy",
     "orbit_histories",
@@ -71,37 +88,14 @@ __all__ = [
     "package",
     "petal_profiles",
     "pressure_and_film",
+    "quantities",
+    "register",
     "runup",
     "save",
     "stability",
     "static",
     "summary",
 ]
-
-_HOME = {
-    "animate": "animation",
-    "coefficients": "impedance",
-    "convergence": "refinement",
-    "cross_section": "section",
-    "hysteresis": "loops",
-    "liftoff": "speeds",
-    "load_characteristic": "curves",
-    "maps": "unrolled",
-    "orbit": "orbits",
-    "orbit_energy": "histories",
-    "orbit_histories": "histories",
-    "orbit_path": "paths",
-    "orbit_spectrum": "spectra",
-    "orbit_waterfall": "spectra",
-    "package": "assembly",
-    "petal_profiles": "profiles",
-    "pressure_and_film": "around",
-    "runup": "speeds",
-    "save": "files",
-    "stability": "whirl",
-    "static": "curves",
-    "summary": "overview",
-}
 
 
 def __getattr__(name: str) -> object:

@@ -1,4 +1,4 @@
-"""The last turns of a motion as moving pictures: the bearing cut across, its petals, film and journal, and the path.
+"""The last revolutions of a motion as moving pictures: the section with petals, film and journal, and the path.
 
 Both forms are files of their own: an HTML page with its pictures and its player inside, or a GIF.
 """
@@ -6,9 +6,9 @@ Both forms are files of their own: an HTML page with its pictures and its player
 from __future__ import annotations
 
 import base64
-import html
 import io
 import json
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.resources import files
@@ -24,12 +24,12 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from petalfoil.errors import StoreError, UsageError
-from petalfoil.plot import style
-from petalfoil.plot.around import plane_fact
-from petalfoil.plot.motion import MICRO, motion_facts, path_of
-from petalfoil.plot.paths import draw_close
-from petalfoil.plot.reading import array, journal_surface, mid_plane, number
+from petalfoil.plot import labels, style
+from petalfoil.plot.journal_orbit import draw_path
+from petalfoil.plot.labels import MICRO
+from petalfoil.plot.orbit_views import motion_facts, path_of
 from petalfoil.plot.section import Shades, Stretch, default_scale, draw_film_pressure, draw_petals, draw_solids
+from petalfoil.plot.views import array, journal_surface, mid_plane, number
 from petalfoil.results.atomic import replacing
 from petalfoil.results.motion import TURN, Path
 
@@ -41,6 +41,8 @@ _SMOOTH = 192
 """Cells round the circle below which the film is drawn on a finer grid, between its nodes."""
 _DENT = 0.4
 """Largest displacement over the journal's radius, both as drawn: beyond one half its outline would be dented."""
+_ROUNDING = 1e-6
+"""Film above the contact film thickness, over it, up to which the journal counts as in contact."""
 _CIRCLE = np.linspace(0.0, TURN, 361)
 _STATE = {
     "frame_pressure": "pressure",
@@ -53,7 +55,7 @@ _STATE = {
 
 
 def animate(ds: xr.Dataset, path: str | File) -> None:
-    """Write the last turns of a motion as moving pictures; a former file is replaced whole, or left alone.
+    """Write the last revolutions of a motion as moving pictures; a former file is replaced whole, or left alone.
 
     Parameters
     ----------
@@ -136,11 +138,11 @@ class _Scene:
         fig = style.figure(12.0, 6.8)
         section, close = fig.subplots(1, 2, width_ratios=[1.35, 1.0])
         fig.set_dpi(DPI)
-        draw_close(close, path)
+        draw_path(close, ds, path, ratio=0.9, columns=2)
         close.plot([], [], "o", color=style.INK, markersize=9, gid="now")
         bar = fig.colorbar(ScalarMappable(shades.norm, style.PRESSURE_MAP), ax=section, shrink=0.6, pad=0.02, aspect=24)
         bar.set_label("p / p$_a$", fontsize=style.LABEL)
-        style.set_title(fig, ds, *motion_facts(ds, path), plane_fact(ds))
+        style.set_title(fig, ds, *motion_facts(ds, path), labels.plane_fact(ds))
         scene = cls(fig, section, close, states, path, stretch, shades)
         scene.show(0)
         fig.draw_without_rendering()
@@ -176,7 +178,7 @@ class _Scene:
         self.section.plot(x[-1], y[-1], "o", color=style.VERMILLION, markersize=5)
 
     def _draw_mark(self, state: xr.Dataset) -> None:
-        """A line fixed to the shaft: it shows the turning."""
+        """A line fixed to the shaft: it shows the rotation."""
         angle = float(np.interp(number(state, "frame"), self.path.time, self.path.angle))
         centre = self.stretch.scale * np.array([number(state, "eccentricity_x"), number(state, "eccentricity_y")])
         out = float(self.stretch.radius(np.array(number(state, "journal_radius"))))
@@ -187,7 +189,7 @@ class _Scene:
         time = number(state, "frame")
         turned = float(np.interp(time, self.path.time, self.path.angle)) / TURN
         speed = float(np.interp(time, self.path.time, self.path.speed))
-        return f"t = {1e3 * time:.2f} ms · turn {turned:.2f} · {style.speed_fact(speed)}"
+        return f"t = {1e3 * time:.2f} ms · revolution {turned:.2f} · {labels.speed_fact(speed)}"
 
     def image(self) -> Image.Image:
         """The drawing as pixels."""
@@ -197,10 +199,11 @@ class _Scene:
 
 
 def _scale(ds: xr.Dataset) -> float:
-    """The largest of 1, 2, 5, 10, ... at which room and displacements suit the drawing."""
-    bore, room = number(ds, "bushing_radius"), number(ds, "bushing_radius") - number(ds, "journal_radius")
+    """The largest of 1, 2, 5, 10, ... at which clearance and displacements suit the drawing."""
+    bore = number(ds, "bushing_radius")
+    clearance = bore - number(ds, "journal_radius")
     moved = float(np.hypot(array(ds, "frame_x"), array(ds, "frame_y")).max())
-    most = min(default_scale(ds), _DENT * bore / (moved + _DENT * room))
+    most = min(default_scale(ds), _DENT * bore / (moved + _DENT * clearance))
     return max(step * 10.0**decade for decade in range(9) for step in (1.0, 2.0, 5.0) if step * 10.0**decade <= most)
 
 
@@ -227,9 +230,9 @@ def _palette() -> Image.Image:
 
 
 def _mark_contacts(ax: Axes, state: xr.Dataset, stretch: Stretch) -> None:
-    """Where the film is at its floor."""
-    floor = number(state, "contact_film_thickness")
-    touched = array(state, "film_thickness") <= floor * (1.0 + 1e-6)
+    """Mark where the film has the contact film thickness."""
+    least = number(state, "contact_film_thickness")
+    touched = array(state, "film_thickness") <= least * (1.0 + _ROUNDING)
     if touched.any():
         theta = (array(state, "root_angle")[:, None] + array(state, "phi_exposed"))[touched]
         look: style.Look = {"color": style.CONTACT, "markersize": 4, "markeredgecolor": style.WHITE, "zorder": 5}
@@ -242,7 +245,7 @@ def _frame(ax: Axes, stretch: Stretch) -> None:
     ax.set_axis_off()
     ax.set_xlim(-reach, reach)
     ax.set_ylim(-1.15 * reach, reach)
-    note = f"radial room drawn ×{stretch.scale:g}; red: where the journal touches"
+    note = f"radial clearance drawn ×{labels.grouped(stretch.scale)}; red: journal in contact"
     ax.text(0.0, -1.12 * reach, note, ha="center", va="center", fontsize=style.TICK, color=style.INK)
 
 
@@ -250,10 +253,9 @@ def _page(title: str, pictures: list[Image.Image]) -> str:
     """The page with its pictures and its player inside."""
     shell = files("petalfoil.plot").joinpath("player.html").read_text(encoding="utf-8")
     inline = json.dumps([_inline(picture) for picture in pictures])
-    inside = {"TITLE": html.escape(title or "petalfoil"), "DELAY": str(DELAY), "FRAMES": inline}
-    for mark, text in inside.items():
-        shell = shell.replace(f"@{mark}@", text)
-    return shell
+    inside = {"TITLE": labels.page_text(title) or "petalfoil", "DELAY": str(DELAY), "FRAMES": inline}
+    # One pass over the shell: a title that looks like a placeholder is text, not the next one to be filled.
+    return re.sub("@([A-Z]+)@", lambda mark: inside[mark[1]], shell)
 
 
 def _inline(picture: Image.Image) -> str:

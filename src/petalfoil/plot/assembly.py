@@ -1,4 +1,4 @@
-"""The package as it is put together: true to scale, and one petal unrolled with its free shape."""
+"""The foil pack as it is assembled: its section, and one petal unrolled with its free shape."""
 
 from __future__ import annotations
 
@@ -8,19 +8,20 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Wedge
 
-from petalfoil.plot import style
-from petalfoil.plot.reading import Floats, array, journal_surface, mid_plane, number, one_point
-from petalfoil.plot.section import Stretch, petal_outline
+from petalfoil.plot import labels, style
+from petalfoil.plot.labels import MICRO
+from petalfoil.plot.section import Stretch, default_scale, draw_petals, draw_solids, frame_section
+from petalfoil.plot.views import Floats, array, journal_surface, mid_plane, number, one_point
 
 _CIRCLE = np.linspace(0.0, 2.0 * np.pi, 361)
 _MARGIN = 0.12
 """Angle shown beyond each end of the unrolled petal over the petal's angle."""
+_MILLI = 1e3
 
 
 def package(ds: xr.Dataset) -> Figure:
-    """Draw the package of ``check``: the whole section true to scale, and one petal unrolled with its radius stretched.
+    """Draw the foil pack of ``check``: the section with its clearance stretched, and one petal unrolled.
 
     Parameters
     ----------
@@ -38,9 +39,9 @@ def package(ds: xr.Dataset) -> Figure:
         The assembled shape did not converge.
     """
     ds = mid_plane(one_point(ds))
-    fig = style.figure(10.0, 5.2)
-    left, right = fig.subplots(1, 2, width_ratios=[1.0, 1.15])
-    _draw_whole(left, ds)
+    fig = style.figure(12.0, 6.2)
+    left, right = fig.subplots(1, 2, width_ratios=[1.0, 1.05])
+    _draw_section(left, ds)
     _draw_unrolled(right, ds)
     style.set_title(fig, ds, *_facts(ds))
     _state_stretch(fig, right, ds)
@@ -52,91 +53,73 @@ def _state_stretch(fig: Figure, ax: Axes, ds: xr.Dataset) -> None:
     ax.set_title("unrolled", fontsize=style.LABEL, color=style.INK)
     fig.draw_without_rendering()  # the layout decides the size of the axes
     box = ax.get_window_extent()
-    arc = math.radians(np.ptp(ax.get_xlim())) * number(ds, "bushing_radius") * 1e3
+    arc = math.radians(np.ptp(ax.get_xlim())) * number(ds, "bushing_radius") * _MILLI
     stretch = (box.height / np.ptp(ax.get_ylim())) / (box.width / arc)
-    ax.set_title(f"unrolled, radius stretched ×{stretch:.2g}", fontsize=style.LABEL, color=style.INK)
+    told = f"{stretch:.2g}" if stretch < 100.0 else labels.grouped(float(f"{stretch:.2g}"))
+    ax.set_title(f"unrolled, radius stretched ×{told}", fontsize=style.LABEL, color=style.INK)
 
 
 def _facts(ds: xr.Dataset) -> list[str]:
     formats = {
         "overlap": "overlap {:.3g}",
         "layers": "{:.0f} layers",
-        "radial_clearance": "radial room {:.4g} µm",
-        "pack_clearance": "{:.4g} µm left",
+        "radial_clearance": "radial clearance {:.4g} µm",
+        "pack_clearance": "{:.4g} µm above the solid pack height",
         "compressibility_number": "Λ = {:.3g}",
     }
+    if "radius" not in ds:
+        del formats["pack_clearance"]
     lengths = ("radial_clearance", "pack_clearance")
-    known = {name: number(ds, name) * (1e6 if name in lengths else 1.0) for name in formats}
+    known = {name: number(ds, name) * (MICRO if name in lengths else 1.0) for name in formats}
     return [form.format(known[name]) for name, form in formats.items() if not math.isnan(known[name])]
 
 
-def _draw_whole(ax: Axes, ds: xr.Dataset) -> None:
-    """The section in millimetres, nothing stretched."""
-    bore = number(ds, "bushing_radius") * 1e3
-    ring = Wedge((0.0, 0.0), 1.06 * bore, 0.0, 360.0, width=0.06 * bore)
-    ring.set(facecolor=style.PALE, edgecolor=style.GREY, hatch="////", linewidth=0.8)
-    ax.add_patch(ring)
-    true = Stretch(number(ds, "bushing_radius"), 1.0)
-    journal = true.points(journal_surface(ds, _CIRCLE), _CIRCLE) * 1e3
-    ax.fill(*journal.T, facecolor="#F4F4F4", edgecolor=style.INK, linewidth=0.8, gid="journal")
-    if "radius" in ds:
-        _draw_true_petals(ax, ds, true)
-    style.dress(ax, "x [mm]", "y [mm]")
-    ax.grid(False)
-    ax.set_aspect("equal")
-    ax.set_xlim(-1.1 * bore, 1.1 * bore)
-    ax.set_ylim(-1.1 * bore, 1.1 * bore)
-    ax.set_title("true to scale", fontsize=style.LABEL, color=style.INK)
-
-
-def _draw_true_petals(ax: Axes, ds: xr.Dataset, true: Stretch) -> None:
-    half, phi, radius = number(ds, "petal_thickness") / 2, array(ds, "phi"), array(ds, "radius")
-    for petal, root in enumerate(array(ds, "root_angle")):
-        outline = petal_outline(radius[petal], root + phi, half, true) * 1e3
-        colour = style.BLUE if petal == 0 else ("#4D5963", "#8F9BA6")[petal % 2]
-        ax.fill(*outline.T, facecolor=colour, edgecolor=colour, linewidth=0.2, gid=f"petal {petal}")
-    roots = true.points(np.full(ds.sizes["petal"], true.bore), array(ds, "root_angle")) * 1e3
-    ax.plot(*roots.T, "s", color=style.INK, markersize=4, gid="roots")
+def _draw_section(ax: Axes, ds: xr.Dataset) -> None:
+    """The section with its radial clearance stretched; the first petal stands out as in the unrolled picture."""
+    stretch = Stretch(number(ds, "bushing_radius"), default_scale(ds))
+    draw_solids(ax, ds, stretch)
+    draw_petals(ax, ds, stretch)
+    for patch in ax.patches:
+        if patch.get_gid() == "petal 0":
+            patch.set(facecolor=style.BLUE, zorder=3)
+    surface = stretch.points(journal_surface(ds, _CIRCLE), _CIRCLE)
+    ax.plot(*surface.T, color=style.INK, linewidth=1.0, gid="journal surface")
+    ax.text(0.0, 0.0, "journal", ha="center", va="center", fontsize=style.TICK, color=style.INK)
+    frame_section(ax, stretch)
 
 
 def _draw_unrolled(ax: Axes, ds: xr.Dataset) -> None:
-    """Radius against bushing angle over one petal, with everything that passes there."""
+    """Radius against bushing angle over one petal, with everything that passes there; the legend stands below."""
     span = float(array(ds, "phi")[-1]) if "phi" in ds.coords else 2.0 * math.pi
     root = float(array(ds, "root_angle")[0]) if "root_angle" in ds.coords else 0.0
-    window = np.linspace(root - _MARGIN * span, root + (1.0 + _MARGIN) * span, 361)
-    bore, journal = number(ds, "bushing_radius") * 1e3, journal_surface(ds, window) * 1e3
-    low, high = float(journal.min()), bore
+    margin = _MARGIN if "radius" in ds else 0.0
+    window = np.linspace(root - margin * span, root + (1.0 + margin) * span, 361)
+    bore, journal = number(ds, "bushing_radius") * _MILLI, journal_surface(ds, window) * _MILLI
+    low = float(journal.min())
     if "radius" in ds:
         _draw_neighbours(ax, ds, window)
         low = min(low, _draw_free(ax, ds, root))
-    depth = 0.12 * (high - low)
-    degrees = np.degrees(window)
-    ax.fill_between(
-        degrees,
-        bore,
-        high + depth,
-        facecolor=style.PALE,
-        edgecolor=style.GREY,
-        hatch="////",
-        linewidth=0,
-        gid="bushing",
-    )
-    ax.fill_between(degrees, low - depth, journal, facecolor="#F4F4F4", linewidth=0, zorder=0, gid="journal")
+    _draw_walls(ax, np.degrees(window), journal, (low, bore))
+    style.dress(ax, "bushing angle  θ [deg]", "radius [mm]")
+    ax.set_xlim(math.degrees(window[0]), math.degrees(window[-1]))
+    if ax.get_legend_handles_labels()[0]:
+        style.legend(ax, loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3, frameon=False)
+
+
+def _draw_walls(ax: Axes, degrees: Floats, journal: Floats, limits: tuple[float, float]) -> None:
+    """Journal below and bushing above, each with its name."""
+    low, bore = limits
+    depth = 0.12 * (bore - low)
+    look: style.Look = {"facecolor": style.PALE, "edgecolor": style.GREY, "hatch": "////", "linewidth": 0}
+    ax.fill_between(degrees, bore, bore + depth, gid="bushing", **look)
+    ax.fill_between(degrees, low - depth, journal, facecolor=style.STEEL, linewidth=0, zorder=0, gid="journal")
     ax.plot(degrees, journal, color=style.INK, linewidth=1.0)
     ax.axhline(bore, color=style.INK, linewidth=1.0)
     place: style.Look = {"fontsize": style.TICK, "color": style.INK, "va": "center"}
+    box = {"facecolor": style.WHITE, "edgecolor": "none", "pad": 1.5}
     ax.text(degrees[6], low - depth / 2, "journal", **place)
-    ax.text(
-        degrees[6],
-        bore + depth / 2,
-        "bushing",
-        bbox={"facecolor": style.WHITE, "edgecolor": "none", "pad": 1.5},
-        **place,
-    )
-    style.dress(ax, "bushing angle  θ [deg]", "radius [mm]")
-    ax.set_xlim(degrees[0], degrees[-1])
-    ax.set_ylim(low - depth, high + depth)
-    style.legend(ax, loc="lower right")
+    ax.text(degrees[6], bore + depth / 2, "bushing", bbox=box, **place)
+    ax.set_ylim(low - depth, bore + depth)
 
 
 def _draw_neighbours(ax: Axes, ds: xr.Dataset, window: Floats) -> None:
@@ -155,15 +138,15 @@ def _draw_neighbours(ax: Axes, ds: xr.Dataset, window: Floats) -> None:
                 "linewidth": 0.5,
             }
             label = "petal, assembled" if first else None
-            faces = ((radius[petal] - half) * 1e3, (radius[petal] + half) * 1e3)
+            faces = ((radius[petal] - half) * _MILLI, (radius[petal] + half) * _MILLI)
             ax.fill_between(np.degrees(theta), *faces, label=label, zorder=2 + first, gid=f"petal {petal}", **look)
 
 
 def _draw_free(ax: Axes, ds: xr.Dataset, root: float) -> float:
-    """The free mid-surface of the first petal and where it would meet the journal; gives its lowest radius [mm]."""
+    """The free mid-surface of the first petal and where it would meet the journal; returns its lowest radius [mm]."""
     if "free_radius" not in ds:
         return math.inf
-    phi, free = array(ds, "phi"), array(ds, "free_radius") * 1e3
+    phi, free = array(ds, "phi"), array(ds, "free_radius") * _MILLI
     ax.plot(np.degrees(root + phi), free, "--", color=style.VERMILLION, linewidth=1.6, label="petal, free", zorder=4)
     meets = number(ds, "first_contact_angle")
     if not math.isnan(meets):

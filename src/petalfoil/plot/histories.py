@@ -1,4 +1,4 @@
-"""A motion over time: displacement, film, contact and speed; and the audit of its energy."""
+"""A motion over time: displacement, tilt, film, contact and speed; and the balance of its energy."""
 
 from __future__ import annotations
 
@@ -11,15 +11,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from petalfoil.plot import style
-from petalfoil.plot.motion import MICRO, RPM, elapsed, motion_facts, padded, path_of
-from petalfoil.plot.reading import Floats, array, number
+from petalfoil.plot.labels import MICRO, RPM
+from petalfoil.plot.orbit_views import elapsed, motion_facts, padded, path_of
+from petalfoil.plot.views import Floats, array, number
 from petalfoil.results.motion import Path
-
-Drawn = tuple[Floats, str]
 
 
 def orbit_histories(ds: xr.Dataset) -> Figure:
-    """Draw displacement, smallest film, contact share and, where it changes, speed over time.
+    """Draw displacement, minimum film thickness, contact fraction, and tilt and speed where they change, over time.
 
     Parameters
     ----------
@@ -29,7 +28,7 @@ def orbit_histories(ds: xr.Dataset) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Panels one above the other, over turns of the shaft or, where the speed changes, milliseconds.
+        Panels one above the other, over revolutions of the shaft or, where the speed changes, milliseconds.
 
     Raises
     ------
@@ -37,9 +36,11 @@ def orbit_histories(ds: xr.Dataset) -> Figure:
         The dataset holds no motion.
     """
     path = path_of(ds)
-    fig = style.figure(9.0, 7.6 if path.is_steady else 9.0)
-    panels = [draw_displacement, draw_film_history, draw_contact] + ([] if path.is_steady else [draw_speed])
-    axes = np.atleast_1d(fig.subplots(len(panels), 1, sharex=True, height_ratios=[1.6, *[1.0] * (len(panels) - 1)]))
+    panels = [draw_x, draw_y, draw_film_history, draw_contact]
+    panels += [draw_tilt] if tilts(ds) else []
+    panels += [] if path.is_steady else [draw_speed]
+    fig = style.figure(9.0, 0.9 + 1.75 * len(panels))
+    axes = fig.subplots(len(panels), 1, sharex=True)
     for ax, draw in zip(axes, panels, strict=True):
         draw(ax, ds, path)
         if ax is not axes[-1]:
@@ -48,49 +49,72 @@ def orbit_histories(ds: xr.Dataset) -> Figure:
     return fig
 
 
-def draw_displacement(ax: Axes, _ds: xr.Dataset, path: Path) -> None:
-    """Draw both displacements."""
-    for values, colour, label in ((path.x, style.BLUE, "x"), (path.y, style.VERMILLION, "y")):
-        _draw(ax, path, values * MICRO, colour, label)
-    _frame(ax, path, "displacement [µm]")
-    low, high = padded(*_range([path.x * MICRO, path.y * MICRO]))
-    ax.set_ylim(low, high + 0.15 * (high - low))  # room for the legend
+def draw_x(ax: Axes, _ds: xr.Dataset, path: Path) -> None:
+    """Draw the displacement along x on a scale of its own: an orbit is small against the distance of its middle."""
+    _draw_displacement(ax, path, path.x, style.BLUE, "x")
+
+
+def draw_y(ax: Axes, _ds: xr.Dataset, path: Path) -> None:
+    """Draw the displacement along y on a scale of its own."""
+    _draw_displacement(ax, path, path.y, style.VERMILLION, "y")
+
+
+def _draw_displacement(ax: Axes, path: Path, values: Floats, colour: str, axis: str) -> None:
+    _draw_line(ax, path, values * MICRO, colour, "")
+    _dress(ax, path, f"displacement\nalong {axis} [µm]")
+    ax.set_ylim(*padded(*_range([values * MICRO])))
+
+
+def tilts(ds: xr.Dataset) -> bool:
+    """Whether the shaft of a motion tilts."""
+    return "slope_x" in ds and bool(np.any(array(ds, "slope_x")) or np.any(array(ds, "slope_y")))
+
+
+def draw_tilt(ax: Axes, ds: xr.Dataset, path: Path) -> None:
+    """Draw both slopes of the shaft's axis."""
+    slopes = {"along x": (array(ds, "slope_x"), style.BLUE), "along y": (array(ds, "slope_y"), style.VERMILLION)}
+    for label, (values, colour) in slopes.items():
+        _draw_line(ax, path, values * MICRO, colour, label)
+    _dress(ax, path, "shaft slope\n[µrad]")
+    low, high = padded(*_range([values * MICRO for values, _ in slopes.values()]))
+    ax.set_ylim(low, high + 0.4 * (high - low))  # space for the legend
     style.legend(ax, loc="upper right", ncols=2)
 
 
 def draw_film_history(ax: Axes, ds: xr.Dataset, path: Path) -> None:
-    """Draw the smallest film and its floor."""
+    """Draw the minimum film thickness and the contact film thickness."""
     film = array(ds, "min_film_thickness") * MICRO
-    _draw(ax, path, film, style.GREEN, "")
-    floor = number(ds, "contact_film_thickness") * MICRO
-    if not math.isnan(floor):
-        ax.axhline(floor, color=style.GREY, linewidth=1.0, linestyle="--", label=f"film floor, {floor:.3g} µm")
-    _frame(ax, path, "smallest film [µm]")
-    ax.set_ylim(0.0, 1.25 * float(film.max()))
+    _draw_line(ax, path, film, style.GREEN, "")
+    least = number(ds, "contact_film_thickness") * MICRO
+    if not math.isnan(least):
+        label = f"contact film thickness, {least:.3g} µm"
+        ax.axhline(least, color=style.GREY, linewidth=1.0, linestyle="--", label=label)
+    _dress(ax, path, "minimum film\nthickness [µm]")
+    ax.set_ylim(0.0, 1.4 * float(film.max()))
     style.legend(ax, loc="upper right")
 
 
 def draw_contact(ax: Axes, ds: xr.Dataset, path: Path) -> None:
-    """Draw the share of the contacts."""
-    share = 100.0 * array(ds, "contact_fraction")
+    """Draw the contact fraction."""
+    percent = 100.0 * array(ds, "contact_fraction")
     over, _ = elapsed(path)
-    ax.fill_between(over, 0.0, share, color=style.ORANGE, alpha=0.35, linewidth=0)
-    _draw(ax, path, share, style.ORANGE, "")
-    _frame(ax, path, "contact share [%]")
-    ax.set_ylim(0.0, max(1.1 * float(share.max()), 1.0))
-    if not share.any():
+    ax.fill_between(over, 0.0, percent, color=style.ORANGE, alpha=0.35, linewidth=0)
+    _draw_line(ax, path, percent, style.ORANGE, "")
+    _dress(ax, path, "contact\nfraction [%]")
+    ax.set_ylim(0.0, max(1.1 * float(percent.max()), 1.0))
+    if not percent.any():
         ax.text(0.5, 0.5, "no contact", transform=ax.transAxes, ha="center", color=style.GREY, fontsize=style.LABEL)
 
 
 def draw_speed(ax: Axes, _ds: xr.Dataset, path: Path) -> None:
     """Draw the speed of the shaft."""
-    _draw(ax, path, path.speed * RPM, style.INK, "")
-    _frame(ax, path, "speed [rpm]")
+    _draw_line(ax, path, path.speed * RPM, style.INK, "")
+    _dress(ax, path, "speed [rpm]")
     ax.set_ylim(0.0, max(1.1 * float(path.speed.max()) * RPM, 1.0))
 
 
 def orbit_energy(ds: xr.Dataset) -> Figure:
-    """Draw the audit of the energy: what loads and film did on rotor and petals, and what the shaft spent.
+    """Draw the energy balance: work of loads and film on rotor and petals, and work of the shaft against friction.
 
     Parameters
     ----------
@@ -100,7 +124,7 @@ def orbit_energy(ds: xr.Dataset) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Above, work of loads and film, the energy gained from it, and the defect; below, work of the shaft.
+        Above, work of loads and film, the energy gained from it, and the balance error; below, work of the shaft.
 
     Raises
     ------
@@ -118,12 +142,12 @@ def orbit_energy(ds: xr.Dataset) -> Figure:
 
 
 def draw_energy(ax: Axes, ds: xr.Dataset, path: Path) -> None:
-    """Draw work on rotor and petals, their energy, and what is missing."""
+    """Draw work on rotor and petals, their energy, and the balance error."""
     columns = list(_exchanged(ds))
     scale, unit = _unit(max(float(np.abs(values).max()) for values, *_ in columns))
     for values, colour, label, line in columns:
-        _draw(ax, path, values * scale, colour, label, line)
-    _frame(ax, path, f"work and energy [{unit}]")
+        _draw_line(ax, path, values * scale, colour, label, line)
+    _dress(ax, path, f"work and energy [{unit}]")
     ax.set_ylim(*padded(*_range([values * scale for values, *_ in columns]), share=0.3))
     ax.axhline(0.0, color=style.GREY, linewidth=0.6, zorder=0)
     style.legend(ax, loc="upper left", ncols=2)
@@ -134,24 +158,24 @@ def draw_shaft(ax: Axes, ds: xr.Dataset, path: Path) -> None:
     """Draw the work of the shaft against film and dry friction."""
     whole, rubbing = array(ds, "shaft_work"), array(ds, "rubbing_work")
     scale, unit = _unit(float(np.abs(whole).max()))
-    _draw(ax, path, whole * scale, style.INK, "shaft, film and rubbing")
-    _draw(ax, path, rubbing * scale, style.ORANGE, "rubbing alone")
-    _frame(ax, path, f"work of the shaft [{unit}]")
+    _draw_line(ax, path, whole * scale, style.INK, "film and rubbing")
+    _draw_line(ax, path, rubbing * scale, style.ORANGE, "rubbing")
+    _dress(ax, path, f"work of the shaft [{unit}]")
     ax.set_ylim(*padded(*_range([whole * scale, rubbing * scale]), share=0.15))
     style.legend(ax, loc="upper left")
 
 
 def _spent(ds: xr.Dataset) -> str:
-    """What the shaft spent on friction, which the audit leaves out, and the defect of what it holds."""
+    """Work of the shaft against friction, which the balance leaves out, and the error of the balance."""
     whole, rubbing = float(array(ds, "shaft_work")[-1]), float(array(ds, "rubbing_work")[-1])
     scale, unit = _unit(abs(whole))
-    told = f"the shaft spent {scale * whole:.3g} {unit} on friction, {scale * rubbing:.3g} {unit} of it on rubbing"
-    defect = number(ds, "energy_balance_error")
-    return told if math.isnan(defect) else f"{told}\nlargest defect: {defect:.1e} of what was exchanged"
+    told = f"work of the shaft {scale * whole:.3g} {unit}, {scale * rubbing:.3g} {unit} of it against rubbing"
+    error = number(ds, "energy_balance_error")
+    return told if math.isnan(error) else f"{told}\nenergy-balance error {error:.1e}"
 
 
 def _exchanged(ds: xr.Dataset) -> Iterator[tuple[Floats, str, str, str]]:
-    """Values [J], colour, label and line of what the audit balances."""
+    """Values [J], colour, label and line of the terms of the balance."""
     loads, film = array(ds, "load_work"), array(ds, "film_work")
     energy = array(ds, "kinetic_energy") + array(ds, "elastic_energy")
     gained = energy - energy[0]
@@ -160,8 +184,8 @@ def _exchanged(ds: xr.Dataset) -> Iterator[tuple[Floats, str, str, str]]:
     yield gained, style.INK, "gained by rotor and petals", "-"
     lost = array(ds, "petal_friction_work") if "petal_friction_work" in ds else np.zeros_like(gained)
     if np.any(lost):
-        yield lost, style.ORANGE, "lost between petals", "-"
-    yield gained + lost - loads - film, style.VERMILLION, "defect", "--"
+        yield lost, style.ORANGE, "friction between petals", "-"
+    yield gained + lost - loads - film, style.VERMILLION, "balance error", "--"
 
 
 def _range(columns: list[Floats]) -> tuple[float, float]:
@@ -176,13 +200,13 @@ def _unit(largest: float) -> tuple[float, str]:
     return 1e6, "µJ"
 
 
-def _draw(ax: Axes, path: Path, values: Floats, colour: str, label: str, line: str = "-") -> None:
+def _draw_line(ax: Axes, path: Path, values: Floats, colour: str, label: str, line: str = "-") -> None:
     over, _ = elapsed(path)
     look: style.Look = {"label": label} if label else {}
     ax.plot(over, values, color=colour, linewidth=1.1, linestyle=line, **look)
 
 
-def _frame(ax: Axes, path: Path, ylabel: str) -> None:
+def _dress(ax: Axes, path: Path, ylabel: str) -> None:
     over, label = elapsed(path)
     style.dress(ax, label, ylabel)
     ax.set_xlim(float(over[0]), float(over[-1]))

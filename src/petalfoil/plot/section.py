@@ -1,4 +1,4 @@
-"""The bearing cut across: petals, journal, bushing, film and pressure, the radial room stretched to be seen.
+"""The bearing cut across: petals, journal, bushing, film and pressure, the radial clearance stretched to be seen.
 
 A film is under a thousandth of the radius, so a true section shows nothing. Every radius `r` about the bushing's axis
 is drawn at `R_B − s (R_B − r)`: the bore keeps its size, and everything between it and the journal, petals, film and
@@ -19,12 +19,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, Wedge
 
 from petalfoil.errors import UsageError
-from petalfoil.plot import style
-from petalfoil.plot.around import plane_fact
-from petalfoil.plot.reading import (
+from petalfoil.plot import labels, style
+from petalfoil.plot.film_fields import draw_film, draw_film_map, draw_pressure, draw_pressure_map
+from petalfoil.plot.views import (
     Floats,
     array,
     displacement,
+    is_3d,
     journal_surface,
     mid_plane,
     number,
@@ -32,8 +33,8 @@ from petalfoil.plot.reading import (
     touching,
 )
 
-_ROOM_SHARE = 0.5
-"""Largest share of the bore's radius that the default scale gives to the room between journal and bushing."""
+_CLEARANCE_SHARE = 0.5
+"""Largest share of the bore's radius that the default scale gives to the radial clearance."""
 _LEAST_JOURNAL = 0.1
 """Least share of the bore's radius that is left to the journal at any scale."""
 _RING = 0.06
@@ -41,7 +42,7 @@ _RING = 0.06
 _BAND = 0.34
 """Height of the largest excess pressure over the drawn radius of the journal."""
 _LEGEND = 0.32
-"""Room below the section for its legend, over the bushing's radius."""
+"""Space below the section for its legend, over the bushing's radius."""
 _CIRCLE = np.linspace(0.0, 2.0 * np.pi, 361)
 
 
@@ -54,7 +55,7 @@ class Stretch:
     bore : float
         Radius of the bushing [m].
     scale : float
-        How many times too large the radial room is drawn.
+        How many times too large the radial clearance is drawn.
     """
 
     bore: float
@@ -71,14 +72,14 @@ class Stretch:
 
 
 def cross_section(ds: xr.Dataset, *, scale: float | None = None) -> Figure:
-    """Draw the loaded bearing cut across at its mid-plane, the radial room `scale` times too large.
+    """Draw the loaded bearing cut across at its mid-plane, the radial clearance `scale` times too large.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        One converged state, turning or at rest.
+        One converged state, turning or at zero speed.
     scale : float, optional
-        How many times too large the radial room is drawn; by default it takes up to half the radius.
+        How many times too large the radial clearance is drawn; by default it takes up to half the radius.
 
     Returns
     -------
@@ -96,7 +97,39 @@ def cross_section(ds: xr.Dataset, *, scale: float | None = None) -> Figure:
     fig = style.figure(8.0, 7.4)
     ax = fig.subplots()
     draw_section(ax, ds, scale)
-    style.set_title(fig, ds, *style.state_facts(ds), plane_fact(ds))
+    style.set_title(fig, ds, *labels.state_facts(ds), labels.plane_fact(ds))
+    return fig
+
+
+def operating_point(ds: xr.Dataset) -> Figure:
+    """Draw one state: its section, and pressure and film thickness as lines (2-D) or as maps (3-D).
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        One converged state with pressure and film.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Section on the left, pressure and film on the right.
+
+    Raises
+    ------
+    ConvergenceError
+        The state did not converge.
+    UsageError
+        The dataset holds several points.
+    """
+    ds = one_point(ds)
+    fig = style.figure(13.0, 6.4)
+    axes = fig.subplot_mosaic([["section", "pressure"], ["section", "film"]], width_ratios=[1.0, 1.1])
+    draw_section(axes["section"], ds)
+    draw_p, draw_h = (draw_pressure_map, draw_film_map) if is_3d(ds) else (draw_pressure, draw_film)
+    draw_p(axes["pressure"], ds)
+    draw_h(axes["film"], ds)
+    axes["pressure"].set_xlabel("")
+    style.set_title(fig, ds, *labels.state_facts(ds), labels.plane_fact(ds))
     return fig
 
 
@@ -115,13 +148,13 @@ def draw_section(ax: Axes, ds: xr.Dataset, scale: float | None = None) -> None:
     ax.plot(*surface.T, color=style.INK, linewidth=1.0, gid="journal surface")
     _draw_contacts(ax, plane, stretch)
     _draw_arrows(ax, plane, stretch)
-    _frame(ax, stretch)
+    frame_section(ax, stretch)
 
 
 def default_scale(ds: xr.Dataset) -> float:
-    """The largest of 1, 2, 5, 10, ... that keeps the radial room within its share of the drawing."""
+    """The largest of 1, 2, 5, 10, ... that keeps the radial clearance within its share of the drawing."""
     bore = number(ds, "bushing_radius")
-    most = max(_ROOM_SHARE * bore / (bore - number(ds, "journal_radius")), 1.0)
+    most = max(_CLEARANCE_SHARE * bore / (bore - number(ds, "journal_radius")), 1.0)
     decade = 10.0 ** math.floor(math.log10(most))
     return max(step * decade for step in (1.0, 2.0, 5.0) if step * decade <= most)
 
@@ -144,7 +177,7 @@ def draw_solids(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
     ring.set(facecolor=style.PALE, edgecolor=style.GREY, hatch="////", linewidth=0.8, gid="bushing")
     ax.add_patch(ring)
     surface = stretch.points(journal_surface(ds, _CIRCLE), _CIRCLE)
-    ax.fill(*surface.T, facecolor="#F4F4F4", edgecolor="none", gid="journal")
+    ax.fill(*surface.T, facecolor=style.STEEL, edgecolor="none", gid="journal")
 
 
 def draw_petals(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
@@ -212,7 +245,7 @@ def draw_film_pressure(ax: Axes, ds: xr.Dataset, stretch: Stretch, shades: Shade
 
 
 def _band(ds: xr.Dataset, stretch: Stretch, pressure: tuple[Floats, Shades], theta: Floats) -> tuple[Floats, Floats]:
-    """Base line (ambient pressure) and top of the pressure band; the base line makes room for suction outside it."""
+    """Base line (ambient pressure) and top of the pressure band; suction goes outside the base line."""
     ratio, shades = pressure
     drawn = stretch.radius(journal_surface(ds, theta))
     height = _BAND * stretch.radius(np.array(number(ds, "journal_radius"))) / shades.largest
@@ -229,7 +262,7 @@ def _between(low: Floats, high: Floats) -> Floats:
 
 def _draw_contacts(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
     kinds = {
-        "journal_contact_pressure": ("journal touches", style.VERMILLION),
+        "journal_contact_pressure": ("journal in contact", style.VERMILLION),
         "petal_contact_pressure": ("petal on petal", style.PURPLE),
         "bushing_contact_pressure": ("petal on bushing", style.ORANGE),
     }
@@ -246,21 +279,38 @@ def _draw_contacts(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
 
 
 def _draw_arrows(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
+    """Draw displacement, force and rotation at the journal's centre, side by side rather than over each other."""
     e = stretch.scale * np.array(displacement(ds))
     drawn = float(stretch.radius(np.array(number(ds, "journal_radius"))))
     force = np.array([number(ds, "force_x"), number(ds, "force_y")])
-    size = float(np.hypot(*force))
+    size, distance = float(np.hypot(*force)), float(np.hypot(*e))
     ax.plot(0.0, 0.0, "+", color=style.INK, markersize=9, gid="centre")
-    if np.hypot(*e) > 0.0:
+    taken = []  # directions from the journal's centre that arrows occupy
+    if distance > 0.0:
         _arrow(ax, np.zeros(2), e, style.INK, "displacement")
-        ax.plot([], [], color=style.INK, linewidth=1.6, label="displacement, to the scale")
-    up = math.pi / 2 if not size > 0.0 else math.atan2(force[1], force[0])
+        ax.plot([], [], color=style.INK, linewidth=1.6, label="displacement, to the same scale")
+        taken.append(-e / distance)
     if size > 0.0:
-        tip = e + 0.5 * drawn * force / size
-        _arrow(ax, e, tip, style.BLUE, "force")
+        along = 0.5 * drawn * force / size
+        against = (
+            force @ e <= 0.0
+        )  # the arrow ends at the centre where one that starts there would cover the displacement
+        tail, tip = (e - along, e) if against else (e, e + along)
+        _arrow(ax, tail, tip, style.BLUE, "force")
         ax.plot([], [], color=style.BLUE, linewidth=1.6, label=f"force on the journal, {size:.3g} N")
+        taken.append((-force if against else force) / size)
     if number(ds, "speed") > 0.0:
-        _draw_rotation(ax, e, 0.42 * drawn, up + math.pi)
+        _draw_rotation(ax, e, 0.42 * drawn, _widest_gap(taken))
+
+
+def _widest_gap(directions: list[Floats]) -> float:
+    """Angle of the middle of the widest gap between directions; below the centre where there is none [rad]."""
+    if not directions:
+        return -math.pi / 2
+    angles = np.sort([math.atan2(y, x) for x, y in directions])
+    gaps = np.diff(np.append(angles, angles[0] + 2.0 * math.pi))
+    widest = int(np.argmax(gaps > gaps.max() - 1e-9))
+    return float(angles[widest] + 0.5 * gaps[widest])
 
 
 def _arrow(ax: Axes, tail: Floats, tip: Floats, colour: str, name: str) -> None:
@@ -270,7 +320,7 @@ def _arrow(ax: Axes, tail: Floats, tip: Floats, colour: str, name: str) -> None:
 
 
 def _draw_rotation(ax: Axes, centre: Floats, radius: float, middle: float) -> None:
-    """An arc with a head, growing with the bushing angle, around the side where the force arrow is not."""
+    """An arc with a head, growing with the bushing angle, around a side that other arrows leave free."""
     angles = middle + np.radians(np.linspace(-40.0, 40.0, 41))
     arc = centre + radius * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
     ax.plot(*arc[:-1].T, color=style.INK, linewidth=1.4, gid="rotation")
@@ -279,7 +329,8 @@ def _draw_rotation(ax: Axes, centre: Floats, radius: float, middle: float) -> No
     ax.text(inside[0], inside[1], "ω", ha="center", va="center", fontsize=style.TITLE, color=style.INK)
 
 
-def _frame(ax: Axes, stretch: Stretch) -> None:
+def frame_section(ax: Axes, stretch: Stretch) -> None:
+    """Mark the bushing angles around a section, and state below it how far it is stretched."""
     ax.set_aspect("equal")
     ax.set_axis_off()
     rim = 1.13 * stretch.bore
@@ -289,7 +340,7 @@ def _frame(ax: Axes, stretch: Stretch) -> None:
         ax.text(*place, f"{degrees}°", ha="center", va="center", fontsize=style.TICK, color=style.GREY)
     ax.set_xlim(-1.18 * stretch.bore, 1.18 * stretch.bore)
     ax.set_ylim(-(1.18 + _LEGEND) * stretch.bore, 1.18 * stretch.bore)
-    note = f"radial room drawn ×{stretch.scale:g}: petals, film and displacement alike"
+    note = f"radial clearance drawn ×{labels.grouped(stretch.scale)}: petals, film and displacement alike"
     ax.text(0.0, -1.24 * stretch.bore, note, ha="center", va="center", fontsize=style.TICK, color=style.INK)
     below = {"bbox_to_anchor": (0.0, -1.27 * stretch.bore), "bbox_transform": ax.transData, "borderaxespad": 0.0}
     style.legend(ax, loc="upper center", ncols=3, frameon=False, **below)

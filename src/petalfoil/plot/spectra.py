@@ -1,4 +1,4 @@
-"""Spectrum of the whirl at one speed, and over a speed that changes, with the lines of once and half the speed."""
+"""Spectrum of the whirl at one speed, and over a speed that changes, with synchronous and half-speed whirl marked."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from petalfoil.plot import style
-from petalfoil.plot.motion import MICRO, RPM, elapsed, motion_facts, path_of
-from petalfoil.plot.reading import Floats
+from petalfoil.plot.labels import MICRO, RPM
+from petalfoil.plot.orbit_views import elapsed, motion_facts, path_of
+from petalfoil.plot.views import Floats
 from petalfoil.results.motion import LEAST_TURNS, TURN, Path, Waterfall, spectrum, waterfall
 
 ORDERS = {1.0: "1×", 0.5: "½×"}
-"""Whirl frequencies over the speed that are marked: the unbalance's, and about that of a film that whirls by itself."""
+"""Whirl ratios that are marked: synchronous whirl, and half-speed whirl."""
 WIDEST = 2.2
 """Largest frequency that is drawn, over the highest speed."""
 DECADES = 1e-4
@@ -22,11 +23,11 @@ DECADES = 1e-4
 SHADES = 1e-3
 """The same in a waterfall."""
 COLUMNS = 700
-"""Frequencies that a waterfall has room for."""
+"""Frequencies that a waterfall shows at most."""
 
 
 def orbit_spectrum(ds: xr.Dataset) -> Figure:
-    """Draw the full spectrum of the whirl: at one speed of its last turns, else as a waterfall over the speed.
+    """Draw the full spectrum of the whirl: at one speed of its last revolutions, else as a waterfall over the speed.
 
     Parameters
     ----------
@@ -36,7 +37,7 @@ def orbit_spectrum(ds: xr.Dataset) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Radius of the circles that the whirl is made of; positive frequencies turn with the shaft.
+        Amplitude of forward whirl at positive frequencies, of backward whirl at negative ones.
 
     Raises
     ------
@@ -61,7 +62,7 @@ def orbit_waterfall(ds: xr.Dataset) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Amplitude as colour over frequency, with the lines of once and half the speed.
+        Amplitude as colour over frequency, with the lines of synchronous and half-speed whirl.
 
     Raises
     ------
@@ -87,17 +88,17 @@ def draw_frequencies(ax: Axes, path: Path) -> None:
 
 
 def _is_long_enough(ax: Axes, path: Path) -> bool:
-    """Whether there are turns enough for a spectrum; if not, the panel says so."""
+    """Whether there are revolutions enough for a spectrum; if not, the panel says so."""
     if path.turns >= LEAST_TURNS:
         return True
     ax.set_axis_off()
-    note = f"{path.turns:.3g} turns tell no spectrum:\nit needs {LEAST_TURNS:g}"
+    note = f"no spectrum from {path.turns:.3g} revolutions:\nit needs {LEAST_TURNS:g}"
     ax.text(0.5, 0.5, note, transform=ax.transAxes, ha="center", va="center", fontsize=style.LABEL, color=style.GREY)
     return False
 
 
 def draw_spectrum(ax: Axes, path: Path) -> None:
-    """Draw the full spectrum of the last turns."""
+    """Draw the full spectrum of the last revolutions."""
     found, speed = spectrum(path), float(path.speed[-1])
     drawn = np.abs(found.frequency) <= WIDEST * speed
     hertz, height = found.frequency[drawn] / TURN, np.maximum(found.amplitude[drawn] * MICRO, 1e-9)
@@ -115,7 +116,7 @@ def draw_spectrum(ax: Axes, path: Path) -> None:
             ax.text(
                 place, 2.2 * top, text, ha="center", fontsize=style.TICK, color=style.VERMILLION, backgroundcolor="w"
             )
-    style.dress(ax, _frequency_label(), "radius of the circle [µm]")
+    style.dress(ax, _frequency_label(), "amplitude [µm]")
 
 
 def draw_waterfall(ax: Axes, path: Path) -> None:
@@ -139,7 +140,7 @@ def draw_waterfall(ax: Axes, path: Path) -> None:
     ax.set_xlim(float(hertz[0]), float(hertz[-1]))
     ax.set_ylim(float(over[0]), float(over[-1]))
     bar = ax.figure.colorbar(mesh, ax=ax, pad=0.02, aspect=30)
-    bar.set_label("radius of the circle [µm]", fontsize=style.LABEL)
+    bar.set_label("amplitude [µm]", fontsize=style.LABEL)
 
 
 def _heights(path: Path, found: Waterfall) -> tuple[Floats, str, Floats]:
@@ -166,4 +167,4 @@ def _columns(found: Waterfall, widest: float) -> tuple[Floats, Floats]:
 
 
 def _frequency_label() -> str:
-    return "whirl frequency [Hz], negative against the rotation"
+    return "whirl frequency [Hz], backward < 0 < forward"

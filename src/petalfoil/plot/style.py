@@ -6,7 +6,6 @@ brightness.
 
 from __future__ import annotations
 
-import math
 import textwrap
 from typing import Any, TypeAlias
 
@@ -17,7 +16,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from petalfoil.plot.reading import displacement, is_spatial, number
+from petalfoil.plot.canvas import DPI, ResultFigure
+from petalfoil.plot.labels import printable
 
 Look: TypeAlias = dict[str, Any]
 """Keywords of an artist: colour, size and the like."""
@@ -30,17 +30,18 @@ PETALS = ("#8F9BA6", "#C3CBD2")
 """Metal of even and odd petals."""
 ALTERNATING = (BLUE, SKY)
 """Lines of even and odd petals."""
+STEEL = "#F4F4F4"
+"""Journal."""
 PRESSURE_MAP, FILM_MAP = "viridis", "cividis"
 CONTACT = VERMILLION
 
 TITLE, LABEL, TICK = 11.0, 10.0, 9.0
 """Font sizes [pt]: readable when a figure of 8 inches is shown across a page."""
-DPI = 150
 
 
-def figure(width: float, height: float) -> Figure:
-    """An empty figure of a size in inches, with a canvas of its own and room kept for titles and labels."""
-    fig = Figure(figsize=(width, height), dpi=DPI, layout="constrained", facecolor=WHITE)
+def figure(width: float, height: float) -> ResultFigure:
+    """An empty figure of a size in inches, with a canvas of its own and space kept for titles and labels."""
+    fig = ResultFigure(figsize=(width, height), dpi=DPI, layout="constrained", facecolor=WHITE)
     FigureCanvasAgg(fig)
     return fig
 
@@ -77,6 +78,18 @@ def legend(ax: Axes, **options: Any) -> None:
         ax.legend(handles, labels, **look)
 
 
+def legend_below(ax: Axes, columns: int) -> None:
+    """Legend of axes below all panels of their figure, where it covers none of them."""
+    handles, labels = ax.get_legend_handles_labels()
+    look: Look = {"fontsize": TICK, "frameon": False, "ncols": columns}
+    ax.figure.legend(handles, labels, loc="outside lower center", **look)
+
+
+def folded(text: str, columns: int = 30) -> str:
+    """A long label on several lines."""
+    return "\n".join(textwrap.wrap(text, columns))
+
+
 def set_title(fig: Figure, ds: xr.Dataset, *facts: str) -> None:
     """Head a figure with the case's title and, below it, the facts of the state that do not stand empty.
 
@@ -90,47 +103,7 @@ def set_title(fig: Figure, ds: xr.Dataset, *facts: str) -> None:
         Speed, displacement, grid and the like.
     """
     columns = int(fig.get_figwidth() * 72.0 / (0.6 * TITLE))  # a letter of the sans-serif is about 0.6 em wide
-    lines = textwrap.wrap(str(ds.attrs.get("title", "")), columns) + textwrap.wrap(
+    lines = textwrap.wrap(printable(str(ds.attrs.get("title", ""))), columns) + textwrap.wrap(
         " · ".join(filter(None, facts)), columns
     )
-    fig.suptitle("\n".join(lines), fontsize=TITLE, color=INK)
-
-
-def state_facts(ds: xr.Dataset) -> tuple[str, ...]:
-    """Speed, displacement and grid of one state, as a title tells them."""
-    return speed_fact(number(ds, "speed")), displacement_fact(ds), grid_fact(ds)
-
-
-def speed_fact(speed: float) -> str:
-    """Speed in revolutions per minute."""
-    if math.isnan(speed):
-        return ""
-    return "at rest" if speed == 0.0 else f"{speed * 30.0 / math.pi:,.0f} rpm".replace(",", "\u2009")
-
-
-def displacement_fact(ds: xr.Dataset) -> str:
-    """Displacement of the journal: how far and to which angle."""
-    e_x, e_y = displacement(ds)
-    if math.isnan(e_x + e_y):
-        return ""
-    size = math.hypot(e_x, e_y)
-    return (
-        "journal central"
-        if size == 0.0
-        else f"e = {size * 1e6:.4g} µm at {signed(math.degrees(math.atan2(e_y, e_x)))}°"
-    )
-
-
-def grid_fact(ds: xr.Dataset, count_petals: bool = True) -> str:
-    """Size of the film's grid; of one petal's strip when the petals are not counted."""
-    if "phi_exposed" not in ds.sizes:
-        return ""
-    cells = f"{ds.sizes['phi_exposed'] - 1}" + (f" × {ds.sizes['z'] - 1}" if is_spatial(ds) else "")
-    if ds.sizes["petal"] == 1:
-        return f"grid {cells} cells"
-    return f"grid {ds.sizes['petal']} petals × {cells} cells" if count_petals else f"grid {cells} cells a petal"
-
-
-def signed(value: float) -> str:
-    """A whole number with a true minus sign."""
-    return f"{value:.0f}".replace("-0", "0").replace("-", "−") if abs(value) < 0.5 else f"{value:.0f}".replace("-", "−")
+    fig.suptitle("\n".join(lines), fontsize=TITLE, color=INK, parse_math=False)  # a title may hold a dollar sign

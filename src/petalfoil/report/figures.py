@@ -10,8 +10,8 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 
 from petalfoil.plot import style
-from petalfoil.plot.reading import array, number, one_point
-from petalfoil.plot.unrolled import refined
+from petalfoil.plot.film_fields import refined
+from petalfoil.plot.views import array, number, one_point
 from petalfoil.report.scope import COMPARED
 from petalfoil.report.study import ALMOST_TWOFOLD, TWO_TO_FOUR, Row
 

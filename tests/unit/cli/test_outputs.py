@@ -10,7 +10,7 @@ import pytest
 
 from petalfoil.cli.outputs import FIGURE_SUFFIXES
 from petalfoil.errors import StoreError
-from petalfoil.plot.files import figure_format
+from petalfoil.plot.canvas import figure_format
 
 from .conftest import point
 

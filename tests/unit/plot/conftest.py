@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from petalfoil.results.dataset import curve_dataset, to_dataset
 from tests.unit.results import factory
@@ -56,6 +57,6 @@ def texts() -> Callable[[Figure], str]:
 
     def collect(fig: Figure) -> str:
         fig.draw_without_rendering()
-        return "\n".join(artist.get_text() for artist in fig.findobj(lambda artist: hasattr(artist, "get_text")))
+        return "\n".join(artist.get_text() for artist in fig.findobj(Text))
 
     return collect

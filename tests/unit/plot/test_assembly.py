@@ -17,15 +17,28 @@ def part(ax: Axes, gid: str) -> list[object]:
     return ax.findobj(lambda artist: artist.get_gid() == gid)
 
 
-def test_the_whole_is_true_to_scale_in_millimetres(checked: xr.Dataset) -> None:
-    left = plot.package(checked).axes[0]
+def test_the_section_shows_petals_with_the_clearance_stretched(
+    checked: xr.Dataset, texts: Callable[[Figure], str]
+) -> None:
+    fig = plot.package(checked)
+    left = fig.axes[0]
     assert left.get_aspect() == 1.0
-    assert left.get_xlabel() == "x [mm]"
+    assert "radial clearance drawn ×10" in texts(fig)
     outline = part(left, "petal 3")[0].get_xy()[:-1]
-    radius = checked["radius"].values[3, :, 0] * 1e3
-    expected = np.concatenate([radius - 0.088, radius[::-1] + 0.088])
-    np.testing.assert_allclose(np.hypot(*outline.T), expected, rtol=1e-12)
-    np.testing.assert_allclose(np.hypot(*part(left, "journal")[0].get_xy().T), 25.0, rtol=1e-12)
+    radius = checked["radius"].values[3, :, 0]
+    expected = np.concatenate([radius - 0.088e-3, radius[::-1] + 0.088e-3])
+    np.testing.assert_allclose(26e-3 - (26e-3 - np.hypot(*outline.T)) / 10.0, expected, rtol=1e-12)
+    np.testing.assert_allclose(np.hypot(*part(left, "journal")[0].get_xy().T), 16e-3, rtol=1e-12)
+
+
+def test_legends_cover_neither_petals_nor_journal(checked: xr.Dataset) -> None:
+    fig = plot.package(checked)
+    fig.draw_without_rendering()
+    left, right = fig.axes
+    lowest = min(left.transData.transform(patch.get_xy())[:, 1].min() for patch in part(left, "petal 0"))
+    assert left.get_legend().get_window_extent().y1 < lowest
+    assert right.get_legend().get_window_extent().y1 < right.bbox.y0
+    assert right.get_legend().get_window_extent().y0 > fig.bbox.y0
 
 
 def test_the_unrolled_petal_shows_free_and_assembled_shape(checked: xr.Dataset) -> None:
@@ -64,7 +77,7 @@ def test_the_stretch_it_states_is_the_one_it_draws(checked: xr.Dataset) -> None:
 
 def test_the_title_tells_the_derived_figures(checked: xr.Dataset, texts: Callable[[Figure], str]) -> None:
     said = texts(plot.package(checked))
-    assert "overlap 1.77 · 2 layers · radial room 1000 µm · 647 µm left · Λ = 5.55" in said
+    assert "overlap 1.77 · 2 layers · radial clearance 1000 µm · 647 µm above the solid pack height · Λ = 5.55" in said
     assert "free petal meets the journal" in said
 
 
@@ -79,7 +92,8 @@ def test_a_plain_bearing_has_journal_and_bushing_only(texts: Callable[[Figure], 
     geometry = {name: value for name, value in factory.GEOMETRY.items() if name != "petal_thickness"}
     given = {"eccentricity_x": 0.0, "eccentricity_y": 0.0, "radial_clearance": 1e-3, "compressibility_number": 5.55}
     fig = plot.package(to_dataset(Record(analysis="check", scalars={**geometry, **given}, title="Plain")))
-    assert "radial room 1000 µm · Λ = 5.55" in texts(fig)
+    assert "radial clearance 1000 µm · Λ = 5.55" in texts(fig)
+    assert "solid pack height" not in texts(fig)
     assert part(fig.axes[1], "journal")
     assert part(fig.axes[1], "bushing")
 

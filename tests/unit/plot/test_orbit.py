@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import html
 import io
 import json
 import math
@@ -48,7 +49,7 @@ def line(ax: Axes, name: str) -> tuple[np.ndarray, np.ndarray]:
 
 def panel(fig: Figure, label: str) -> Axes:
     """The panel with a label on its vertical axis."""
-    (found,) = [ax for ax in fig.axes if label in ax.get_ylabel()]
+    (found,) = [ax for ax in fig.axes if label in ax.get_ylabel().replace("\n", " ")]
     return found
 
 
@@ -57,14 +58,14 @@ def test_the_overview_shows_everything_of_a_motion(steady: xr.Dataset, texts: Te
     for part in (
         "9549 rpm".replace("9549", "9\u2009549"),
         "rotor 3 kg",
-        "16 turns",
-        "once a turn",
+        "16 revolutions",
+        "once per revolution",
         "½×",
         "1×",
-        "defect",
+        "energy-balance error 1.0e-04",
     ):
         assert part in said
-    for part in ("journal touches the bore, 24 µm", "contact share", "smallest film", "work of the loads"):
+    for part in ("contact with the bore, 24 µm", "contact\nfraction", "minimum film\nthickness"):
         assert part in said
 
 
@@ -74,28 +75,74 @@ def test_a_figure_is_drawn_from_the_file_alone(steady: xr.Dataset, tmp_path: Fil
     assert (tmp_path / "orbit.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_the_path_is_in_its_room_with_its_points_once_a_turn(steady: xr.Dataset) -> None:
-    wide, close = plot.orbit_path(steady).axes
-    assert_allclose(np.hypot(*line(wide, "circle of contact")), 24.0, rtol=1e-9)
-    x, y = line(close, "once a turn")
+def test_the_path_has_its_points_once_per_revolution(steady: xr.Dataset) -> None:
+    (ax,) = plot.orbit_path(steady).axes
+    x, y = line(ax, "once per revolution")
     assert_allclose(x, [14.0, -6.0] * 8 + [14.0], rtol=1e-3)
     assert_allclose(y, 0.0, rtol=0.0, atol=0.02)
-    assert_allclose(line(close, "start"), [[14.0], [0.0]], rtol=1e-9, atol=1e-9)
-    assert_allclose(line(close, "end")[0], 1e6 * steady["x"].values[-1:], rtol=1e-9)
-    assert np.hypot(*np.subtract(close.get_xlim(), wide.get_xlim())) > 0.0  # the right panel is closer
+    assert_allclose(line(ax, "start"), [[14.0], [0.0]], rtol=1e-9, atol=1e-9)
+    assert_allclose(line(ax, "end")[0], 1e6 * steady["x"].values[-1:], rtol=1e-9)
 
 
-def test_without_its_case_there_is_no_circle(steady: xr.Dataset) -> None:
+def test_the_panel_is_scaled_to_the_path(steady: xr.Dataset) -> None:
+    small = steady.assign({name: 1e-3 * steady[name] for name in ("x", "y", "velocity_x", "velocity_y")})
+    for ds in (steady, small):
+        fig = plot.orbit_path(ds)
+        fig.draw_without_rendering()
+        (ax,) = fig.axes
+        extent = 1e6 * max(np.ptp(ds["x"].values), np.ptp(ds["y"].values))
+        low, high = ax.get_xlim()
+        assert 0.4 < extent / (high - low) < 1.0
+        assert low < 1e6 * ds["x"].values.min() < 1e6 * ds["x"].values.max() < high
+        assert ax.get_ylim()[0] < 1e6 * ds["y"].values.min()
+        assert 1e6 * ds["y"].values.max() < ax.get_ylim()[1]
+
+
+def test_the_clearance_circle_is_drawn_where_it_is_in_view_and_told_where_it_is_not(
+    steady: xr.Dataset, texts: Texts
+) -> None:
+    (ax,) = plot.orbit_path(steady).axes
+    assert_allclose(np.hypot(*line(ax, "clearance circle")), 24.0, rtol=1e-9)
+    small = steady.assign({name: 1e-2 * steady[name] for name in ("x", "y", "velocity_x", "velocity_y")})
+    fig = plot.orbit_path(small)
+    assert "outside this view: contact with the bore, 24 µm" in texts(fig)
+    assert not [item for item in fig.axes[0].lines if item.get_gid() == "clearance circle"]
+
+
+def test_without_its_case_there_is_no_circle(steady: xr.Dataset, texts: Texts) -> None:
     steady.attrs["case"] = ""
-    wide = plot.orbit_path(steady).axes[0]
-    assert not [item for item in wide.lines if item.get_gid() == "circle of contact"]
+    assert "contact with the bore" not in texts(plot.orbit_path(steady))
+
+
+def test_the_legend_of_the_path_covers_no_point_of_it(steady: xr.Dataset) -> None:
+    for fig in (plot.orbit_path(steady), plot.orbit(steady)):
+        fig.draw_without_rendering()
+        ax = fig.axes[0]
+        box = ax.get_legend().get_window_extent()
+        path = ax.transData.transform(1e6 * np.stack([steady["x"].values, steady["y"].values], axis=-1))
+        assert box.y0 > path[:, 1].max()
+        assert ax.bbox.x0 <= box.x0
+        assert box.x1 <= ax.bbox.x1
+
+
+def test_the_overview_leaves_the_energy_balance_to_its_own_figure(steady: xr.Dataset) -> None:
+    assert not [ax for ax in plot.orbit(steady).axes if "energy" in ax.get_ylabel()]
+    assert [ax for ax in plot.orbit_energy(steady).axes if "energy" in ax.get_ylabel()]
+
+
+def test_a_shaft_that_tilts_shows_its_slope(steady: xr.Dataset, texts: Texts) -> None:
+    assert "shaft slope" not in texts(plot.orbit(steady))
+    tilting = steady.assign(slope_x=("time", 2.0 * steady["x"].values), slope_y=("time", steady["y"].values))
+    for fig in (plot.orbit(tilting), plot.orbit_histories(tilting)):
+        slopes = panel(fig, "shaft slope").lines
+        assert_allclose(slopes[0].get_ydata(), 2e6 * steady["x"].values, rtol=1e-12)
 
 
 def test_histories_at_one_speed_are_over_turns(steady: xr.Dataset, texts: Texts) -> None:
     fig = plot.orbit_histories(steady)
-    assert "turns of the shaft" in texts(fig)
-    assert len(fig.axes) == 3
-    turns, x = line(panel(fig, "displacement"), "x")
+    assert "revolutions of the shaft" in texts(fig)
+    assert len(fig.axes) == 4
+    turns, x = (np.asarray(values, float) for values in panel(fig, "along x").lines[0].get_data())
     assert_allclose([turns[0], turns[-1]], [0.0, 16.0], rtol=1e-9, atol=1e-9)
     assert_allclose(x, 1e6 * steady["x"].values, rtol=1e-12)
 
@@ -128,19 +175,19 @@ def test_the_waterfall_is_over_a_speed_that_rises(rising: xr.Dataset) -> None:
 
 
 def test_the_waterfall_of_one_speed_is_over_turns(steady: xr.Dataset) -> None:
-    assert plot.orbit_waterfall(steady).axes[0].get_ylabel() == "turns of the shaft"
+    assert plot.orbit_waterfall(steady).axes[0].get_ylabel() == "revolutions of the shaft"
 
 
 def test_a_few_turns_have_no_spectrum(texts: Texts) -> None:
     short = to_dataset(moved(whirling(1.0, (1.0, 1e-5))))
     for draw in (plot.orbit, plot.orbit_spectrum, plot.orbit_waterfall):
-        assert "1 turns tell no spectrum" in texts(draw(short))
+        assert "no spectrum from 1 revolutions" in texts(draw(short))
 
 
 def test_a_shaft_at_rest_is_drawn(texts: Texts) -> None:
     path = whirling(1.0, (1.0, 1e-5))
     at_rest = replace(path, angle=0.0 * path.angle, speed=0.0 * path.speed)
-    assert "0 turns tell no spectrum" in texts(plot.orbit(to_dataset(moved(at_rest))))
+    assert "no spectrum from 0 revolutions" in texts(plot.orbit(to_dataset(moved(at_rest))))
     assert "time  t [ms]" in texts(plot.orbit_histories(to_dataset(moved(at_rest))))
 
 
@@ -148,10 +195,10 @@ def test_the_energy_balances(steady: xr.Dataset, texts: Texts) -> None:
     fig = plot.orbit_energy(steady)
     above = fig.axes[0]
     parts = {name: line(above, name)[1] for name in ("work of the loads", "work of the film")}
-    gained, defect = line(above, "gained by rotor and petals")[1], line(above, "defect")[1]
-    assert_allclose(parts["work of the loads"] + parts["work of the film"] + defect, gained, rtol=1e-9, atol=1e-9)
-    assert_allclose(defect, 0.0, rtol=0.0, atol=1e-9 * np.abs(parts["work of the film"]).max())
-    assert "largest defect: 1.0e-04" in texts(fig)
+    gained, error = line(above, "gained by rotor and petals")[1], line(above, "balance error")[1]
+    assert_allclose(parts["work of the loads"] + parts["work of the film"] + error, gained, rtol=1e-9, atol=1e-9)
+    assert_allclose(error, 0.0, rtol=0.0, atol=1e-9 * np.abs(parts["work of the film"]).max())
+    assert "energy-balance error 1.0e-04" in texts(fig)
 
 
 @pytest.mark.parametrize(
@@ -189,7 +236,22 @@ def test_a_page_holds_its_pictures(steady: xr.Dataset, tmp_path: File) -> None:
     assert not re.findall(r"(?:src|href)\s*=\s*[\"']?https?:", page)
     assert "<title>A &lt;b&gt;earing</title>" in page
     assert "@" not in page.replace(found, "")
+    assert "b>earing" not in page
     assert [path.name for path in tmp_path.iterdir()] == ["orbit.html"]
+
+
+@pytest.mark.parametrize("title", ["@FRAMES@", "@DELAY@ @TITLE@", "</title><script>alert(1)</script>", "\\g<0> \\1"])
+def test_a_title_fills_no_placeholder_and_closes_no_tag(title: str, steady: xr.Dataset, tmp_path: File) -> None:
+    plot.animate(steady.assign_attrs(title=title), tmp_path / "orbit.html")
+    page = (tmp_path / "orbit.html").read_text(encoding="utf-8")
+    assert f"<title>{html.escape(title)}</title>" in page
+    assert page.count("data:image/png;base64,") == 3
+    assert page.count("<script>") == 1
+
+
+def test_a_title_brings_no_control_character_to_the_page(steady: xr.Dataset, tmp_path: File) -> None:
+    plot.animate(steady.assign_attrs(title="a\x1b[31mb\x07c\u202ed\nfake"), tmp_path / "orbit.html")
+    assert r"<title>a\x1b[31mb\x07c\u202ed\nfake</title>" in (tmp_path / "orbit.html").read_text(encoding="utf-8")
 
 
 def test_a_gif_plays_its_pictures_for_ever(steady: xr.Dataset, tmp_path: File) -> None:

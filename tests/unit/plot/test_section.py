@@ -89,19 +89,37 @@ def test_arrows_point_along_displacement_force_and_rotation(flat: xr.Dataset) ->
     (tail, tip) = part(ax, "displacement")._posA_posB
     np.testing.assert_allclose([*tail, *tip], [0.0, 0.0, 0.0, -1e-3], atol=1e-15)
     (tail, tip) = part(ax, "force")._posA_posB
+    np.testing.assert_allclose(tip, [0.0, -1e-3], atol=1e-15)  # the force ends where it acts
     along = np.subtract(tip, tail)
     np.testing.assert_allclose(along / np.hypot(*along), [flat["force_x"] / 25.0, flat["force_y"] / 25.0], rtol=1e-12)
     arc = part(ax, "rotation").get_xydata() - [0.0, -1e-3]
     assert (np.diff(np.unwrap(np.arctan2(arc[:, 1], arc[:, 0]))) > 0).all()
 
 
-def test_a_package_at_rest_has_no_pressure_and_no_rotation(static: xr.Dataset) -> None:
+@pytest.mark.parametrize("degrees", [0.0, 20.0, 60.0, 89.0, 91.0, 135.0, 180.0, 270.0])
+def test_force_displacement_and_rotation_do_not_cover_each_other(flat: xr.Dataset, degrees: float) -> None:
+    angle = np.radians(degrees)  # between the force and the direction from the displaced centre back to the bushing's
+    turned = flat.assign(force_x=((), 25.0 * np.sin(angle)), force_y=((), 25.0 * np.cos(angle)))
+    ax = plot.cross_section(turned, scale=10).axes[0]
+    centre = np.array([0.0, -1e-3])
+    force = np.array(part(ax, "force")._posA_posB) - centre
+    ray = force[np.argmax(np.hypot(*force.T))]
+    back = -centre
+    towards = [np.degrees(np.arctan2(*v[::-1])) for v in (ray, back)]
+    assert abs((towards[0] - towards[1] + 180.0) % 360.0 - 180.0) >= 89.0
+    arc = part(ax, "rotation").get_xydata() - centre
+    for direction in towards:
+        between = (np.degrees(np.arctan2(arc[:, 1], arc[:, 0])) - direction + 180.0) % 360.0 - 180.0
+        assert np.abs(between).min() > 20.0
+
+
+def test_a_foil_pack_at_zero_speed_has_no_pressure_and_no_rotation(static: xr.Dataset) -> None:
     fig = plot.cross_section(static.isel(point=1))
     (ax,) = fig.axes  # no colour bar
     gids = {artist.get_gid() for artist in ax.get_children()}
     assert not {"pressure", "film", "rotation"} & gids
     assert {"journal", "bushing", "petal 7", "force", "displacement", "journal_contact_pressure"} <= gids
-    assert "at rest" in fig.get_suptitle()
+    assert "zero speed" in fig.get_suptitle()
 
 
 def test_a_central_journal_without_force_gets_no_arrows() -> None:
@@ -113,11 +131,11 @@ def test_a_central_journal_without_force_gets_no_arrows() -> None:
 
 def test_the_scale_is_stated_with_what_else_is_needed(flat: xr.Dataset, texts: Callable[[Figure], str]) -> None:
     said = texts(plot.cross_section(flat))
-    assert "radial room drawn ×10" in said
+    assert "radial clearance drawn ×10" in said
     assert "force on the journal, 25 N" in said
-    assert "76\u2009394 rpm · e = 100 µm at −90° · grid 8 petals × 32 cells" in said
+    assert "76\u2009394 rpm · e = 100 µm at −90° · grid 32 cells per pitch" in said
     assert "p / p$_a$" in said
-    assert "radial room drawn ×4" in texts(plot.cross_section(flat, scale=4))
+    assert "radial clearance drawn ×4" in texts(plot.cross_section(flat, scale=4))
 
 
 def test_the_default_scale_is_a_round_number_that_fits(flat: xr.Dataset, plain: xr.Dataset) -> None:

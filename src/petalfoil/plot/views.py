@@ -64,8 +64,8 @@ def number(ds: xr.Dataset, name: str) -> float:
     return float(ds[name]) if name in ds else math.nan
 
 
-def is_spatial(ds: xr.Dataset) -> bool:
-    """Whether the fields vary along the axis; the flat model has one station."""
+def is_3d(ds: xr.Dataset) -> bool:
+    """Whether the fields vary along the axis; the 2-D model has one station."""
     return ds.sizes.get("z", 1) > 1
 
 
@@ -82,7 +82,7 @@ def array(ds: xr.Dataset, name: str) -> Floats:
 
 
 def touching(ds: xr.Dataset, name: str) -> Flags:
-    """Where a contact pressure is more than rounding; empty-handed where the result has no such contact."""
+    """Where a contact pressure is more than rounding."""
     return np.asarray(array(ds, name) > _ROUNDING * number(ds, "ambient_pressure"), dtype=np.bool_)
 
 

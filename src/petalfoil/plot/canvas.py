@@ -1,14 +1,19 @@
-"""Figures to files."""
+"""The figure as a notebook shows it, and as it is written to a file."""
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 from matplotlib.figure import Figure
 
 from petalfoil.errors import StoreError, UsageError
-from petalfoil.plot.style import DPI
 from petalfoil.results.atomic import replacing
+
+DPI = 150
+"""Resolution of a file."""
+NOTEBOOK_DPI = 90
+"""Resolution in a notebook, whose column is narrower than a page."""
 
 # No date in the file: drawing a result again does not make another file of it.
 _METADATA: dict[str, dict[str, str | None]] = {
@@ -16,6 +21,15 @@ _METADATA: dict[str, dict[str, str | None]] = {
     "pdf": {"Creator": "petalfoil", "CreationDate": None},
     "svg": {"Creator": "petalfoil", "Date": None},
 }
+
+
+class ResultFigure(Figure):
+    """A matplotlib figure that a notebook shows as the value of a cell; it opens no window and is not pyplot's."""
+
+    def _repr_png_(self) -> bytes:
+        buffer = io.BytesIO()
+        self.savefig(buffer, format="png", dpi=NOTEBOOK_DPI)
+        return buffer.getvalue()
 
 
 def save(fig: Figure, path: str | Path) -> None:
@@ -45,7 +59,7 @@ def save(fig: Figure, path: str | Path) -> None:
 
 
 def figure_format(path: Path) -> str:
-    """Format a figure file's suffix asks for; a verb asks before it computes."""
+    """Format that the suffix of a figure's file asks for."""
     form = path.suffix.lower().removeprefix(".")
     if form not in _METADATA:
         allowed = ", ".join(f".{name}" for name in _METADATA)

@@ -31,10 +31,10 @@ def test_axes_say_what_they_show(flat: xr.Dataset, texts: Callable[[Figure], str
     assert below.get_xlabel() == "bushing angle  θ [deg]"
     assert below.get_yscale() == "log"
     said = texts(fig)
-    for fact in ("Paper, flat study, 8 petals", "76\u2009394 rpm", "e = 100 µm at −90°", "grid 8 petals × 32 cells"):
+    for fact in ("Paper, flat study, 8 petals", "76\u2009394 rpm", "e = 100 µm at −90°", "grid 32 cells per pitch"):
         assert fact in said
-    assert "film floor, 1 µm" in said
-    assert f"smallest {flat['min_film_thickness'].item() * 1e6:.4g} µm" in said
+    assert "contact film thickness, 1 µm" in said
+    assert f"minimum {flat['min_film_thickness'].item() * 1e6:.4g} µm" in said
 
 
 def test_petal_edges_are_marked(flat: xr.Dataset, plain: xr.Dataset) -> None:
@@ -52,8 +52,8 @@ def test_contact_is_marked_where_the_journal_touches_and_nowhere_else(touching: 
     petal, node = np.nonzero(touching["journal_contact_pressure"].values[:, :, 0])
     theta = np.degrees(touching["root_angle"].values[petal] + touching["phi_exposed"].values[node]) % 360.0
     assert drawn == {round(float(x), 6) for x in theta}
-    assert all((line.get_ydata() == 1.0).all() for line in marks)  # the film floor, in micrometres
-    assert [text.get_text() for text in below.get_legend().get_texts()].count("journal touches") == 1
+    assert all((line.get_ydata() == 1.0).all() for line in marks)  # the contact film thickness, in micrometres
+    assert [text.get_text() for text in below.get_legend().get_texts()].count("journal in contact") == 1
     assert not [line for line in plot.pressure_and_film(flat).axes[1].lines if line.get_marker() == "o"]
 
 

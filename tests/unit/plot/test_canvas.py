@@ -1,6 +1,9 @@
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
+import xarray as xr
 from matplotlib.figure import Figure
 
 from petalfoil import plot
@@ -61,3 +64,17 @@ def test_a_failing_write_leaves_the_former_file(fig: Figure, tmp_path: Path, mon
 def test_a_folder_that_is_not_there_is_a_store_error(fig: Figure, tmp_path: Path) -> None:
     with pytest.raises(StoreError, match="cannot write"):
         plot.save(fig, tmp_path / "nowhere" / "figure.png")
+
+
+def test_a_figure_shows_itself_in_a_notebook(flat: xr.Dataset) -> None:
+    shown = plot.summary(flat)._repr_png_()
+    assert shown.startswith(STARTS["png"])
+
+
+def test_showing_a_figure_neither_loads_pyplot_nor_opens_a_window() -> None:
+    code = (
+        "import sys, xarray as xr; from petalfoil import plot; "
+        "ds = xr.Dataset({'x': ('n', [1.0, 2.0])}, {'n': [1.0, 2.0]}); "
+        "assert plot.summary(ds)._repr_png_(); assert 'matplotlib.pyplot' not in sys.modules"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -8,7 +8,7 @@ import xarray as xr
 
 import petalfoil
 from petalfoil.errors import UsageError
-from petalfoil.plot.loops import cycle, hysteresis, is_loop, way
+from petalfoil.plot.characteristics import cycle, force_along, hysteresis, is_loop
 from tests.cases import case
 
 
@@ -20,7 +20,7 @@ def loop() -> xr.Dataset:
 
 def test_legs_join(loop: xr.Dataset) -> None:
     assert is_loop(loop)
-    there, back, again = (way(loop, leg) for leg in ("loading", "unloading", "reloading"))
+    there, back, again = (force_along(loop, leg) for leg in ("loading", "unloading", "reloading"))
     assert there[0].tolist() == pytest.approx([0.0, 50.0, 100.0])
     assert back[0].tolist() == pytest.approx([100.0, 50.0, 0.0])
     assert again[0].tolist() == pytest.approx([0.0, 50.0, 100.0])

@@ -1,4 +1,4 @@
-"""What figures take from a motion: its path, the axis it is drawn over, the circle of contact, facts for a title."""
+"""What figures take from a motion: its path, the axis it is drawn over, the clearance circle, facts for a title."""
 
 from __future__ import annotations
 
@@ -9,12 +9,10 @@ import xarray as xr
 
 from petalfoil.case import Case
 from petalfoil.errors import DefinitionError, UsageError
-from petalfoil.plot import style
-from petalfoil.plot.reading import Floats, array, number
+from petalfoil.plot import labels
+from petalfoil.plot.labels import MICRO, RPM
+from petalfoil.plot.views import Floats, array, number
 from petalfoil.results.motion import TURN, Path
-
-RPM = 30.0 / math.pi
-MICRO = 1e6
 
 
 def path_of(ds: xr.Dataset) -> Path:
@@ -34,17 +32,17 @@ def path_of(ds: xr.Dataset) -> Path:
 
 
 def elapsed(path: Path) -> tuple[Floats, str]:
-    """What histories are drawn over, and its label: turns at one speed, else milliseconds."""
+    """What histories are drawn over, and its label: revolutions at one speed, else milliseconds."""
     if path.is_steady:
-        return path.angle / TURN, "turns of the shaft"
+        return path.angle / TURN, "revolutions of the shaft"
     return path.time * 1e3, "time  t [ms]"
 
 
-def contact_circle(ds: xr.Dataset) -> tuple[float, str] | None:
-    """Radius of the circle in which the journal's centre has room [m], and what bounds it; none if the case is lost.
+def clearance_circle(ds: xr.Dataset) -> tuple[float, str] | None:
+    """Radius of the circle in which the journal's centre can move [m], and what bounds it; none if the case is lost.
 
-    A plain journal touches the bore at the contact film thickness. In petals it can go no further than where they have
-    bottomed out, but touches them long before that.
+    A plain journal is in contact where its film has the contact film thickness. In a foil pack it can move until the
+    petals are bottomed out on the bore, and is in contact with them long before that.
     """
     try:
         case = Case.from_toml(str(ds.attrs.get("case", "")))
@@ -53,20 +51,20 @@ def contact_circle(ds: xr.Dataset) -> tuple[float, str] | None:
     if (solid := case.solid_height) is None:
         return None
     if not solid:
-        reach = case.bearing.clearance - case.surface.contact_film_thickness
-        return reach, f"journal touches the bore, {reach * MICRO:.4g} µm"
-    reach = case.bearing.clearance - solid
-    return reach, f"leaf pack bottomed out, {reach * MICRO:.4g} µm"
+        radius = case.bearing.clearance - case.surface.contact_film_thickness
+        return radius, f"contact with the bore, {radius * MICRO:.4g} µm"
+    radius = case.bearing.clearance - solid
+    return radius, f"foil pack bottomed out, {radius * MICRO:.4g} µm"
 
 
 def motion_facts(ds: xr.Dataset, path: Path) -> tuple[str, ...]:
-    """Speed, rotor, turns and grid, as a title tells them."""
+    """Speed, rotor, revolutions and grid, as a title tells them."""
     first, last = float(path.speed[0]), float(path.speed[-1])
-    ramp = f"{first * RPM:,.0f} to {last * RPM:,.0f} rpm".replace(",", "\u2009")
-    speed = style.speed_fact(first) if path.is_steady else ramp
+    ramp = f"{labels.grouped(first * RPM)} to {labels.grouped(last * RPM)} rpm"
+    speed = labels.speed_fact(first) if path.is_steady else ramp
     mass = number(ds, "rotor_mass")
     rotor = "" if math.isnan(mass) else f"rotor {mass:.4g} kg"
-    return speed, rotor, f"{path.turns:.4g} turns", style.grid_fact(ds)
+    return speed, rotor, f"{path.turns:.4g} revolutions", labels.grid_fact(ds)
 
 
 def padded(low: float, high: float, share: float = 0.08) -> tuple[float, float]:

@@ -47,8 +47,8 @@ def study(load_error: float = 0.02, **grid: int) -> xr.Dataset:
 def test_values_limits_and_bars_are_drawn() -> None:
     fig = plot.convergence(study())
     load, film, errors = fig.axes
-    assert load.get_title() == "load capacity 10.000 ± 0.020 N"
-    assert film.get_title() == "smallest film 5.10 ± 0.60 µm"
+    assert load.get_title() == "bearing force\n10.000 ± 0.020 N"
+    assert film.get_title() == "minimum film thickness\n5.10 ± 0.60 µm"
     assert_allclose(load.lines[1].get_xydata(), [[32, 11.0], [64, 10.25], [128, 10.0625]], rtol=1e-12)
     assert_allclose(errors.lines[0].get_ydata(), [0.1, 0.025, 0.00625], rtol=1e-10)
     assert_allclose(errors.lines[1].get_ydata(), 0.002, rtol=1e-12)
@@ -67,7 +67,7 @@ def test_summary_draws_a_study() -> None:
 
 def test_a_figure_below_its_bar_is_left_out() -> None:
     film, _ = plot.convergence(study(load_error=11.0)).axes
-    assert film.get_title().startswith("smallest film")
+    assert film.get_title().startswith("minimum film thickness")
 
 
 def test_what_cannot_be_drawn_is_refused(flat: xr.Dataset) -> None:

@@ -1,12 +1,15 @@
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from petalfoil import plot
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.plot.curves import along
+from petalfoil.plot.characteristics import along
 from petalfoil.results.dataset import curve_dataset
 from tests.unit.results import factory
 
@@ -67,9 +70,9 @@ def test_axes_and_title_say_what_is_shown(curve: xr.Dataset) -> None:
     fig = plot.load_characteristic([("n = 6", curve_dataset(factory.curve(6))), ("n = 8", curve)])
     (ax,) = fig.axes
     assert ax.get_xlabel() == "eccentricity  e [µm]"
-    assert ax.get_ylabel() == "load capacity  |F| [N]"
+    assert ax.get_ylabel() == "bearing force  |F| [N]"
     assert ax.get_ylim()[0] == 0.0
-    assert "76\u2009394 rpm · e toward −90° · grid 32 cells a petal" in fig.get_suptitle()
+    assert "76\u2009394 rpm · e toward −90° · grid 32 cells per pitch" in fig.get_suptitle()
     other = curve.assign_attrs(title="Another")
     assert "Load characteristic" in plot.load_characteristic([("a", curve), ("b", other)]).get_suptitle()
 
@@ -88,18 +91,35 @@ def test_static_draws_reaction_and_starting_torque(static: xr.Dataset) -> None:
     above, below = fig.axes
     np.testing.assert_allclose(above.lines[0].get_xdata(), [0.0, 50.0, 100.0], rtol=1e-12)
     np.testing.assert_allclose(above.lines[0].get_ydata(), static["bearing_force"].values, rtol=1e-12)
-    np.testing.assert_allclose(below.lines[0].get_ydata(), static["starting_torque"].values, rtol=1e-12)
-    assert above.get_ylabel() == "reaction  |F| [N]"
-    assert below.get_ylabel() == "starting torque  M$_0$ [N·m]"
+    np.testing.assert_allclose(below.lines[0].get_ydata(), 1e3 * static["starting_torque"].values, rtol=1e-12)
+    assert above.get_ylabel() == "bearing force  |F| [N]"
+    assert below.get_ylabel() == "starting torque  M$_0$ [mN·m]"
     assert below.get_xlabel() == "eccentricity  e [µm]"
-    assert "package at rest" in fig.get_suptitle()
+    assert "foil pack at zero speed" in fig.get_suptitle()
+
+
+def test_a_curve_shows_force_film_torque_and_contact(curve: xr.Dataset, texts: Callable[[Figure], str]) -> None:
+    fig = plot.curve(curve)
+    shown = {"bearing_force": 1.0, "min_film_thickness": 1e6, "friction_torque": 1e3, "contact_fraction": 100.0}
+    for ax, (name, factor) in zip(fig.axes, shown.items(), strict=True):
+        (values,) = drawn(ax, "stable")
+        expected = factor * np.where(curve["stable"] & curve["converged"], curve[name], np.nan)
+        np.testing.assert_allclose(values.get_ydata(), expected, rtol=1e-12)
+        assert ax.dataLim.ymax <= ax.get_ylim()[1]
+    assert [ax.get_xlabel() for ax in fig.axes] == ["", "", "eccentricity  e [µm]", "eccentricity  e [µm]"]
+    assert "no contact" in texts(fig)
+
+
+def test_a_curve_without_contact_has_no_panel_for_it(curve: xr.Dataset) -> None:
+    fig = plot.curve(curve.drop_vars("contact_fraction"))
+    assert len(fig.axes) == 3
+    assert all(ax.has_data() for ax in fig.axes)
 
 
 def test_what_is_no_curve_is_refused(flat: xr.Dataset) -> None:
     for draw in (
         lambda: plot.load_characteristic([]),
         lambda: plot.load_characteristic([("", flat)]),
-        lambda: plot.static(flat),
     ):
         with pytest.raises(UsageError):
             draw()

@@ -6,7 +6,7 @@ from matplotlib.contour import ContourSet
 
 from petalfoil import plot
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.plot.unrolled import outline_contact, refined
+from petalfoil.plot.film_fields import outline_contact, refined
 from petalfoil.results.dataset import to_dataset
 from tests.unit.results import factory
 
@@ -34,8 +34,8 @@ def test_axes_say_what_they_show(spatial: xr.Dataset) -> None:
     assert below.get_xlabel() == "bushing angle  θ [deg]"
     assert above.get_ylabel() == below.get_ylabel() == "z [mm]"
     assert above.get_ylim() == (0.0, 50.0)
-    assert (bar_p.get_ylabel(), bar_h.get_ylabel()) == ("p / p$_a$", "film  h [µm]")
-    assert "76\u2009394 rpm · e = 100 µm at −90° · grid 8 petals × 32 × 8 cells" in fig.get_suptitle()
+    assert (bar_p.get_ylabel(), bar_h.get_ylabel()) == ("p / p$_a$", "film thickness  h [µm]")
+    assert "76\u2009394 rpm · e = 100 µm at −90° · grid 32 × 8 cells per pitch" in fig.get_suptitle()
 
 
 def test_the_contact_is_outlined(spatial: xr.Dataset) -> None:
@@ -63,7 +63,7 @@ def test_nothing_is_outlined_where_nothing_touches(plain: xr.Dataset) -> None:
 
 
 def test_what_cannot_be_mapped_is_refused(flat: xr.Dataset, unconverged: xr.Dataset) -> None:
-    with pytest.raises(UsageError, match="spatial model"):
+    with pytest.raises(UsageError, match="3-D model"):
         plot.maps(flat)
     with pytest.raises(ConvergenceError):
         plot.maps(unconverged)

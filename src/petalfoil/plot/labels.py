@@ -1,0 +1,161 @@
+"""What figures say: quantities with symbol and unit, the facts of a title, text from outside made safe to show."""
+
+from __future__ import annotations
+
+import html
+import math
+import unicodedata
+from dataclasses import dataclass
+
+import xarray as xr
+
+from petalfoil.plot.views import displacement, is_3d, mid_plane, number
+
+RPM = 30.0 / math.pi
+HERTZ = 0.5 / math.pi
+MICRO = 1e6
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity as figures show it.
+
+    Parameters
+    ----------
+    name : str
+        Name in words.
+    unit : str
+        Unit of the figure; empty for a pure number.
+    factor : float
+        From SI to that unit.
+    symbol : str
+        Symbol, in matplotlib's mathtext; empty where the name says enough.
+    """
+
+    name: str
+    unit: str = ""
+    factor: float = 1.0
+    symbol: str = ""
+
+    @property
+    def axis(self) -> str:
+        """Label of an axis: name, symbol and unit."""
+        return self.name + (f"  {self.symbol}" if self.symbol else "") + (f" [{self.unit}]" if self.unit else "")
+
+
+QUANTITIES = {
+    "bearing_force": Quantity("bearing force", "N", 1.0, "|F|"),
+    "min_film_thickness": Quantity("minimum film thickness", "µm", MICRO, "h$_{min}$"),
+    "peak_pressure": Quantity("peak pressure", "kPa", 1e-3, "p$_{max}$"),
+    "friction_torque": Quantity("friction torque", "mN·m", 1e3, "M"),
+    "starting_torque": Quantity("starting torque", "mN·m", 1e3, "M$_0$"),
+    "contact_fraction": Quantity("contact fraction", "%", 100.0),
+    "contact_normal_force": Quantity("contact normal force", "N"),
+    "max_bending_stress": Quantity("maximum bending stress", "MPa", 1e-6, "σ$_{max}$"),
+    "power_loss": Quantity("power loss", "W"),
+    "side_leakage": Quantity("side leakage", "mg/s", 1e6),
+    "attitude_angle": Quantity("attitude angle", "deg", 180.0 / math.pi),
+    "eccentricity": Quantity("eccentricity", "µm", MICRO, "e"),
+    "eccentricity_x": Quantity("displacement along x", "µm", MICRO, "e$_x$"),
+    "eccentricity_y": Quantity("displacement along y", "µm", MICRO, "e$_y$"),
+    "speed": Quantity("speed", "rpm", RPM),
+    "load": Quantity("load", "N"),
+    "liftoff_speed": Quantity("lift-off speed", "rpm", RPM),
+    "touchdown_speed": Quantity("touchdown speed", "rpm", RPM),
+    "threshold_speed": Quantity("threshold speed", "rpm", RPM),
+    "critical_mass": Quantity("critical rotor mass", "kg", 1.0, "m$_c$"),
+    "rotor_mass": Quantity("rotor mass", "kg", 1.0, "m"),
+    "whirl_ratio": Quantity("whirl ratio", "", 1.0, "Ω/ω"),
+    "growth_rate": Quantity("growth rate", "1/s"),
+    "growth_frequency": Quantity("growth frequency", "Hz", HERTZ),
+    "whirl_frequency": Quantity("whirl frequency", "Hz", HERTZ, "Ω"),
+}
+_UNITS = {"1": ("", 1.0), "rad s-1": ("Hz", HERTZ), "rad": ("deg", 180.0 / math.pi)}
+"""Units of the schema that figures show as others."""
+
+
+def quantity(ds: xr.Dataset, name: str) -> Quantity:
+    """How a variable of a dataset is shown: as the table says, else from its own long name and unit."""
+    if name in QUANTITIES:
+        return QUANTITIES[name]
+    attributes = ds[name].attrs
+    declared = figure_text(str(attributes.get("units", "")))
+    unit, factor = ("rpm", RPM) if declared == "rad s-1" and "speed" in name else _UNITS.get(declared, (declared, 1.0))
+    return Quantity(figure_text(str(attributes.get("long_name", name.replace("_", " ")))), unit, factor)
+
+
+# ------------------------------------------------------------------------------------------ facts of a title
+
+
+def state_facts(ds: xr.Dataset) -> tuple[str, ...]:
+    """Speed, displacement and grid of one state, as a title tells them."""
+    return speed_fact(number(ds, "speed")), displacement_fact(ds), grid_fact(ds)
+
+
+def speed_fact(speed: float) -> str:
+    """Speed in revolutions per minute."""
+    if math.isnan(speed):
+        return ""
+    return "zero speed" if speed == 0.0 else f"{grouped(speed * RPM)} rpm"
+
+
+def load_fact(ds: xr.Dataset) -> str:
+    """Magnitude of the load on the journal; empty where there is none."""
+    load = math.hypot(number(ds, "load_x"), number(ds, "load_y"))
+    return "" if math.isnan(load) else f"load {load:.4g} N"
+
+
+def displacement_fact(ds: xr.Dataset) -> str:
+    """Displacement of the journal: its size and direction."""
+    e_x, e_y = displacement(ds)
+    if math.isnan(e_x + e_y):
+        return ""
+    size = math.hypot(e_x, e_y)
+    if size == 0.0:
+        return "centred journal"
+    return f"e = {size * MICRO:.4g} µm at {signed(math.degrees(math.atan2(e_y, e_x)))}°"
+
+
+def grid_fact(ds: xr.Dataset) -> str:
+    """Size of the film's grid, in cells per pitch where there are petals."""
+    if "phi_exposed" not in ds.sizes:
+        return ""
+    cells = f"{ds.sizes['phi_exposed'] - 1}" + (f" × {ds.sizes['z'] - 1}" if is_3d(ds) else "")
+    return f"grid {cells} cells" + ("" if ds.sizes["petal"] == 1 else " per pitch")
+
+
+def plane_fact(ds: xr.Dataset) -> str:
+    """Which section a title should name."""
+    return f"mid-plane, z = {float(mid_plane(ds)['z']) * 1e3:.4g} mm" if is_3d(ds) else ""
+
+
+def grouped(value: float) -> str:
+    """A whole number with thin spaces between its thousands."""
+    return f"{value:,.0f}".replace(",", "\u2009")
+
+
+def signed(value: float) -> str:
+    """A whole number with a true minus sign."""
+    return f"{round(value) + 0:d}".replace("-", "−")
+
+
+# ------------------------------------------------------------------------------------------ text from outside
+
+_CODED = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"}
+"""Unicode categories shown by code: controls, marks of direction, lone surrogates, unassigned, line separators."""
+
+
+def printable(text: str) -> str:
+    """One line in which control characters and invisible marks are shown by their codes."""
+    shown = (c.encode("unicode_escape").decode("ascii") if unicodedata.category(c) in _CODED else c for c in text)
+    return "".join(shown)
+
+
+def figure_text(text: str) -> str:
+    """Text for a label that matplotlib would search for formulas."""
+    return printable(text).replace("$", r"\$")
+
+
+def page_text(text: str) -> str:
+    """Text for an HTML page."""
+    return html.escape(printable(text))

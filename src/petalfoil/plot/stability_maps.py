@@ -1,0 +1,204 @@
+"""Stability of a rigid rotor: critical mass and whirl ratio over speed and load; one point with its natural modes."""
+
+from __future__ import annotations
+
+import math
+
+import matplotlib
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from petalfoil.errors import UsageError
+from petalfoil.plot import labels, style
+from petalfoil.plot.labels import HERTZ, QUANTITIES, RPM
+from petalfoil.plot.views import Floats, array, number, unconverged
+
+WIDE = 5.0
+"""Factor between masses past which they are drawn on a logarithmic axis."""
+_USUAL_RATIO = 0.6
+"""Whirl ratio up to which the axis goes at least: half-speed whirl is seen in its place."""
+_CALM = "stable for any rotor mass"
+
+
+def stability(ds: xr.Dataset) -> Figure:
+    """Draw critical mass and whirl ratio over speed, a line for each load; a single point with its natural modes.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of ``stability``: a point, or a table over load and speed.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Of a table: critical mass above, whirl ratio below; states that are stable for any rotor mass are marked at the
+        upper edge, or fill a map of speed and load where all are. Of a point: masses that are stable and those that
+        whirl, and the natural modes of the rotor.
+
+    Raises
+    ------
+    ConvergenceError
+        No operating point was found.
+    UsageError
+        The dataset is of another verb.
+    """
+    if "critical_mass" not in ds:
+        raise UsageError("this figure needs the result of `stability`")
+    mass = array(ds, "critical_mass")
+    if np.isnan(mass).all():
+        raise unconverged(str(np.ravel(ds["status"].values)[-1]))
+    if mass.size == 1:
+        return _point(ds.squeeze())
+    return _over_speed(ds) if np.isfinite(mass).any() else _calm_map(ds)
+
+
+# ---------------------------------------------------------------------------------------------- over speed and load
+
+
+def _over_speed(ds: xr.Dataset) -> Figure:
+    order = np.argsort(array(ds, "speed"))
+    rpm, loads = array(ds, "speed")[order] * RPM, array(ds, "load")
+    masses, ratios = array(ds, "critical_mass")[:, order], array(ds, "whirl_ratio")[:, order]
+    fig = style.figure(8.0, 6.4)
+    above, below = fig.subplots(2, 1, sharex=True, height_ratios=[1.5, 1.0])
+    colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, len(loads)))
+    for row, colour in enumerate(colours):
+        look: style.Look = {"color": colour, "marker": "o", "markersize": 5, "linewidth": 1.8}
+        label = f"load {loads[row]:.4g} N"
+        above.plot(rpm, np.where(np.isfinite(masses[row]), masses[row], np.nan), label=label, **look)
+        below.plot(rpm, ratios[row], **look)
+        _mark_calm(above, rpm[np.isinf(masses[row])], colour, 0.97 - 0.05 * row)
+    if np.isinf(masses).any():
+        above.plot([], [], "^", color=style.GREY, markersize=8, label=_CALM)
+    style.dress(above, "", QUANTITIES["critical_mass"].axis)
+    style.dress(below, QUANTITIES["speed"].axis, QUANTITIES["whirl_ratio"].axis)
+    _set_masses(above, masses[np.isfinite(masses)])
+    _set_ratios(below, ratios)
+    fig.legend(
+        *above.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=style.TICK, frameon=False
+    )
+    style.set_title(fig, ds, "a rotor heavier than the critical mass whirls")
+    return fig
+
+
+def _mark_calm(ax: Axes, rpm: Floats, colour: Floats, height: float) -> None:
+    if rpm.size:
+        place: style.Look = {"transform": ax.get_xaxis_transform(), "clip_on": False, "markersize": 8, "gid": "calm"}
+        ax.plot(rpm, np.full(rpm.size, height), "^", color=colour, **place)
+
+
+def _set_masses(ax: Axes, finite: Floats) -> None:
+    low, high = float(finite.min()), float(finite.max())
+    if low > 0.0 and high > WIDE * low:
+        ax.set_yscale("log")
+        style.logarithmic(ax.yaxis)
+        ax.set_ylim(low / 1.5, high * (high / low) ** 0.35)
+    else:
+        ax.set_ylim(0.0, 1.35 * high if high > 0.0 else 1.0)
+
+
+def _set_ratios(ax: Axes, ratios: Floats) -> None:
+    """Limits that contain all ratios, and half-speed whirl with them."""
+    finite = ratios[np.isfinite(ratios)]
+    low, high = float(finite.min(initial=0.0)), float(finite.max(initial=0.0))
+    ax.set_ylim(1.1 * low, max(_USUAL_RATIO, 1.1 * high))
+
+
+def _calm_map(ds: xr.Dataset) -> Figure:
+    """Speeds and loads, where every rotor mass is stable."""
+    mass = array(ds, "critical_mass")
+    fig = style.figure(8.0, 4.6)
+    ax = fig.subplots()
+    rpm, load = np.meshgrid(array(ds, "speed") * RPM, array(ds, "load"))
+    calm = np.isinf(mass)
+    ax.plot(rpm[calm], load[calm], "^", color=style.GREEN, markersize=9, label=_CALM, gid="calm")
+    if not calm.all():
+        ax.plot(rpm[~calm], load[~calm], "x", color=style.GREY, markersize=8, label="did not converge")
+    style.dress(ax, QUANTITIES["speed"].axis, QUANTITIES["load"].axis)
+    ax.margins(0.08)
+    ax.set_ylim(bottom=0.0)
+    style.legend_below(ax, 2)
+    style.set_title(fig, ds, _CALM if calm.all() else "")
+    return fig
+
+
+# ---------------------------------------------------------------------------------------------- one operating point
+
+
+def _point(ds: xr.Dataset) -> Figure:
+    with_modes = "natural_frequency" in ds and np.isfinite(array(ds, "natural_frequency")).any()
+    fig = style.figure(9.0, 6.0 if with_modes else 2.6)
+    axes = fig.subplots(2 if with_modes else 1, 1, height_ratios=[1.0, 2.4] if with_modes else [1.0], squeeze=False)[
+        :, 0
+    ]
+    _draw_masses(axes[0], ds)
+    if with_modes:
+        _draw_modes(axes[1], ds)
+    place = labels.load_fact(ds) or labels.displacement_fact(ds)
+    threshold = number(ds, "threshold_speed") * RPM
+    told = f"threshold speed {labels.grouped(threshold)} rpm" if math.isfinite(threshold) else ""
+    style.set_title(fig, ds, labels.speed_fact(number(ds, "speed")), place, told)
+    return fig
+
+
+def _draw_masses(ax: Axes, ds: xr.Dataset) -> None:
+    """Which rotor masses are stable, and which whirl; the rotor's own among them."""
+    critical, rotor, ratio = (number(ds, name) for name in ("critical_mass", "rotor_mass", "whirl_ratio"))
+    known = [mass for mass in (critical, rotor) if math.isfinite(mass)]
+    right = 1.6 * max(known, default=0.0) or 1.0
+    calm = min(critical, right)
+    ax.axvspan(0.0, calm, color=style.GREEN, alpha=0.25, linewidth=0, gid="stable masses")
+    ax.axvspan(calm, right, color=style.VERMILLION, alpha=0.25, linewidth=0, gid="whirling masses")
+    middle: style.Look = {"transform": ax.get_xaxis_transform(), "ha": "center", "va": "center", "color": style.INK}
+    if calm > 0.25 * right:
+        text = _CALM if math.isinf(critical) else f"stable below\n{critical:.4g} kg"
+        ax.text(_free_middle(0.0, calm, rotor), 0.5, text, fontsize=style.LABEL, **middle)
+    if calm < 0.75 * right:
+        whirl = "" if math.isnan(ratio) else f"\nwhirl ratio {ratio:.3g}"
+        text = "whirls at any rotor mass" if critical == 0.0 else f"whirls above {critical:.4g} kg"
+        ax.text(_free_middle(calm, right, rotor), 0.5, text + whirl, fontsize=style.LABEL, **middle)
+    if math.isfinite(rotor):
+        ax.axvline(rotor, color=style.INK, linewidth=1.6, gid="rotor")
+        ax.text(rotor, 1.03, f"rotor, {rotor:.4g} kg", fontsize=style.TICK, **(middle | {"va": "bottom"}))
+    style.dress(ax, QUANTITIES["rotor_mass"].axis)
+    ax.set_xlim(0.0, right)
+    ax.set_yticks([])
+
+
+def _free_middle(low: float, high: float, mark: float) -> float:
+    """Middle of the larger part of a range that a mark divides."""
+    if not low < mark < high:
+        return 0.5 * (low + high)
+    return 0.5 * (low + mark) if mark - low >= high - mark else 0.5 * (mark + high)
+
+
+def _draw_modes(ax: Axes, ds: xr.Dataset) -> None:
+    """Growth rate over frequency of the natural modes; the upper half grows."""
+    hertz, growth = array(ds, "natural_frequency") * HERTZ, array(ds, "mode_growth_rate")
+    direction = array(ds, "whirl_direction") if "whirl_direction" in ds else np.zeros_like(hertz)
+    kinds = {
+        "forward whirl": (direction > 0.5, "o", style.BLUE),
+        "backward whirl": (direction < -0.5, "s", style.ORANGE),
+        "elliptical whirl": (np.abs(direction) <= 0.5, "D", style.PURPLE),
+    }
+    for label, (chosen, marker, colour) in kinds.items():
+        if chosen.any():
+            ax.plot(hertz[chosen], growth[chosen], marker, color=colour, markersize=7, label=label, zorder=3)
+    size = 1.25 * float(np.nanmax(np.abs(growth))) or 1.0
+    ax.set_ylim(-size, size)
+    ax.axhspan(0.0, size, color=style.VERMILLION, alpha=0.1, linewidth=0)
+    ax.axhline(0.0, color=style.GREY, linewidth=0.8)
+    speed = number(ds, "speed") * HERTZ
+    for order, line, name in ((1.0, "--", "speed"), (0.5, ":", "half the speed")):
+        ax.axvline(
+            order * speed, color=style.GREY, linewidth=1.0, linestyle=line, label=f"{name}, {order * speed:.4g} Hz"
+        )
+    style.dress(ax, "damped natural frequency [Hz]", "growth rate [1/s]")
+    ax.ticklabel_format(axis="y", scilimits=(-3, 4), useMathText=True)
+    ax.set_xlim(0.0, 1.1 * max(speed, float(np.nanmax(hertz)), 1e-9))
+    place: style.Look = {"transform": ax.transAxes, "ha": "right", "fontsize": style.TICK, "color": style.GREY}
+    ax.text(0.99, 0.97, "unstable", va="top", **place)
+    ax.text(0.99, 0.03, "stable", va="bottom", **place)
+    style.legend_below(ax, 3)
