@@ -20,7 +20,7 @@ In the order data flows:
 - ``animation``    the section in motion, as a page or a GIF (`animate`)
 - ``grid_convergence`` quantities against the grid (`convergence`)
 - ``generic``      any other result (`quantities`)
-- ``registry``     the figure of each analysis (`summary`), and new ones (`register`)
+- ``figure_registry`` the figure of each analysis (`summary`), and new ones (`register`)
 
 Conventions: a function takes a dataset and returns a ``matplotlib`` figure with its own canvas (no pyplot, no global
 state), which a notebook shows by itself; a state that did not converge is never drawn. matplotlib is loaded when a
@@ -38,12 +38,12 @@ if TYPE_CHECKING:
     from petalfoil.plot.canvas import save
     from petalfoil.plot.characteristics import curve, hysteresis, load_characteristic, static
     from petalfoil.plot.dynamic_coefficients import coefficients
+    from petalfoil.plot.figure_registry import register, summary
     from petalfoil.plot.film_fields import maps, petal_profiles, pressure_and_film
     from petalfoil.plot.generic import quantities
     from petalfoil.plot.grid_convergence import convergence
     from petalfoil.plot.histories import orbit_energy, orbit_histories
     from petalfoil.plot.journal_orbit import orbit, orbit_path
-    from petalfoil.plot.registry import register, summary
     from petalfoil.plot.section import cross_section, operating_point
     from petalfoil.plot.spectra import orbit_spectrum, orbit_waterfall
     from petalfoil.plot.speed_sweeps import liftoff, runup
@@ -60,7 +60,7 @@ _MODULES = {
     "grid_convergence": ("convergence",),
     "histories": ("orbit_energy", "orbit_histories"),
     "journal_orbit": ("orbit", "orbit_path"),
-    "registry": ("register", "summary"),
+    "figure_registry": ("register", "summary"),
     "section": ("cross_section", "operating_point"),
     "spectra": ("orbit_spectrum", "orbit_waterfall"),
     "speed_sweeps": ("liftoff", "runup"),

@@ -140,7 +140,9 @@ def draw_section(ax: Axes, ds: xr.Dataset, scale: float | None = None) -> None:
     draw_solids(ax, plane, stretch)
     draw_petals(ax, plane, stretch)
     if "pressure" in ds:
-        shades = Shades.of(array(plane, "pressure") / number(ds, "ambient_pressure"))
+        shades = Shades.of(
+            array(ds, "pressure") / number(ds, "ambient_pressure")
+        )  # of the whole film, as a map beside it
         draw_film_pressure(ax, plane, stretch, shades)
         bar = ax.figure.colorbar(ax.collections[-1], ax=ax, shrink=0.6, pad=0.02, aspect=24)
         bar.set_label("p / p$_a$", fontsize=style.LABEL)

@@ -156,3 +156,10 @@ def test_states_without_an_answer_are_not_drawn(unconverged: xr.Dataset, curve: 
         plot.cross_section(unconverged)
     with pytest.raises(UsageError):
         plot.cross_section(curve)
+
+
+def test_section_and_map_share_their_colours(spatial: xr.Dataset) -> None:
+    ends_higher = spatial.assign(pressure=spatial["pressure"] * (1.0 + (spatial["z"] - 0.025) ** 2 * 1e3))
+    fig = plot.operating_point(ends_higher)
+    section, pressure_map = fig.axes[0], fig.axes[1]
+    assert part(section, "film").get_clim() == pytest.approx(pressure_map.collections[0].get_clim())

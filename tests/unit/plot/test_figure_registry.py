@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from petalfoil import plot
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.plot import registry
+from petalfoil.plot import figure_registry
 from petalfoil.results.dataset import curve_dataset
 from tests.unit.results import factory
 
@@ -53,13 +53,13 @@ def test_what_has_no_answer_is_refused(unconverged: xr.Dataset) -> None:
 
 
 def test_an_analysis_registers_its_own_figure(flat: xr.Dataset, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(registry, "FIGURES", dict(registry.FIGURES))
+    monkeypatch.setattr(figure_registry, "FIGURES", dict(figure_registry.FIGURES))
     plot.register("toy", plot.cross_section)
     assert ylabels(flat.assign_attrs(analysis="toy")) == ["p / p$_a$"]
 
 
 def test_every_registered_figure_is_there() -> None:
-    for home in registry.FIGURES.values():
+    for home in figure_registry.FIGURES.values():
         module, _, function = str(home).partition(":")
         assert callable(getattr(import_module(f"petalfoil.plot.{module}"), function))
 
