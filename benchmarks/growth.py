@@ -22,7 +22,7 @@ import numpy as np
 from measure import Row, Value, at_most
 from spatial_point import FARTHEST, STEP, Grid
 
-from petalfoil.analysis import load_curve
+from petalfoil.analysis.curve import curve
 from petalfoil.analysis.session import one_thread
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.build import build_problem
@@ -122,12 +122,12 @@ def factorisation(grid: Grid) -> float:
 
 def point(grid: Grid) -> float:
     """Median time of the warm points of a short curve [s]."""
-    curve = load_curve.iterate(grid.case(), 0.5 * FARTHEST + STEP * np.arange(4))
-    next(curve)  # the cold one
+    followed = curve.records(grid.case(), 0.5 * FARTHEST + STEP * np.arange(4))
+    next(followed)  # the cold one
     seconds = []
     for _ in range(3):
         start = time.process_time()
-        record = next(curve)
+        record = next(followed)
         seconds.append(time.process_time() - start)
         if not record.converged:
             raise RuntimeError(f"a point of the benchmark did not converge: {record.scalars['status']}")

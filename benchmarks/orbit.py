@@ -13,7 +13,8 @@ import explicit
 import numpy as np
 from measure import Row, Value, at_least, at_most, in_turn
 
-from petalfoil.analysis.orbit import TOLERANCE, Orbit, OrbitRequest
+from petalfoil.analysis.motion import Orbit
+from petalfoil.analysis.release import TOLERANCE, OrbitRequest
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
 from petalfoil.classic.kernels import Engine
@@ -115,9 +116,9 @@ def rows(lanes: tuple[Lane, ...]) -> list[Row]:
 
 def followed(lane: Lane) -> Followed:
     """Follow a motion until its end or until its time is up."""
-    orbit = Orbit(lane.case(), OrbitRequest(initial="balance", revolutions=lane.revolutions))
+    orbit = Orbit.begin(lane.case(), OrbitRequest(initial="balance", revolutions=lane.revolutions))
     before, last, start = orbit.work.film.factorizations, deque([orbit.start], TURN + 2), time.process_time()
-    for _ in orbit.steps():
+    for _ in orbit.advance():
         assert orbit.trace.last is not None  # it has just made a step
         last.append(orbit.trace.last)
         if time.process_time() - start > lane.seconds:

@@ -11,8 +11,8 @@ import numpy as np
 import yardstick
 from measure import Row, Value, at_most, in_turn
 
-from petalfoil.analysis import equilibrium
 from petalfoil.analysis.session import one_thread
+from petalfoil.analysis.solve import solve
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.run_log import RunLog
@@ -98,7 +98,7 @@ def timed(exact: Exact, grid: Grid, repeats: int) -> dict[str, float]:
     case = exact.case(grid)
     calls = {
         "yardstick": lambda: by_yardstick(exact, grid),
-        "petalfoil": lambda: equilibrium.run(case),
+        "petalfoil": lambda: solve.record(case),
         "solution": lambda: solve_cold(build_problem(case), RunLog()),
     }
     with one_thread():

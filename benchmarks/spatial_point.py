@@ -12,7 +12,7 @@ import scipy.sparse.linalg as spla
 from measure import Row, Value, at_least, at_most, in_turn
 from watching import APART, Watch, watched
 
-from petalfoil.analysis import load_curve
+from petalfoil.analysis.curve import curve
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
@@ -58,11 +58,11 @@ def rows(grid: Grid, points: int, repeats: int) -> list[Row]:
 def warm_points(grid: Grid, points: int) -> list[tuple[Watch, float]]:
     """What was seen of each warm point of a curve, and its time [s]."""
     seen = []
-    curve = load_curve.iterate(grid.case(), STEP * np.arange(points + 1))
-    next(curve)  # the cold one
+    followed = curve.records(grid.case(), STEP * np.arange(points + 1))
+    next(followed)  # the cold one
     for _ in range(points):
         with watched() as watch:
-            record = next(curve)
+            record = next(followed)
             seconds = watch.seconds
         if not record.converged:
             raise RuntimeError(f"a point of the benchmark did not converge: {record.scalars['status']}")

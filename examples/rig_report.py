@@ -19,7 +19,9 @@ from matplotlib.figure import Figure
 from rich.console import Console
 
 from petalfoil import Case
-from petalfoil.analysis import balance, liftoff, runup
+from petalfoil.analysis.balance import balance
+from petalfoil.analysis.crossings import CONTACT_FRACTION, crossings
+from petalfoil.analysis.runup import runup
 from petalfoil.analysis.session import one_thread
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.equilibrium.run_log import RunLog
@@ -61,14 +63,14 @@ def rig(**changes: object) -> Case:
 
 def starting_moment(case: Case, load: float) -> float:
     """Friction moment of the foil pack at zero speed under a load [N m]."""
-    return float(balance.run(case, (0.0, -load), speed=0.0).scalars["friction_torque"])
+    return float(balance.record(case, (0.0, -load), speed=0.0).scalars["friction_torque"])
 
 
-def lift_off(case: Case, experiment: Experiment, share: float = liftoff.SHARE) -> float:
+def lift_off(case: Case, experiment: Experiment, share: float = CONTACT_FRACTION) -> float:
     """Lift-off speed under the load of an experiment, looked for from the measured one on [rpm]."""
     near = case.replace(**{"operation.speed": experiment.speed * RPM})
     with one_thread():
-        return liftoff.crossings(near, experiment.load, share, RunLog())[0] / RPM
+        return crossings(near, experiment.load, share, RunLog())[0] / RPM
 
 
 # ------------------------------------------------------------------------------------------- tables
@@ -95,15 +97,15 @@ def percent(ratio: float) -> str:
 
 
 VARIATIONS: dict[str, tuple[dict[str, object], float]] = {
-    **{f"{cells} cells per pitch": ({"model.cells_per_pitch": cells}, liftoff.SHARE) for cells in GRIDS},
+    **{f"{cells} cells per pitch": ({"model.cells_per_pitch": cells}, CONTACT_FRACTION) for cells in GRIDS},
     "lift-off at a contact fraction of 0.5 %": ({}, 0.005),
     "lift-off at a contact fraction of 2 %": ({}, 0.02),
     "lift-off at a contact fraction of 5 %": ({}, 0.05),
-    "film floor 0.5 µm": ({"surface.contact_film_thickness": 0.5e-6}, liftoff.SHARE),
-    "film floor 1.5 µm": ({"surface.contact_film_thickness": 1.5e-6}, liftoff.SHARE),
-    "slip at the walls": ({"model.slip": True}, liftoff.SHARE),
-    "journal radius 10 µm larger": ({"bearing.journal_radius": 28.6414e-3}, liftoff.SHARE),
-    "journal radius 10 µm smaller": ({"bearing.journal_radius": 28.6214e-3}, liftoff.SHARE),
+    "film floor 0.5 µm": ({"surface.contact_film_thickness": 0.5e-6}, CONTACT_FRACTION),
+    "film floor 1.5 µm": ({"surface.contact_film_thickness": 1.5e-6}, CONTACT_FRACTION),
+    "slip at the walls": ({"model.slip": True}, CONTACT_FRACTION),
+    "journal radius 10 µm larger": ({"bearing.journal_radius": 28.6414e-3}, CONTACT_FRACTION),
+    "journal radius 10 µm smaller": ({"bearing.journal_radius": 28.6214e-3}, CONTACT_FRACTION),
 }
 
 
@@ -134,19 +136,19 @@ def in_space() -> str:
     line = SpeedLine(case, (0.0, -first.load), RunLog())
     with one_thread():
         for rpm in (4000.0, 6000.0, 8800.0, 12000.0, 16000.0):
-            lines.append(f"| {rpm:.0f} | {100.0 * line.share(rpm * RPM):.1f} % |")
+            lines.append(f"| {rpm:.0f} | {100.0 * line.contact_fraction(rpm * RPM):.1f} % |")
     return "\n".join(lines) + "\n"
 
 
 # ------------------------------------------------------------------------------------------- run-up
 
-Legs = Sequence[tuple[str, Record]]
+Legs = Sequence[Record]
 LEGS = {"up": "run-up (the paper's Figure 10)", "down": "coast-down (Figure 11)"}
 
 
 def run(case: Case, load: float) -> Legs:
     """Run-up from rest and coast-down under a load [N]."""
-    return list(runup.iterate(case, (0.0, -load), TOP * RPM, points=POINTS))
+    return list(runup.records(case, (0.0, -load), to=TOP * RPM, points=POINTS))
 
 
 def figure(runs: dict[float, Legs]) -> Figure:
@@ -172,8 +174,8 @@ def figure(runs: dict[float, Legs]) -> Figure:
 
 def of_leg(legs: Legs, leg: str) -> list[Record]:
     """The records of a leg; a coast-down begins where the run-up ended."""
-    top = [record for name, record in legs if name == "up"][-1:] if leg == "down" else []
-    return top + [record for name, record in legs if name == leg]
+    top = [record for record in legs if record.scalars["leg"] == "up"][-1:] if leg == "down" else []
+    return top + [record for record in legs if record.scalars["leg"] == leg]
 
 
 def draw(column: Sequence[Axes], records: Sequence[Record], look: tuple[str, str]) -> None:

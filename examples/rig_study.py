@@ -28,7 +28,8 @@ from scipy.optimize import minimize
 from scipy.stats import qmc
 
 from petalfoil import Case
-from petalfoil.analysis import balance, liftoff
+from petalfoil.analysis.balance import balance
+from petalfoil.analysis.crossings import CONTACT_FRACTION, crossing
 from petalfoil.analysis.session import one_thread
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case.package import MAX_ARC_ANGLE
@@ -144,20 +145,20 @@ class Finding:
 
 def reactions(case: Case, loads: Sequence[float]) -> list[float]:
     """Sum of the contact reactions on the journal at rest under each load [N]."""
-    still = [balance.run(case, (0.0, -load), speed=0.0) for load in loads]
+    still = [balance.record(case, (0.0, -load), speed=0.0) for load in loads]
     return [float(record.scalars["contact_normal_force"]) for record in still]
 
 
-def lift_off(case: Case, load: float, near: float, share: float = liftoff.SHARE) -> float:
+def lift_off(case: Case, load: float, near: float, share: float = CONTACT_FRACTION) -> float:
     """Lift-off speed [rpm], looked for from the speed `near`; nan if it is far above."""
     omega = near * math.pi / 30.0
     with one_thread():
         line = SpeedLine(case, (0.0, -load), RunLog())
-        touching, known = line.share(omega) > share, line.known
-        if touching and line.share(TOO_FAST * omega) > share:
+        touching, known = line.contact_fraction(omega) > share, line.known
+        if touching and line.contact_fraction(TOO_FAST * omega) > share:
             return math.nan
         line.known = known
-        found = liftoff.crossing(line, omega, share, upward=touching)
+        found = crossing(line, omega, share, upward=touching)
     return math.nan if found is None else found * 30.0 / math.pi
 
 

@@ -5,7 +5,8 @@
     case = petalfoil.Case.load("case.toml")
     result = petalfoil.solve(case, speed="60000 rpm")      # an xarray.Dataset in SI units
 
-The names below are loaded when they are first used, so that importing the package costs next to nothing.
+The names below are loaded when they are first used, so that importing the package costs next to nothing. A name that
+is none of them may be an analysis that was declared while the program ran.
 """
 
 from __future__ import annotations
@@ -14,20 +15,17 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from petalfoil.api import (
-        balance,
-        check,
-        coefficients,
-        converge,
-        curve,
-        liftoff,
-        orbit,
-        reproduce,
-        runup,
-        solve,
-        stability,
-        static,
-    )
+    from petalfoil.analysis.balance import balance
+    from petalfoil.analysis.check import check
+    from petalfoil.analysis.coefficients import coefficients
+    from petalfoil.analysis.converge import converge
+    from petalfoil.analysis.curve import curve
+    from petalfoil.analysis.liftoff import liftoff
+    from petalfoil.analysis.orbit import orbit
+    from petalfoil.analysis.runup import runup
+    from petalfoil.analysis.solve import solve
+    from petalfoil.analysis.stability import stability
+    from petalfoil.analysis.static import static
     from petalfoil.case import Case
     from petalfoil.errors import (
         ConvergenceError,
@@ -38,6 +36,7 @@ if TYPE_CHECKING:
         UnitError,
         UsageError,
     )
+    from petalfoil.report.reproduce import reproduce
 
 __version__ = "0.1.0"
 
@@ -65,24 +64,17 @@ __all__ = [
     "static",
 ]
 
-_HOMES = {
-    "Case": "petalfoil.case",
-    "balance": "petalfoil.api",
-    "check": "petalfoil.api",
-    "coefficients": "petalfoil.api",
-    "converge": "petalfoil.api",
-    "curve": "petalfoil.api",
-    "liftoff": "petalfoil.api",
-    "orbit": "petalfoil.api",
-    "reproduce": "petalfoil.api",
-    "runup": "petalfoil.api",
-    "solve": "petalfoil.api",
-    "stability": "petalfoil.api",
-    "static": "petalfoil.api",
-}
+_HOMES = {"Case": "petalfoil.case", "reproduce": "petalfoil.report.reproduce"}
 
 
 def __getattr__(name: str) -> object:
+    if name.startswith("_"):
+        raise AttributeError(f"module 'petalfoil' has no attribute {name!r}")
+    from petalfoil.analysis import registry
+
+    value: object = registry.find(name)
+    if value is not None:
+        return value
     if name not in __all__:
         raise AttributeError(f"module 'petalfoil' has no attribute {name!r}")
     value = getattr(import_module(_HOMES.get(name, "petalfoil.errors")), name)

@@ -10,7 +10,14 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from petalfoil.analysis import balance, coefficients, equilibrium, liftoff, load_curve, runup, stability, static
+from petalfoil.analysis.balance import balance
+from petalfoil.analysis.coefficients import coefficients
+from petalfoil.analysis.curve import curve
+from petalfoil.analysis.liftoff import liftoff
+from petalfoil.analysis.runup import runup
+from petalfoil.analysis.solve import solve
+from petalfoil.analysis.stability import stability
+from petalfoil.analysis.static import static
 from petalfoil.case import Case, Method
 from petalfoil.classic import ClassicOptions
 from petalfoil.cli.app import app
@@ -26,7 +33,7 @@ def bearing(method: Method) -> Case:
 
 
 def test_the_records_of_all_methods_are_alike() -> None:
-    records = [equilibrium.run(bearing(method)) for method in Method]
+    records = [solve.record(bearing(method)) for method in Method]
     for part in ("scalars", "fields", "coords"):
         keys = [list(getattr(record, part)) for record in records]
         assert all(found == keys[0] for found in keys)
@@ -36,7 +43,7 @@ def test_the_records_of_all_methods_are_alike() -> None:
 
 @METHODS
 def test_a_record_becomes_data_with_the_case_in_it(method: Method) -> None:
-    data = to_dataset(equilibrium.run(bearing(method)))
+    data = to_dataset(solve.record(bearing(method)))
     assert Case.from_toml(data.attrs["case"]).model.method is method
     assert bool(data["converged"])
     assert int(data["iterations"]) > 0
@@ -45,9 +52,7 @@ def test_a_record_becomes_data_with_the_case_in_it(method: Method) -> None:
 @METHODS
 def test_a_curve_goes_from_point_to_point(method: Method) -> None:
     told: list[float] = []
-    records = list(
-        load_curve.iterate(bearing(method), (0.0, 50e-6, 100e-6), progress=lambda share, _: told.append(share))
-    )
+    records = list(curve.records(bearing(method), (0.0, 50e-6, 100e-6), progress=lambda share, _: told.append(share)))
     assert all(record.converged for record in records)
     assert [record.scalars["jump"] for record in records] == [False] * 3
     assert "neighbouring point" in str(records[2].scalars["solution_path"])
@@ -57,7 +62,7 @@ def test_a_curve_goes_from_point_to_point(method: Method) -> None:
 
 @METHODS
 def test_the_package_at_rest(method: Method) -> None:
-    (record,) = static.iterate(bearing(method))
+    (record,) = static.records(bearing(method))
     assert record.converged
     assert float(record.scalars["starting_torque"]) > 0.0
 
@@ -88,18 +93,18 @@ def test_a_method_that_runs_out_of_steps_says_so_with_advice(monkeypatch: pytest
 
 def test_a_package_that_runs_out_of_steps_is_a_failed_point(monkeypatch: pytest.MonkeyPatch) -> None:
     limited(monkeypatch, max_package_steps=200)
-    (record,) = static.iterate(bearing(Method.CLASSIC))
+    (record,) = static.records(bearing(Method.CLASSIC))
     assert not record.converged
     assert "used up its package steps" in str(record.history[-1]["outcome"])
 
 
 ASKS_FOR_NEWTON: dict[str, Callable[[Case], object]] = {
-    "balance": lambda case: balance.run(case, (0.0, -5.0)),
-    "coefficients": lambda case: coefficients.run(case),
-    "coefficients at speeds": lambda case: coefficients.iterate(case, (8000.0,)),
-    "stability": lambda case: stability.run(case),
-    "liftoff": lambda case: liftoff.iterate(case, (5.0,)),
-    "runup": lambda case: runup.iterate(case, (0.0, -5.0), 8000.0),
+    "balance": lambda case: balance.record(case, (0.0, -5.0)),
+    "coefficients": lambda case: coefficients.record(case),
+    "coefficients at speeds": lambda case: coefficients.records(case, speeds=(8000.0,)),
+    "stability": lambda case: stability.record(case),
+    "liftoff": lambda case: liftoff.records(case, (5.0,)),
+    "runup": lambda case: runup.records(case, (0.0, -5.0), to=8000.0),
 }
 
 

@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 from threadpoolctl import threadpool_info
 
-from petalfoil.analysis import equilibrium, static
+from petalfoil.analysis.solve import solve
+from petalfoil.analysis.static import static
 from petalfoil.solvers.sparse_lu import Factor, LinearSolver
 from tests.cases import case
 
@@ -22,7 +23,7 @@ def test_a_solve_runs_on_one_blas_thread(monkeypatch: pytest.MonkeyPatch) -> Non
 
     monkeypatch.setattr(LinearSolver, "factor", watching)
     coarse = case("paper_n8", **{"model.cells_per_pitch": 16})
-    equilibrium.run(coarse)
-    next(static.iterate(coarse))
+    solve.record(coarse)
+    next(static.records(coarse))
     assert seen
     assert set(seen) == {1}

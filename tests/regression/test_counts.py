@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from petalfoil.analysis import load_curve
+from petalfoil.analysis.curve import curve
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.package_at_rest import at_rest
@@ -54,7 +54,7 @@ def warm(cells: int) -> list[int]:
     counts: list[int] = []
     for name in PACKAGES:
         for speed in (8000.0, 2000.0):
-            points = load_curve.iterate(bearing(name, cells), np.linspace(0.0, 280e-6, 15), speed=speed)
+            points = curve.records(bearing(name, cells), np.linspace(0.0, 280e-6, 15), speed=speed)
             records = list(points)
             assert all(record.converged for record in records)
             assert not any(record.scalars["jump"] for record in records)

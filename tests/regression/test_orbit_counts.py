@@ -6,7 +6,8 @@ from functools import cache
 
 import pytest
 
-from petalfoil.analysis.orbit import Orbit, OrbitRequest
+from petalfoil.analysis.motion import Orbit
+from petalfoil.analysis.release import OrbitRequest
 from tests.cases import case
 
 REVOLUTIONS = 10.0
@@ -16,9 +17,9 @@ REVOLUTIONS = 10.0
 def counts(cells: int) -> dict[str, int]:
     """Of the paper's 8 petals, flat, 8000 rad/s: 3 kg let go from balance with its mass centre 2 um off the axis."""
     bearing = case("paper_n8", rotor={"mass": 3.0, "unbalance": 2e-6}, **{"model.cells_per_pitch": cells})
-    orbit = Orbit(bearing, OrbitRequest(initial="balance", revolutions=REVOLUTIONS))
+    orbit = Orbit.begin(bearing, OrbitRequest(initial="balance", revolutions=REVOLUTIONS))
     before = orbit.work.film.factorizations
-    for _ in orbit.steps():
+    for _ in orbit.advance():
         pass
     told = orbit.record().scalars
     assert told["revolutions"] == pytest.approx(REVOLUTIONS, rel=1e-9)

@@ -1,82 +1,99 @@
 """The verbs as functions hand their arguments on in SI units; what the analyses answer is tested with them."""
 
+import inspect
 import math
 from typing import Any
 
 import pytest
 
 import petalfoil
-from petalfoil.errors import PetalfoilError, UnitError, UsageError
+from petalfoil.analysis.registry import find
+from petalfoil.analysis.runs import Points
+from petalfoil.errors import UnitError, UsageError
+from petalfoil.results import Record
+from petalfoil.results.layout import Series
 from tests.cases import EXAMPLES, case
+from tests.unit.cli.conftest import play
 
 PLAIN = case("plain_journal")
 
 
+Called = list[dict[str, Any]]
+
+
 @pytest.fixture
-def called(monkeypatch: pytest.MonkeyPatch) -> list[tuple[tuple[Any, ...], dict[str, Any]]]:
-    """Arguments that reached an analysis; the answers are labels instead of results."""
-    calls: list[tuple[tuple[Any, ...], dict[str, Any]]] = []
+def called(monkeypatch: pytest.MonkeyPatch) -> Called:
+    """Arguments that reached an analysis, by name, defaults filled in."""
+    calls: Called = []
 
-    def analysis(*args: Any, **kwargs: Any) -> list[str]:
-        calls.append((args, kwargs))
-        return ["record"]
+    def answer(**given: Any) -> Points:
+        calls.append(given)
+        return Points(iter([Record(analysis="test", scalars={"speed": 1.0})]), 1)
 
-    for target in ("equilibrium.run", "load_curve.iterate", "static.iterate", "check.run", "grid_study.run"):
-        monkeypatch.setattr(f"petalfoil.analysis.{target}", analysis)
-    monkeypatch.setattr("petalfoil.results.dataset.to_dataset", lambda record: record)
-    monkeypatch.setattr("petalfoil.analysis.grid_study.table", lambda records: f"estimates of {records[0]}")
-    monkeypatch.setattr("petalfoil.analysis.grid_study.error_bars", lambda record, progress: {"bearing_force": 0.5})
-    for target in ("study_dataset", "with_error_bars"):
-        monkeypatch.setattr(f"petalfoil.results.study.{target}", lambda *both: both)
-    monkeypatch.setattr("petalfoil.results.dataset.curve_dataset", lambda records, analysis: (records, analysis))
+    for verb in ("solve", "curve", "static", "check", "converge"):
+        play(verb, answer, monkeypatch)
+        monkeypatch.setattr(find(verb), "layouts", (Series(),))
     return calls
 
 
-def test_solve(called: list[Any]) -> None:
-    assert petalfoil.solve(PLAIN) == ["record"]
-    assert called.pop() == ((PLAIN,), {"speed": None, "eccentricity": None, "progress": None})
-    petalfoil.solve(PLAIN, speed="60 rpm", eccentricity=("1 um", -2e-6), progress=print)
-    _, kwargs = called.pop()
-    assert kwargs["speed"] == pytest.approx(2 * math.pi, rel=1e-15)
-    assert kwargs["eccentricity"] == (1e-6, -2e-6)
-    assert kwargs["progress"] is print
+def test_solve(called: Called) -> None:
+    petalfoil.solve(PLAIN)
+    assert called.pop() == {"case": PLAIN, "speed": None, "eccentricity": None, "error": False, "progress": None}
+    petalfoil.solve(PLAIN, speed="60 rpm", eccentricity=("1 um", -2e-6), progress=print, error=True)
+    given = called.pop()
+    assert given["speed"] == pytest.approx(2 * math.pi, rel=1e-15)
+    assert (given["eccentricity"], given["progress"], given["error"]) == ((1e-6, -2e-6), print, True)
     petalfoil.solve(PLAIN, eccentricity="0 um, -5 um")
-    assert called.pop()[1]["eccentricity"] == (0.0, -5e-6)
+    assert called.pop()["eccentricity"] == (0.0, -5e-6)
 
 
-def test_curve(called: list[Any]) -> None:
-    assert petalfoil.curve(PLAIN, "0 um : 10 um : 3", speed=100) == (["record"], "curve")
-    args, kwargs = called.pop()
-    assert args == (PLAIN, [0.0, 5e-6, 1e-5])
-    assert kwargs == {"direction": -math.pi / 2, "speed": 100.0, "progress": None}
+def test_curve(called: Called) -> None:
+    petalfoil.curve(PLAIN, "0 um : 10 um : 3", speed=100)
+    given = called.pop()
+    assert given == {
+        "case": PLAIN,
+        "eccentricities": [0.0, 5e-6, 1e-5],
+        "direction": -math.pi / 2,
+        "speed": 100.0,
+        "progress": None,
+    }
     petalfoil.curve(PLAIN, [0, "1 um"], direction="45 deg")
-    args, kwargs = called.pop()
-    assert args == (PLAIN, [0.0, 1e-6])
-    assert kwargs["direction"] == math.pi / 4
+    given = called.pop()
+    assert (given["eccentricities"], given["direction"]) == ([0.0, 1e-6], math.pi / 4)
 
 
-def test_static(called: list[Any]) -> None:
-    assert petalfoil.static(PLAIN) == (["record"], "static")
-    assert called.pop() == ((PLAIN, [0.0]), {"direction": -math.pi / 2, "loop": False, "progress": None})
+def test_static(called: Called) -> None:
+    petalfoil.static(PLAIN)
+    given = called.pop()
+    assert (list(given["eccentricities"]), given["direction"], given["loop"]) == ([0.0], -math.pi / 2, False)
 
 
-def test_check(called: list[Any]) -> None:
-    assert petalfoil.check(PLAIN) == ["record"]
-    assert called.pop() == ((PLAIN,), {})
+def test_check(called: Called) -> None:
+    petalfoil.check(PLAIN)
+    assert called.pop() == {"case": PLAIN}
 
 
-def test_converge(called: list[Any]) -> None:
-    assert petalfoil.converge(PLAIN) == (["record"], "estimates of record")
-    args, kwargs = called.pop()
-    assert args == (PLAIN,)
-    assert kwargs == {"speed": None, "eccentricity": None, "levels": 3, "coarsest": None, "progress": None}
-    petalfoil.converge(PLAIN, speed=5, eccentricity=("1 um", 0), levels=2, coarsest=24)
-    _, kwargs = called.pop()
-    assert (kwargs["speed"], kwargs["eccentricity"], kwargs["levels"], kwargs["coarsest"]) == (5.0, (1e-6, 0.0), 2, 24)
+def test_converge(called: Called) -> None:
+    petalfoil.converge(PLAIN)
+    given = called.pop()
+    assert (given["speed"], given["eccentricity"], given["levels"], given["coarsest"]) == (None, None, 3, None)
+    petalfoil.converge(PLAIN, speed=5, eccentricity=("1 um", 0), levels="2", coarsest=24)
+    given = called.pop()
+    assert (given["speed"], given["eccentricity"], given["levels"], given["coarsest"]) == (5.0, (1e-6, 0.0), 2, 24)
 
 
-def test_solve_with_error_bars(called: list[Any]) -> None:
-    assert petalfoil.solve(PLAIN, error=True) == (["record"], {"bearing_force": 0.5})
+def test_an_analysis_looks_like_its_function() -> None:
+    assert list(inspect.signature(petalfoil.curve).parameters)[:3] == ["case", "eccentricities", "direction"]
+    assert petalfoil.curve.__name__ == "curve"
+    assert "Example: petalfoil curve" in str(petalfoil.curve.__doc__)
+    assert "direction : Quantity, optional" in str(petalfoil.curve.__doc__)
+
+
+def test_a_point_without_error_bars_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    record = Record(analysis="solve", scalars={"speed": 1.0}, errors={}, remarks=("no error bars: one grid",))
+    play("solve", lambda **_: record, monkeypatch)
+    with pytest.warns(UserWarning, match="no error bars: one grid"):
+        petalfoil.solve(PLAIN, error=True)
 
 
 @pytest.mark.parametrize(
@@ -89,17 +106,22 @@ def test_solve_with_error_bars(called: list[Any]) -> None:
         ("solve", (PLAIN,), {"eccentricity": (1e-6,)}, UsageError, "not a pair"),
         ("solve", (PLAIN,), {"eccentricity": 1e-6}, UsageError, "not a pair"),
         ("curve", (PLAIN, []), {}, UsageError, "at least one"),
-        ("curve", (PLAIN, 1e-6), {}, UsageError, "not a list"),
+        ("curve", (PLAIN, 1e-6, 1e-6), {}, TypeError, "positional"),
+        ("curve", (PLAIN, "all"), {}, UnitError, "eccentricities: 'all' does not begin with a number"),
+        ("converge", (PLAIN,), {"levels": 2.5}, UsageError, "levels: 2.5 is not a whole number"),
+        ("converge", (PLAIN,), {"levels": True}, UsageError, "not a whole number"),
+        ("solve", (PLAIN,), {"error": "yes"}, UsageError, "error: 'yes' is neither True nor False"),
+        ("solve", (PLAIN,), {"speed": "-5 rpm"}, UsageError, "speed: '-5 rpm' is outside its range"),
         ("curve", (PLAIN, "0 um : 1 um"), {}, UsageError, "start : stop : count"),
         ("static", (PLAIN,), {"direction": "1 m"}, UnitError, "an angle"),
     ],
 )
 def test_bad_arguments_reach_no_analysis(
-    called: list[Any],
+    called: Called,
     verb: str,
     args: tuple[Any, ...],
     kwargs: dict[str, Any],
-    error: type[PetalfoilError],
+    error: type[Exception],
     reason: str,
 ) -> None:
     with pytest.raises(error, match=reason):

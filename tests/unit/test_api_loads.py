@@ -12,32 +12,35 @@ import xarray as xr
 from numpy.testing import assert_allclose
 
 import petalfoil
+from petalfoil.analysis.registry import find
+from petalfoil.analysis.runs import Points
 from petalfoil.errors import PetalfoilError, UnitError, UsageError
+from petalfoil.results import Record
+from petalfoil.results.layout import Series
 from petalfoil.results.store import load, save
 from tests.cases import case
+from tests.unit.cli.conftest import play
 
 BEARING = case("paper_n8", **{"model.cells_per_pitch": 12})
 RUBBING = BEARING.replace(**{"surface.petal_friction": 0.2})
 PLAIN = case("plain_journal", **{"model.cells_per_pitch": 16, "model.axial_cells": 4})
 
 
+Called = list[dict[str, Any]]
+
+
 @pytest.fixture
-def called(monkeypatch: pytest.MonkeyPatch) -> list[tuple[tuple[Any, ...], dict[str, Any]]]:
-    """Arguments that reached an analysis; the answers are labels instead of results."""
-    calls: list[tuple[tuple[Any, ...], dict[str, Any]]] = []
+def called(monkeypatch: pytest.MonkeyPatch) -> Called:
+    """Arguments that reached an analysis, by name, defaults filled in."""
+    calls: Called = []
 
-    def analysis(*args: Any, **kwargs: Any) -> list[Any]:
-        calls.append((args, kwargs))
-        return [("leg", "record")]
+    def answer(**given: Any) -> Points:
+        calls.append(given)
+        return Points(iter([Record(analysis="test", scalars={"speed": 1.0})]), 1)
 
-    for target in (
-        "balance.run", "liftoff.iterate", "runup.iterate", "coefficients.run", "coefficients.iterate", "stability.run",
-        "stability.iterate",
-    ):  # fmt: skip
-        monkeypatch.setattr(f"petalfoil.analysis.{target}", analysis)
-    monkeypatch.setattr("petalfoil.results.dataset.to_dataset", lambda record: record)
-    monkeypatch.setattr("petalfoil.results.dataset.curve_dataset", lambda records, analysis: (records, analysis))
-    monkeypatch.setattr("petalfoil.results.chart.chart_dataset", lambda records: ("chart", records))
+    for verb in ("balance", "liftoff", "runup", "coefficients", "stability"):
+        play(verb, answer, monkeypatch)
+        monkeypatch.setattr(find(verb), "layouts", (Series(),))
     return calls
 
 
@@ -52,37 +55,47 @@ def called(monkeypatch: pytest.MonkeyPatch) -> list[tuple[tuple[Any, ...], dict[
         (None, None),
     ],
 )
-def test_loads(called: list[Any], given: Any, force: tuple[float, float] | None) -> None:
+def test_loads(called: Called, given: Any, force: tuple[float, float] | None) -> None:
     petalfoil.balance(PLAIN, given, speed="60 rpm")
-    args, kwargs = called.pop()
-    assert args == (PLAIN, force)
-    assert_allclose(kwargs["speed"], 2.0 * math.pi, rtol=1e-15, atol=0.0)
+    asked = called.pop()
+    assert asked["load"] == force
+    assert_allclose(asked["speed"], 2.0 * math.pi, rtol=1e-15, atol=0.0)
     petalfoil.runup(PLAIN, given, to=100.0)
-    assert called.pop() == ((PLAIN, force, 100.0), {"points": 25, "progress": None})
+    asked = called.pop()
+    assert (asked["load"], asked["to"], asked["points"]) == (force, 100.0, 25)
     petalfoil.coefficients(PLAIN, load=given)
-    assert called.pop() == ((PLAIN, None), {"load": force, "speed": None, "amplitude": None, "progress": None})
+    asked = called.pop()
+    assert asked == {
+        "case": PLAIN,
+        "frequencies": None,
+        "load": force,
+        "speed": None,
+        "speeds": None,
+        "amplitude": None,
+        "progress": None,
+    }
     petalfoil.stability(PLAIN, load=given, mass="500 g")
-    assert called.pop() == ((PLAIN,), {"load": force, "mass": 0.5, "speed": None, "progress": None})
+    asked = called.pop()
+    assert (asked["load"], asked["mass"], asked["speed"]) == (force, 0.5, None)
 
 
-def test_lists(called: list[Any]) -> None:
-    assert petalfoil.liftoff(PLAIN, "10 N : 30 N : 3", share=0.02) == ([("leg", "record")], "liftoff")
-    assert called.pop() == ((PLAIN, [10.0, 20.0, 30.0]), {"share": 0.02, "progress": None})
+def test_lists(called: Called) -> None:
+    petalfoil.liftoff(PLAIN, "10 N : 30 N : 3", contact_fraction=0.02)
+    asked = called.pop()
+    assert (asked["loads"], asked["contact_fraction"]) == ([10.0, 20.0, 30.0], 0.02)
     petalfoil.liftoff(PLAIN, 5)
-    assert called.pop()[0] == (PLAIN, [5.0])
-    assert petalfoil.coefficients(PLAIN, np.array([1.0, 2.0]), speeds=["1 rad/s", 2]) == (
-        [("leg", "record")],
-        "coefficients",
-    )
-    assert called.pop() == ((PLAIN, [1.0, 2.0], [1.0, 2.0]), {"load": None, "amplitude": None, "progress": None})
+    assert called.pop()["loads"] == [5.0]
+    petalfoil.coefficients(PLAIN, np.array([1.0, 2.0]), speeds=["1 rad/s", 2])
+    asked = called.pop()
+    assert (asked["frequencies"], asked["speeds"]) == ([1.0, 2.0], [1.0, 2.0])
     petalfoil.coefficients(PLAIN, amplitude="2 um", speeds=[1.0])
-    assert called.pop()[1]["amplitude"] == 2e-6
-    petalfoil.coefficients(PLAIN, amplitude=1e-6)
-    assert called.pop()[1]["amplitude"] == 1e-6
-    assert petalfoil.stability(PLAIN, loads="1 N, 2 N", speed=3.0) == ("chart", [("leg", "record")])
-    assert called.pop()[0] == (PLAIN, [3.0], [1.0, 2.0])
+    assert called.pop()["amplitude"] == 2e-6
+    petalfoil.stability(PLAIN, loads="1 N, 2 N", speed=3.0)
+    asked = called.pop()
+    assert (asked["speed"], asked["loads"]) == (3.0, [1.0, 2.0])
     petalfoil.stability(PLAIN, speeds=(1, 2), load=7)
-    assert called.pop() == ((PLAIN, [1.0, 2.0], None), {"load": (0.0, -7.0), "progress": None})
+    asked = called.pop()
+    assert (asked["speeds"], asked["load"]) == ([1.0, 2.0], (0.0, -7.0))
 
 
 @pytest.mark.parametrize(
@@ -95,12 +108,13 @@ def test_lists(called: list[Any]) -> None:
         ("runup", (PLAIN, 5.0), {"to": "5 N"}, UnitError, "angular speed"),
         ("coefficients", (PLAIN, []), {}, UsageError, "frequencies: give at least one"),
         ("coefficients", (PLAIN,), {"amplitude": "5 N"}, UnitError, "a length"),
+        ("coefficients", (PLAIN,), {"speed": 1.0, "speeds": 2.0}, UsageError, "speed says nothing beside speeds"),
         ("stability", (PLAIN,), {"mass": "5 N"}, UnitError, "a mass"),
         ("stability", (PLAIN,), {"speeds": "1 : 2"}, UsageError, "start : stop : count"),
     ],
 )
 def test_bad_arguments_reach_no_analysis(
-    called: list[Any],
+    called: Called,
     verb: str,
     args: tuple[Any, ...],
     kwargs: dict[str, Any],

@@ -12,10 +12,11 @@ import xarray as xr
 from numpy.testing import assert_allclose
 
 import petalfoil
-from petalfoil.analysis.orbit import OrbitRequest
 from petalfoil.errors import PetalfoilError, StoreError, UnitError, UsageError
+from petalfoil.results import Record
 from petalfoil.results.store import load, save
 from tests.cases import case
+from tests.unit.cli.conftest import play
 
 ROTOR = {"rotor.mass": 3.0, "rotor.unbalance": 2e-6}
 PLAIN = case("plain_journal", **{"model.cells_per_pitch": 32, "model.axial_cells": 8}, **ROTOR)
@@ -74,19 +75,24 @@ def test_a_ramp_goes_on_where_it_was_left() -> None:
 
 
 def test_what_is_given_reaches_the_analysis_in_si(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[Any] = []
-    monkeypatch.setattr("petalfoil.analysis.orbit.run", lambda *args: asked.append(args))
-    monkeypatch.setattr("petalfoil.results.dataset.to_dataset", lambda record: record)
+    asked: list[dict[str, Any]] = []
+
+    def answer(**given: Any) -> Record:
+        asked.append(given)
+        return Record(analysis="orbit", scalars={"speed": 1.0})
+
+    play("orbit", answer, monkeypatch)
     petalfoil.orbit(
         PLAIN, duration="10 ms", initial="1 um, 2 um", speeds="0 rpm : 10000 rpm : 1 s", load="20 N", tolerance="1e-4"
     )
-    found, course, restart, progress = asked.pop()
-    assert (found, restart, progress) == (PLAIN, None, None)
-    assert course == OrbitRequest(None, 0.01, (1e-6, 2e-6), course.speeds, (0.0, -20.0), 1e-4)
-    assert_allclose(course.speeds, [(0.0, 0.0), (1.0, FAST)], rtol=1e-12, atol=0.0)
+    given = asked.pop()
+    assert (given["case"], given["restart"], given["revolutions"]) == (PLAIN, None, None)
+    assert (given["duration"], given["initial"]) == (0.01, (1e-6, 2e-6))
+    assert (given["load"], given["tolerance"]) == ((0.0, -20.0), 1e-4)
+    assert_allclose(given["speeds"], [(0.0, 0.0), (1.0, FAST)], rtol=1e-12, atol=0.0)
     petalfoil.orbit(PLAIN, speeds=[(0, 0), ("1 s", "10000 rpm")], initial=(1e-6, "2 um"))
-    assert_allclose(asked[0][1].speeds, [(0.0, 0.0), (1.0, FAST)], rtol=1e-12, atol=0.0)
-    assert asked[0][1].initial == (1e-6, 2e-6)
+    assert_allclose(asked[0]["speeds"], [(0.0, 0.0), (1.0, FAST)], rtol=1e-12, atol=0.0)
+    assert asked[0]["initial"] == (1e-6, 2e-6)
 
 
 BARE = case("plain_journal")
@@ -98,9 +104,9 @@ OTHER = case("plain_journal", **{"bearing.length": 0.06}, **ROTOR)
     [
         ("case.toml", {}, UsageError, "is not a Case"),
         (BARE, {"revolutions": 1.0}, UsageError, r"needs a case with \[rotor\]"),
-        (PLAIN, {"revolutions": -1.0}, UsageError, "revolutions must be above zero"),
-        (PLAIN, {"revolutions": 1.0, "duration": 1.0}, UsageError, "either revolutions or a duration"),
-        (PLAIN, {"tolerance": 0.0}, UsageError, "tolerance must be above zero"),
+        (PLAIN, {"revolutions": -1.0}, UsageError, "revolutions: .* greater than 0"),
+        (PLAIN, {"revolutions": 1.0, "duration": 1.0}, UsageError, "revolutions says nothing beside duration"),
+        (PLAIN, {"tolerance": 0.0}, UsageError, "tolerance: .* greater than 0"),
         (PLAIN, {"duration": "5 m"}, UnitError, "a time"),
         (PLAIN, {"initial": "1 um"}, UsageError, "not a pair"),
         (PLAIN, {"initial": (1.0, 2.0, 3.0)}, UsageError, "initial: .* is not a pair"),

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from petalfoil.analysis import balance, equilibrium
-from petalfoil.analysis.figures import forces
+from petalfoil.analysis.balance import balance
+from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.analysis.solve import solve
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.loaded import Balance, force_residual
@@ -56,8 +57,8 @@ def cost(record: Record) -> float:
 @pytest.mark.parametrize("e", [(0.0, -100e-6), (80e-6, -150e-6), (-30e-6, 200e-6)])
 def test_the_load_of_a_position_leads_back_to_it(e: tuple[float, float]) -> None:
     bearing = case("paper_n8", **COARSE, **{"operation.eccentricity": e})
-    fixed = equilibrium.run(bearing)
-    found = balance.run(bearing, carried(fixed))
+    fixed = solve.record(bearing)
+    found = balance.record(bearing, carried(fixed))
     assert_allclose(position(found), e, rtol=0.0, atol=1e-13)
     assert number(found, "force_residual") <= RESIDUAL
     for name in ("min_film_thickness", "friction_torque", "max_bending_stress"):
@@ -68,18 +69,20 @@ def test_a_plain_bearing_and_a_spatial_one() -> None:
     plain = case("plain_journal", **{"model.cells_per_pitch": 48, "model.axial_cells": 12})
     spatial = case("paper_n8_spatial", **{"model.cells_per_pitch": 16, "model.axial_cells": 6})
     for bearing in (plain, spatial):
-        fixed = equilibrium.run(bearing)
-        found = balance.run(bearing, carried(fixed))
+        fixed = solve.record(bearing)
+        found = balance.record(bearing, carried(fixed))
         assert_allclose(position(found), bearing.operation.eccentricity, rtol=0.0, atol=1e-12)
 
 
 def test_the_load_of_the_case_is_the_default() -> None:
     bearing = case("paper_n8", **COARSE, **{"operation.load": (0.0, -20.0)})
-    assert_allclose(position(balance.run(bearing)), position(balance.run(case("paper_n8", **COARSE), (0.0, -20.0))))
+    assert_allclose(
+        position(balance.record(bearing)), position(balance.record(case("paper_n8", **COARSE), (0.0, -20.0)))
+    )
     with pytest.raises(UsageError, match="no load"):
-        balance.run(case("paper_n8", **COARSE))
+        balance.record(case("paper_n8", **COARSE))
     with pytest.raises(UsageError, match="zero"):
-        balance.run(bearing, (0.0, 0.0))
+        balance.record(bearing, (0.0, 0.0))
 
 
 # ---------------------------------------------------------------------------------------------- random bearings
@@ -109,10 +112,10 @@ def run_random(count: int) -> tuple[list[Drawn], int]:
         except ConvergenceError:
             without += 1
             continue
-        pushed = forces(drawn, answer)
-        load = -float(pushed["force_x"]), -float(pushed["force_y"])
+        pushed = Evaluation.of(drawn, answer).forces()
+        load = -pushed.force_x, -pushed.force_y
         spent = work.film.factorizations + work.package.factorizations
-        found.append(Drawn(drawn, spent, balance.run(drawn, load)))
+        found.append(Drawn(drawn, spent, balance.record(drawn, load)))
     return found, without
 
 
@@ -146,7 +149,7 @@ def test_three_hundred_random_bearings() -> None:
 @pytest.mark.parametrize("load", [200.0, 250.0, 400.0, 3000.0])
 def test_an_overload_is_answered_with_the_share_of_the_contacts(load: float) -> None:
     bearing = case("paper_n8", **COARSE)
-    record = balance.run(bearing, (0.0, -load))
+    record = balance.record(bearing, (0.0, -load))
     share = number(record, "contact_fraction")
     assert share > 0.1
     assert record.scalars["carried_by"] == f"touching: contact carries {100.0 * share:.0f} %"
@@ -156,13 +159,13 @@ def test_an_overload_is_answered_with_the_share_of_the_contacts(load: float) -> 
 
 def test_a_load_that_presses_petals_solid_says_so() -> None:
     """Two layers, floor and journal fill the room along the load: nothing gives way, whatever is added."""
-    found = [balance.run(case("paper_n8", **COARSE), (0.0, -load)) for load in (400.0, 3000.0)]
+    found = [balance.record(case("paper_n8", **COARSE), (0.0, -load)) for load in (400.0, 3000.0)]
     assert all("pressed solid" in str(record.scalars["solution_path"]) for record in found)
     assert_allclose(position(found[0]), position(found[1]), rtol=0.0, atol=1e-12)
 
 
 def test_a_floating_journal_is_carried_by_the_film() -> None:
-    assert balance.run(case("paper_n8", **COARSE), (0.0, -20.0)).scalars["carried_by"] == "film"
+    assert balance.record(case("paper_n8", **COARSE), (0.0, -20.0)).scalars["carried_by"] == "film"
 
 
 # ---------------------------------------------------------------------------------------------- neighbours
@@ -189,6 +192,6 @@ def test_an_unstable_balance_gives_way_to_the_one_reached_from_rest() -> None:
     """The 166th random bearing has three equilibria where it was solved; cold, the balance lands on an unstable one."""
     rng = np.random.default_rng(SEED)
     drawn = [random_case(rng) for _ in range(166)][-1]
-    record = balance.run(drawn, carried(equilibrium.run(drawn)))
+    record = balance.record(drawn, carried(solve.record(drawn)))
     assert record.scalars["stable"]
     assert "followed from rest" in str(record.scalars["solution_path"])

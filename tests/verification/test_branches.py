@@ -9,7 +9,8 @@ import pytest
 import scipy.linalg as la
 from numpy.testing import assert_allclose
 
-from petalfoil.analysis import equilibrium, load_curve
+from petalfoil.analysis.curve import curve
+from petalfoil.analysis.solve import solve
 from petalfoil.case import Case
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.equilibrium.branches import fingerprint
@@ -84,7 +85,7 @@ def test_an_unstable_equilibrium_is_left_for_a_stable_one() -> None:
 
 
 def test_solve_reports_the_stable_branch_and_that_there_are_more() -> None:
-    record = equilibrium.run(drawn(88))
+    record = solve.record(drawn(88))
     assert record.scalars["stable"]
     assert record.scalars["known_equilibria"] >= 2  # type: ignore[operator]
     assert "rest" in str(record.scalars["solution_path"])
@@ -95,7 +96,7 @@ def test_a_curve_reports_its_jump() -> None:
     lies on another branch, with five times the torque though the push on the journal changes by 3 % only."""
     package = drawn(4).replace(**{"model.cells_per_pitch": 48})
     way = 1e-6 * np.concatenate([np.linspace(0.0, 140.0, 8), [145.0], np.arange(150.5, 156.0, 0.5)])
-    records = list(load_curve.iterate(package, way))
+    records = list(curve.records(package, way))
     jumps = [number for number, record in enumerate(records) if record.scalars["jump"]]
     assert len(jumps) == 1
     fold = jumps[0]
@@ -114,9 +115,7 @@ def test_a_curve_reports_its_jump() -> None:
 def test_a_long_step_that_leaves_the_branch_is_told_too() -> None:
     """From 140 to 145 um, on half as many cells, Newton and interior point both land beyond the end of the branch."""
     package = drawn(4).replace(**{"model.cells_per_pitch": 32})
-    records = list(
-        load_curve.iterate(package, 1e-6 * np.array([0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 120.0, 140.0, 145.0]))
-    )
+    records = list(curve.records(package, 1e-6 * np.array([0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 120.0, 140.0, 145.0])))
     assert [bool(record.scalars["jump"]) for record in records] == [False] * 8 + [True]
 
 
@@ -124,13 +123,13 @@ def test_a_point_that_is_asked_for_again_is_no_jump() -> None:
     """Nothing is foretold there, and rounding is larger."""
     for name in ("paper_n6", "paper_n8"):
         bearing = case(name, **{"model.cells_per_pitch": 32})
-        records = list(load_curve.iterate(bearing, 1e-6 * np.array([0.0, 50.0, 50.0, 60.0, 60.0 + 1e-8])))
+        records = list(curve.records(bearing, 1e-6 * np.array([0.0, 50.0, 50.0, 60.0, 60.0 + 1e-8])))
         assert not any(record.scalars["jump"] for record in records)
         assert all(record.scalars["known_equilibria"] == 1 for record in records)
 
 
 def test_the_paper_s_curves_do_not_jump() -> None:
     for name in ("paper_n6", "paper_n8", "paper_n10"):
-        records = list(load_curve.iterate(case(name, **{"model.cells_per_pitch": 32}), np.linspace(0.0, 280e-6, 8)))
+        records = list(curve.records(case(name, **{"model.cells_per_pitch": 32}), np.linspace(0.0, 280e-6, 8)))
         assert not any(record.scalars["jump"] for record in records)
         assert all(record.scalars["stable"] for record in records)

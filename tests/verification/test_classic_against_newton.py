@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from petalfoil.analysis import equilibrium, static
+from petalfoil.analysis.solve import solve
+from petalfoil.analysis.static import static
 from petalfoil.case import Case
 from petalfoil.results.record import Record
 from tests.cases import case
@@ -22,7 +23,7 @@ AGREE = 1e-4
 def both(bearing: Case) -> tuple[Record, Record]:
     """Records of the classic method and of Newton."""
     classic = bearing.replace(**{"model.method": "classic"})
-    return equilibrium.run(classic), equilibrium.run(bearing)
+    return solve.record(classic), solve.record(bearing)
 
 
 @pytest.mark.parametrize("e", [0.0, 200e-6])
@@ -49,7 +50,7 @@ def test_preload_and_starting_torque_agree(mount: str) -> None:
     bearing = case("paper_n8", **{"model.cells_per_pitch": 16, "petals.mount": mount})
     classic = bearing.replace(**{"model.method": "classic"})
     positions = (0.0, 150e-6)
-    for mine, theirs in zip(static.iterate(classic, positions), static.iterate(bearing, positions), strict=True):
+    for mine, theirs in zip(static.records(classic, positions), static.records(bearing, positions), strict=True):
         assert mine.converged
         for figure in ("contact_normal_force", "starting_torque", "max_bending_stress"):
             assert_allclose(mine.scalars[figure], theirs.scalars[figure], rtol=AGREE)

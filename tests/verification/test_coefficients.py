@@ -9,8 +9,10 @@ import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from petalfoil.analysis import coefficients, stability
-from petalfoil.analysis.coefficients import impedance
+from petalfoil.analysis.coefficients import coefficients
+from petalfoil.analysis.impedance import impedance
+from petalfoil.analysis.operating_point import operating_point
+from petalfoil.analysis.stability import stability
 from petalfoil.case import Case
 from petalfoil.equilibrium.linear_response import Motion
 from petalfoil.equilibrium.loaded import Balance, journal_force
@@ -64,7 +66,7 @@ def impedances(record: Record) -> NDArray[np.complex128]:
 
 def centred_errors(grid: tuple[int, int]) -> Array:
     bearing = plain(grid)
-    found = impedances(coefficients.run(bearing, [nu * bearing.operation.speed for nu in RATIOS]))
+    found = impedances(coefficients.record(bearing, [nu * bearing.operation.speed for nu in RATIOS]))
     wanted = [closed_form(bearing, nu) for nu in RATIOS]
     return np.array([np.max(np.abs(Z - Y)) / np.max(np.abs(Y)) for Z, Y in zip(found, wanted, strict=True)])
 
@@ -79,7 +81,7 @@ def test_centred_plain_journal_has_its_closed_form() -> None:
 def test_damping_at_rest_is_the_limit_of_slow_whirl() -> None:
     bearing = plain((64, 32), (3e-6, -8e-6))
     Omega = bearing.operation.speed
-    C = coefficients.run(bearing, [0.0, 1e-3 * Omega, 2e-3 * Omega]).fields["damping"]
+    C = coefficients.record(bearing, [0.0, 1e-3 * Omega, 2e-3 * Omega]).fields["damping"]
     limit = C[1] - (C[2] - C[1]) / 3.0  # C depends on the square of the frequency
     assert_allclose(C[0], limit, rtol=1e-8, atol=0.0)
 
@@ -89,7 +91,7 @@ def test_a_displacement_across_the_line_of_centres_turns_the_force() -> None:
     e = 10e-6
     bearing = plain((128, 16), (0.0, -e))
     problem = build_problem(bearing)
-    record = coefficients.run(bearing, [0.0])
+    record = coefficients.record(bearing, [0.0])
     K = record.fields["stiffness"][0]
     answer = operating(bearing)
     F = journal_force(problem, answer.x[problem.positive], answer.lam) * problem.layout.scales.force
@@ -98,13 +100,13 @@ def test_a_displacement_across_the_line_of_centres_turns_the_force() -> None:
 
 
 def operating(bearing: Case) -> Solution:
-    answer, _ = coefficients.operating_point(bearing, None, RunLog())
+    answer = operating_point(bearing, None, RunLog()).answer
     return answer
 
 
 def test_centred_plain_journal_whirls_at_half_its_speed_however_light() -> None:
     """Neutral for no mass at all: ratio and mass go to 1/2 and 0 with the square of the cell."""
-    coarse, fine = (stability.run(plain(grid)).scalars for grid in ((64, 32), (128, 64)))
+    coarse, fine = (stability.record(plain(grid)).scalars for grid in ((64, 32), (128, 64)))
     ratio, mass = np.array([[run["whirl_ratio"], run["critical_mass"]] for run in (coarse, fine)], dtype=float).T
     assert_allclose(ratio[1], 0.5, rtol=0.0, atol=3e-4)
     assert np.log2((0.5 - ratio[0]) / (0.5 - ratio[1])) >= 1.9
@@ -210,7 +212,7 @@ def by_differences(answer: Solution, nu: float, step: float = 1e-5) -> NDArray[n
 
 def test_twenty_frequencies_cost_twenty_factorisations() -> None:
     bearing = case("paper_n8", **PETALS)
-    few, many = (coefficients.run(bearing, np.linspace(0.0, 9e3, n).tolist(), load=(0.0, -20.0)) for n in (1, 20))
+    few, many = (coefficients.record(bearing, np.linspace(0.0, 9e3, n).tolist(), load=(0.0, -20.0)) for n in (1, 20))
     counts = [int(run.scalars["probe_factorizations"]) for run in (few, many)]
     assert counts[1] - counts[0] == 19
     assert counts[1] <= 25
@@ -218,8 +220,8 @@ def test_twenty_frequencies_cost_twenty_factorisations() -> None:
 
 def test_over_speeds_each_point_is_that_of_a_run() -> None:
     bearing = plain((32, 8), (0.0, -5e-6))
-    records = list(coefficients.iterate(bearing, [1000.0, 2000.0], [500.0]))
-    alone = [coefficients.run(bearing, [500.0], speed=speed) for speed in (1000.0, 2000.0)]
+    records = list(coefficients.records(bearing, [500.0], speeds=[1000.0, 2000.0]))
+    alone = [coefficients.record(bearing, [500.0], speed=speed) for speed in (1000.0, 2000.0)]
     for together, single in zip(records, alone, strict=True):
         assert_allclose(together.fields["stiffness"], single.fields["stiffness"], rtol=1e-12, atol=0.0)
 
@@ -227,18 +229,18 @@ def test_over_speeds_each_point_is_that_of_a_run() -> None:
 def test_what_cannot_be_asked() -> None:
     bearing = plain((32, 8))
     with pytest.raises(UsageError, match="turning shaft"):
-        coefficients.run(bearing, [100.0], speed=0.0)
-    with pytest.raises(UsageError, match="negative"):
-        coefficients.run(bearing, [-1.0])
-    with pytest.raises(UsageError, match="positive"):
-        stability.run(bearing, mass=0.0)
+        coefficients.record(bearing, [100.0], speed=0.0)
+    with pytest.raises(UsageError, match=r"frequencies: .* at least 0 rad/s"):
+        coefficients.record(bearing, [-1.0])
+    with pytest.raises(UsageError, match=r"mass: .* greater than 0 kg"):
+        stability.record(bearing, mass=0.0)
     with pytest.raises(UsageError, match="no load"):
-        stability.iterate(bearing, [1000.0])
+        stability.records(bearing, speeds=[1000.0])
 
 
 def test_petals_pressed_solid_have_no_coefficients() -> None:
-    with pytest.raises(ConvergenceError, match="pressed solid"):
-        coefficients.run(case("paper_n8", **PETALS), load=(0.0, -600.0))
+    with pytest.raises(ConvergenceError, match="bottomed-out pack"):
+        coefficients.record(case("paper_n8", **PETALS), load=(0.0, -600.0))
 
 
 # ---------------------------------------------------------------------------------------------- stability
@@ -246,27 +248,27 @@ def test_petals_pressed_solid_have_no_coefficients() -> None:
 
 def test_threshold_speed_is_where_the_critical_mass_is_the_rotor_s() -> None:
     bearing, load = plain((24, 8)), (0.0, -30.0)
-    found = stability.run(bearing, load=load, mass=0.5, speed=1800.0)
+    found = stability.record(bearing, load=load, mass=0.5, speed=1800.0)
     threshold = float(found.scalars["threshold_speed"])
-    there = stability.run(bearing, load=load, speed=threshold)
+    there = stability.record(bearing, load=load, speed=threshold)
     assert_allclose(float(there.scalars["critical_mass"]), 0.5, rtol=5e-3, atol=0.0)
 
 
 def test_without_a_load_the_status_says_why_there_is_no_threshold() -> None:
-    found = stability.run(plain((32, 8), (0.0, -10e-6))).scalars
+    found = stability.record(plain((32, 8), (0.0, -10e-6))).scalars
     assert math.isnan(float(found["threshold_speed"]))
     assert "give a mass or a load" in str(found["status"])
 
 
 def test_a_chart_agrees_with_single_points() -> None:
     bearing = plain((24, 6))
-    records = list(stability.iterate(bearing, [1000.0, 2000.0], [5.0, 20.0]))
+    records = list(stability.records(bearing, speeds=[1000.0, 2000.0], loads=[5.0, 20.0]))
     assert [(r.scalars["load_y"], r.scalars["speed"]) for r in records] == [
         (-5.0, 1000.0),
         (-5.0, 2000.0),
         (-20.0, 1000.0),
         (-20.0, 2000.0),
     ]
-    single = stability.run(bearing, load=(0.0, -20.0), speed=2000.0).scalars
+    single = stability.record(bearing, load=(0.0, -20.0), speed=2000.0).scalars
     for name in ("critical_mass", "whirl_ratio"):
         assert_allclose(float(records[3].scalars[name]), float(single[name]), rtol=1e-6, atol=0.0)

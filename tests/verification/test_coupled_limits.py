@@ -11,7 +11,8 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.testing import assert_allclose
 
-from petalfoil.analysis import equilibrium, static
+from petalfoil.analysis.solve import solve
+from petalfoil.analysis.static import static
 from petalfoil.case import Case
 from petalfoil.physics.mass_balance import FilmBalance
 from petalfoil.results.record import Record
@@ -37,8 +38,8 @@ def test_turning_by_one_pitch_turns_the_answer(kind: str, edges: str) -> None:
     )
     e = np.array([30e-6, -110e-6])
     pitch = base.petals.pitch  # type: ignore[union-attr]
-    here = equilibrium.run(base, eccentricity=(float(e[0]), float(e[1])))
-    there = equilibrium.run(base, eccentricity=tuple(float(v) for v in turned(e, pitch)))  # type: ignore[arg-type]
+    here = solve.record(base, eccentricity=(float(e[0]), float(e[1])))
+    there = solve.record(base, eccentricity=tuple(float(v) for v in turned(e, pitch)))  # type: ignore[arg-type]
     size = np.abs(force(here)).max()
     assert_allclose(force(there), turned(force(here), pitch), rtol=0, atol=1e-10 * size)
     assert_allclose(np.roll(here.fields["pressure"], 1, axis=0), there.fields["pressure"], rtol=1e-9)
@@ -46,8 +47,8 @@ def test_turning_by_one_pitch_turns_the_answer(kind: str, edges: str) -> None:
 
 def test_turning_package_and_displacement_turns_the_force() -> None:
     e, angle = np.array([0.0, -150e-6]), 0.377
-    here = equilibrium.run(PAPER, eccentricity=(0.0, -150e-6))
-    there = equilibrium.run(
+    here = solve.record(PAPER, eccentricity=(0.0, -150e-6))
+    there = solve.record(
         PAPER.replace(**{"petals.first_root": angle}),
         eccentricity=tuple(float(v) for v in turned(e, angle)),  # type: ignore[arg-type]
     )
@@ -80,8 +81,8 @@ def test_stiff_petals_are_the_rigid_stepped_bearing() -> None:
         changes = {"gas.ambient_pressure": 1e5 * thin, "gas.viscosity": 1.85e-5 * thin}
         changes |= {"petals.youngs_modulus": 1e13, "operation.speed": 2000.0, "operation.eccentricity": (0.0, -50e-6)}
         stiff = PAPER.replace(**changes)
-        record = equilibrium.run(stiff)
-        rest = next(static.iterate(stiff, (50e-6,)))
+        record = solve.record(stiff)
+        rest = next(static.records(stiff, (50e-6,)))
         shape = rest.fields["radius"][:, -stiff.cells_per_pitch - 1 :]
         theta = record.coords["root_angle"][:, None] + record.coords["phi_exposed"]
         h = shape - 0.5 * stiff.petals.total_thickness - stiff.bearing.journal_radius
@@ -94,10 +95,10 @@ def test_stiff_petals_are_the_rigid_stepped_bearing() -> None:
 
 
 def test_slow_shaft_leaves_ambient_pressure_and_the_static_package() -> None:
-    rest = next(static.iterate(PAPER, (100e-6,)))
+    rest = next(static.records(PAPER, (100e-6,)))
     errors = []
     for speed in (1e-2, 1e-3, 1e-4):
-        slow = equilibrium.run(PAPER, speed=speed, eccentricity=(0.0, -100e-6))
+        slow = solve.record(PAPER, speed=speed, eccentricity=(0.0, -100e-6))
         errors.append(float(np.max(slow.fields["pressure"]) / 1e5 - 1.0))
         defect = np.abs(force(slow) - force(rest)).max() / float(rest.scalars["bearing_force"])
         assert defect < 10.0 * errors[-1]
@@ -106,8 +107,8 @@ def test_slow_shaft_leaves_ambient_pressure_and_the_static_package() -> None:
 
 
 def test_a_shaft_at_rest_is_the_static_package() -> None:
-    rest = next(static.iterate(PAPER, (100e-6,)))
-    still = equilibrium.run(PAPER, speed=0.0, eccentricity=(0.0, -100e-6))
+    rest = next(static.records(PAPER, (100e-6,)))
+    still = solve.record(PAPER, speed=0.0, eccentricity=(0.0, -100e-6))
     assert_allclose(force(still), force(rest), rtol=1e-9, atol=1e-9 * float(rest.scalars["bearing_force"]))
     assert still.scalars["contact_fraction"] == pytest.approx(1.0)
 
@@ -115,7 +116,7 @@ def test_a_shaft_at_rest_is_the_static_package() -> None:
 def test_half_and_whole_length_agree() -> None:
     half = PAPER.replace(**{"model.kind": "3d", "model.cells_per_pitch": 16, "model.axial_cells": 6})
     whole = half.replace(**{"model.symmetry": False})
-    a, b = equilibrium.run(half), equilibrium.run(whole)
+    a, b = solve.record(half), solve.record(whole)
     for name in (
         "force_x",
         "force_y",
@@ -130,7 +131,7 @@ def test_half_and_whole_length_agree() -> None:
 
 
 def test_contact_and_film_forces_sum_to_the_reaction() -> None:
-    record = equilibrium.run(PAPER, speed=1000.0, eccentricity=(0.0, -250e-6))
+    record = solve.record(PAPER, speed=1000.0, eccentricity=(0.0, -250e-6))
     s, z = record.scalars, record.coords["z"]
     theta = record.coords["root_angle"][:, None] + record.coords["phi_exposed"]
     cell = np.zeros(theta.shape[1])

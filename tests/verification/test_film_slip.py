@@ -11,7 +11,8 @@ from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 from scipy.integrate import quad
 
-from petalfoil.analysis import check, equilibrium
+from petalfoil.analysis.check import check
+from petalfoil.analysis.solve import solve
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.run_log import RunLog
@@ -185,7 +186,7 @@ def test_answers_tell_the_knudsen_number_and_what_slip_does(plain: Case) -> None
 
     It falls by more than half of what a film as thick as the clearance would pass in addition.
     """
-    off, on = equilibrium.run(plain).scalars, equilibrium.run(plain.replace(**{"model.slip": True})).scalars
+    off, on = solve.record(plain).scalars, solve.record(plain.replace(**{"model.slip": True})).scalars
     Kn = plain.gas.mean_free_path / 2.5e-6
     assert off["knudsen_number"] == pytest.approx(Kn, rel=1e-9)
     assert on["knudsen_number"] == pytest.approx(Kn, rel=1e-9)
@@ -198,28 +199,28 @@ def test_answers_tell_the_knudsen_number_and_what_slip_does(plain: Case) -> None
 
 def test_slip_fades_with_the_mean_free_path(plain: Case) -> None:
     """First order in the mean free path, which the gas constant sets without changing the bearing number."""
-    loads = [float(equilibrium.run(plain).scalars["bearing_force"])]
+    loads = [float(solve.record(plain).scalars["bearing_force"])]
     for shrink in (1.0, 2.0, 4.0):
         gas = {"model.slip": True, "gas.gas_constant": plain.gas.gas_constant / (100.0 * shrink**2)}
-        loads.append(float(equilibrium.run(plain.replace(**gas)).scalars["bearing_force"]))
+        loads.append(float(solve.record(plain.replace(**gas)).scalars["bearing_force"]))
     losses = 1.0 - np.array(loads[1:]) / loads[0]
     assert_allclose(losses[:-1] / losses[1:], 2.0, rtol=0.02)
 
 
 def test_check_tells_the_knudsen_number(plain: Case) -> None:
     """Of the room of a plain bearing, of the film floor of a package: the thinnest film there can be."""
-    scalars = check.run(plain).scalars
+    scalars = check.record(plain).scalars
     assert scalars["mean_free_path"] == plain.gas.mean_free_path
     assert scalars["viscosity"] == plain.gas.viscosity
     assert scalars["knudsen_number"] == pytest.approx(plain.gas.mean_free_path / 2.5e-6, rel=1e-9)
     petals = case("paper_n8", **{"model.cells_per_pitch": 8})
-    assert check.run(petals).scalars["knudsen_number"] == pytest.approx(petals.gas.mean_free_path / 1e-6, rel=1e-12)
+    assert check.record(petals).scalars["knudsen_number"] == pytest.approx(petals.gas.mean_free_path / 1e-6, rel=1e-12)
 
 
 def test_petals_carry_less_with_slip() -> None:
     """Film and package solved together, tangents and all, where the films are some micrometres."""
     bearing = case("paper_n8", **{"model.cells_per_pitch": 32, "operation.eccentricity": (0.0, -200e-6)})
-    off, on = equilibrium.run(bearing).scalars, equilibrium.run(bearing.replace(**{"model.slip": True})).scalars
+    off, on = solve.record(bearing).scalars, solve.record(bearing.replace(**{"model.slip": True})).scalars
     assert on["converged"]
     assert float(on["residual"]) < 1e-8
     assert 0.9 * float(off["bearing_force"]) < float(on["bearing_force"]) < float(off["bearing_force"])

@@ -8,7 +8,7 @@ import scipy.sparse as sp
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from petalfoil.analysis import static
+from petalfoil.analysis.static import static
 from petalfoil.equilibrium.friction_path import FrictionResult, slide
 from petalfoil.errors import UsageError
 from petalfoil.physics.friction import Friction, halves, slopes
@@ -196,7 +196,7 @@ def test_width_of_the_stick_converges() -> None:
 def loop_of(mu: float, count: int) -> tuple[Array, Array, float]:
     """Load and displacement along the closed cycle of eight petals on 16 cells a pitch, and what it loses."""
     rubbing = case("paper_n8", **{"model.cells_per_pitch": 16, "surface.petal_friction": mu})
-    records = list(static.iterate(rubbing, np.linspace(0.0, 100e-6, count), loop=True))
+    records = list(static.records(rubbing, np.linspace(0.0, 100e-6, count), loop=True))
     assert all(record.converged for record in records)
     cycle = [record.scalars for record in records[count - 1 :]]
     load, down = (np.array([float(s[name]) for s in cycle]) for name in ("force_y", "eccentricity_y"))
@@ -224,15 +224,15 @@ def test_loading_carries_more_than_unloading() -> None:
 
 def test_little_friction_is_none() -> None:
     smooth = case("paper_n8", **{"model.cells_per_pitch": 16})
-    without = [float(r.scalars["force_y"]) for r in static.iterate(smooth, (0.0, 50e-6))]
+    without = [float(r.scalars["force_y"]) for r in static.records(smooth, (0.0, 50e-6))]
     rubbing = smooth.replace(**{"surface.petal_friction": 1e-4})
-    with_it = [float(r.scalars["force_y"]) for r in static.iterate(rubbing, (0.0, 50e-6))]
+    with_it = [float(r.scalars["force_y"]) for r in static.records(rubbing, (0.0, 50e-6))]
     assert with_it[1] == pytest.approx(without[1], rel=1e-3)
     assert with_it[1] > without[1]
 
 
 def test_a_loop_without_friction_is_refused() -> None:
     with pytest.raises(UsageError, match="petal_friction"):
-        static.iterate(case("paper_n8"), (0.0, 50e-6), loop=True)
+        static.records(case("paper_n8"), (0.0, 50e-6), loop=True)
     with pytest.raises(UsageError, match="two displacements"):
-        static.iterate(case("paper_n8", **{"surface.petal_friction": 0.1}), (0.0,), loop=True)
+        static.records(case("paper_n8", **{"surface.petal_friction": 0.1}), (0.0,), loop=True)

@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from petalfoil.analysis import balance, liftoff, runup
+from petalfoil.analysis.balance import balance
+from petalfoil.analysis.crossings import CONTACT_FRACTION, PRECISION, crossings
+from petalfoil.analysis.liftoff import liftoff
+from petalfoil.analysis.runup import runup
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.errors import UsageError
@@ -24,7 +27,7 @@ def number(record: Record, name: str) -> float:
 
 def share(speed: float, load: float) -> float:
     """Share of the contacts of a cold balance."""
-    return float(balance.run(BEARING, (0.0, -load), speed=speed).scalars["contact_fraction"])
+    return float(balance.record(BEARING, (0.0, -load), speed=speed).scalars["contact_fraction"])
 
 
 LOAD = 40.0  # N
@@ -32,31 +35,31 @@ LOAD = 40.0  # N
 
 @pytest.fixture(scope="module")
 def lifted() -> Record:
-    (record,) = liftoff.iterate(BEARING, [LOAD])
+    (record,) = liftoff.records(BEARING, [LOAD])
     return record
 
 
 def test_the_share_is_crossed_within_a_thousandth_of_the_speed(lifted: Record) -> None:
     for name in ("liftoff_speed", "touchdown_speed"):
         speed = number(lifted, name)
-        half = 0.55 * liftoff.PRECISION  # the bracket's middle is reported; its ends straddle the share
-        assert share(speed * (1.0 - half), LOAD) > liftoff.SHARE >= share(speed * (1.0 + half), LOAD)
+        half = 0.55 * PRECISION  # the bracket's middle is reported; its ends straddle the share
+        assert share(speed * (1.0 - half), LOAD) > CONTACT_FRACTION >= share(speed * (1.0 + half), LOAD)
 
 
 def test_a_heavier_load_lifts_off_later(lifted: Record) -> None:
     """Where load rules and not preload: above 10 N on the paper's eight petals."""
     near = BEARING.replace(**{"operation.speed": number(lifted, "liftoff_speed")})
-    lighter, heavier = (liftoff.crossings(near, load, liftoff.SHARE, RunLog())[0] for load in (0.8 * LOAD, 1.25 * LOAD))
+    lighter, heavier = (crossings(near, load, CONTACT_FRACTION, RunLog())[0] for load in (0.8 * LOAD, 1.25 * LOAD))
     assert lighter < number(lifted, "liftoff_speed") < heavier
 
 
 def test_from_below_and_from_above_the_same_crossings_are_found(lifted: Record) -> None:
     """The case touches at its own speed, so that `lifted` ascended first; a faster one descends first."""
     faster = BEARING.replace(**{"operation.speed": 1.3 * number(lifted, "liftoff_speed")})
-    assert share(BEARING.operation.speed, LOAD) > liftoff.SHARE >= share(faster.operation.speed, LOAD)
-    found = liftoff.crossings(faster, LOAD, liftoff.SHARE, RunLog())
+    assert share(BEARING.operation.speed, LOAD) > CONTACT_FRACTION >= share(faster.operation.speed, LOAD)
+    found = crossings(faster, LOAD, CONTACT_FRACTION, RunLog())
     wanted = [number(lifted, name) for name in ("liftoff_speed", "touchdown_speed")]
-    assert_allclose(found, wanted, rtol=1.1 * liftoff.PRECISION, atol=0.0)
+    assert_allclose(found, wanted, rtol=1.1 * PRECISION, atol=0.0)
 
 
 def test_sensitivity_is_that_of_another_floor_and_share(lifted: Record) -> None:
@@ -64,13 +67,13 @@ def test_sensitivity_is_that_of_another_floor_and_share(lifted: Record) -> None:
     near = BEARING.replace(
         **{"operation.speed": up, "surface.contact_film_thickness": factor * BEARING.surface.contact_film_thickness}
     )
-    by_floor = math.log(liftoff.crossings(near, LOAD, liftoff.SHARE, RunLog())[0] / up) / math.log(factor)
+    by_floor = math.log(crossings(near, LOAD, CONTACT_FRACTION, RunLog())[0] / up) / math.log(factor)
     assert_allclose(number(lifted, "liftoff_by_contact_film_thickness"), by_floor, rtol=0.0, atol=0.05)
     assert -0.2 < number(lifted, "liftoff_by_contact_fraction") < 0.0  # a smaller share is reached later, if little
 
 
 def test_an_overload_never_floats() -> None:
-    (record,) = liftoff.iterate(BEARING, [400.0])
+    (record,) = liftoff.records(BEARING, [400.0])
     assert record.converged
     assert number(record, "liftoff_speed") == number(record, "touchdown_speed") == math.inf
     assert "does not lift off" in str(record.scalars["status"])
@@ -78,17 +81,18 @@ def test_an_overload_never_floats() -> None:
 
 
 @pytest.mark.parametrize(
-    ("loads", "least", "reason"), [([-1.0], 0.01, "positive"), ([], 0.01, "positive"), ([1.0], 1.0, "between 0 and 1")]
+    ("loads", "least", "reason"),
+    [([-1.0], 0.01, "greater than 0 N"), ([], 0.01, "at least one"), ([1.0], 1.0, "less than 1")],
 )
 def test_what_cannot_be_asked(loads: list[float], least: float, reason: str) -> None:
     with pytest.raises(UsageError, match=reason):
-        liftoff.iterate(BEARING, loads, share=least)
+        liftoff.records(BEARING, loads, contact_fraction=least)
 
 
 def test_a_plain_bearing_has_no_package_to_lift_off_from() -> None:
     for asked in (
-        lambda: liftoff.iterate(case("plain_journal"), [1.0]),
-        lambda: runup.iterate(case("plain_journal"), (0.0, -1.0), 100.0),
+        lambda: liftoff.records(case("plain_journal"), [1.0]),
+        lambda: runup.records(case("plain_journal"), (0.0, -1.0), to=100.0),
     ):
         with pytest.raises(UsageError, match=r"\[petals\]"):
             asked()
@@ -100,8 +104,8 @@ def test_a_plain_bearing_has_no_package_to_lift_off_from() -> None:
 @pytest.fixture(scope="module")
 def legs() -> dict[str, list[Record]]:
     found: dict[str, list[Record]] = {"up": [], "down": []}
-    for leg, record in runup.iterate(BEARING, (0.0, -20.0), 9000.0, points=9):
-        found[leg].append(record)
+    for record in runup.records(BEARING, (0.0, -20.0), to=9000.0, points=9):
+        found[str(record.scalars["leg"])].append(record)
     return found
 
 

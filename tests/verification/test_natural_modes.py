@@ -12,8 +12,9 @@ from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 from scipy.optimize import newton
 
-from petalfoil.analysis import stability
-from petalfoil.analysis.coefficients import elastic, operating_point
+from petalfoil.analysis.impedance import elastic
+from petalfoil.analysis.operating_point import operating_point
+from petalfoil.analysis.stability import stability
 from petalfoil.case import Case
 from petalfoil.dynamics.critical_mass import neutral_whirl, scan
 from petalfoil.dynamics.natural_modes import PEAK, Mode, natural_modes
@@ -33,7 +34,7 @@ def plain(grid: tuple[int, int], e: tuple[float, float] = (0.0, 0.0)) -> Case:
 def at(bearing: Case, load: float = 0.0) -> tuple[Motion, RunLog]:
     """Small motions under a load along -y, or at the case's eccentricity."""
     work = RunLog()
-    answer, _ = operating_point(bearing, (0.0, -load) if load else None, work)
+    answer = operating_point(bearing, (0.0, -load) if load else None, work).answer
     return elastic(bearing, answer, work), work
 
 
@@ -99,7 +100,7 @@ def test_a_heavy_rotor_has_a_mode_each_way_and_whirls() -> None:
 
 def test_a_record_tells_the_modes_in_its_units() -> None:
     bearing = plain((24, 8))
-    record = stability.run(bearing, mass=1.0)
+    record = stability.record(bearing, mass=1.0)
     (modes,) = modes_of(bearing, [1.0])
     speed = bearing.operation.speed
     assert_allclose(record.fields["natural_frequency"], [mode.s.imag * speed for mode in modes], rtol=1e-9, atol=0.0)
@@ -111,7 +112,7 @@ def test_a_record_tells_the_modes_in_its_units() -> None:
 
 
 def test_without_a_mass_there_are_no_modes() -> None:
-    assert "natural_frequency" not in stability.run(plain((24, 8))).fields
+    assert "natural_frequency" not in stability.record(plain((24, 8))).fields
 
 
 # ---------------------------------------------------------------------------------------------- threshold

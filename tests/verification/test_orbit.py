@@ -10,8 +10,11 @@ import pytest
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from petalfoil.analysis import balance, coefficients, stability
-from petalfoil.analysis.orbit import Orbit, OrbitRequest, run
+from petalfoil.analysis.balance import balance
+from petalfoil.analysis.coefficients import coefficients
+from petalfoil.analysis.motion import Orbit, follow
+from petalfoil.analysis.release import OrbitRequest
+from petalfoil.analysis.stability import stability
 from petalfoil.case import Case
 from petalfoil.dynamics.adaptive_steps import MarchOptions, march
 from petalfoil.dynamics.time_state import Instant
@@ -38,7 +41,7 @@ def petals(**changes: object) -> Case:
 def under(bearing: Case, mass: float, load: float, **rotor: float) -> tuple[Case, tuple[float, float]]:
     """The bearing with a rotor of `mass` under `load` along -y, and where that balances."""
     loaded = bearing.replace(rotor={"mass": mass, **rotor}, **{"operation.load": (0.0, -load)})
-    found = balance.run(loaded).scalars
+    found = balance.record(loaded).scalars
     return loaded, (float(found["eccentricity_x"]), float(found["eccentricity_y"]))
 
 
@@ -70,14 +73,14 @@ def test_free_orbit_grows_or_dies_out_as_its_natural_mode(share: float) -> None:
     """Growth rate and whirl frequency within 1 %, on both sides of the critical mass."""
     load = 15.0
     bearing = plain(**{"operation.load": (0.0, -load)})
-    critical = float(stability.run(bearing).scalars["critical_mass"])
+    critical = float(stability.record(bearing).scalars["critical_mass"])
     loaded, (x, y) = under(bearing, share * critical, load)
-    told = stability.run(loaded, mass=share * critical)
+    told = stability.record(loaded, mass=share * critical)
     omega = loaded.operation.speed
     modes = np.asarray(told.fields["mode_growth_rate"]) + 1j * np.asarray(told.fields["natural_frequency"])
     expected = modes[np.argmax(modes.real)] / omega
     course = OrbitRequest(revolutions=6.0, initial=(x + 1e-10, y), tolerance=1e-7, longest=0.15)
-    found = eigenvalue(*tail(run(loaded, course), 0.6), 1.02 * expected)
+    found = eigenvalue(*tail(follow(loaded, course), 0.6), 1.02 * expected)
     assert np.sign(found.real) == np.sign(share - 1.0)
     assert abs(found.real / expected.real - 1.0) <= 1e-2
     assert abs(found.imag / expected.imag - 1.0) <= 1e-2
@@ -88,12 +91,12 @@ def test_critical_mass_divides_orbits_that_die_out_from_orbits_that_grow() -> No
     """2 % below it an orbit shrinks, 2 % above it grows."""
     load = 15.0
     bearing = plain(**{"operation.load": (0.0, -load)})
-    critical = float(stability.run(bearing).scalars["critical_mass"])
+    critical = float(stability.record(bearing).scalars["critical_mass"])
     rates = []
     for share in (0.98, 1.02):
         loaded, (x, y) = under(bearing, share * critical, load)
         course = OrbitRequest(revolutions=12.0, initial=(x + 1e-10, y), tolerance=1e-7, longest=0.1)
-        rates.append(eigenvalue(*tail(run(loaded, course), 0.6), 0.45j).real)
+        rates.append(eigenvalue(*tail(follow(loaded, course), 0.6), 0.45j).real)
     assert rates[0] < 0.0 < rates[1]
 
 
@@ -101,7 +104,7 @@ def test_critical_mass_divides_orbits_that_die_out_from_orbits_that_grow() -> No
 def test_a_released_rotor_settles_on_its_balance() -> None:
     """From the centre, a light rotor under a load that a whirl does not turn round: within 1e-4 of the clearance."""
     loaded, (x, y) = under(plain(), 0.3, 400.0)
-    record = run(loaded, OrbitRequest(revolutions=20.0, initial=(0.0, 0.0)))
+    record = follow(loaded, OrbitRequest(revolutions=20.0, initial=(0.0, 0.0)))
     end = np.asarray(record.fields["x"])[-1], np.asarray(record.fields["y"])[-1]
     assert math.hypot(end[0] - x, end[1] - y) <= 1e-4 * loaded.bearing.clearance
 
@@ -124,7 +127,7 @@ def measured_impedance(
     moved, pushed = [], []
     for turn in (frequency, -frequency):
         rotor = {"mass": bearing.rotor.mass if bearing.rotor else 1.0, "rotating_load": force, "rotating_speed": turn}
-        record = run(bearing.replace(rotor=rotor), course)
+        record = follow(bearing.replace(rotor=rotor), course)
         time = np.asarray(record.coords["time"])
         kept = time > 0.3 * time[-1]
         parts = [
@@ -143,11 +146,11 @@ def test_forced_orbits_of_petals_give_back_stiffness_and_damping(ratio: float) -
     loaded, start = under(petals(), 3.0, 3.0 * WEIGHT)
     omega = loaded.operation.speed
     free = [
-        float(f) for f in np.asarray(stability.run(loaded, mass=3.0).fields["natural_frequency"]) if f < 0.2 * omega
+        float(f) for f in np.asarray(stability.record(loaded, mass=3.0).fields["natural_frequency"]) if f < 0.2 * omega
     ]
     course = OrbitRequest(revolutions=20.0, initial=start, tolerance=1e-6, longest=0.1 / max(1.0, ratio))
     found = measured_impedance(loaded, 0.01, ratio * omega, course, free)
-    told = coefficients.run(loaded, [ratio * omega])
+    told = coefficients.record(loaded, [ratio * omega])
     K, C = told.fields["stiffness"][0], told.fields["damping"][0]
     assert np.max(np.abs(found.real - K)) <= 1e-2 * np.max(np.abs(K))
     assert np.max(np.abs(found.imag / (ratio * omega) - C)) <= 1e-2 * np.max(np.abs(C))
@@ -174,7 +177,7 @@ def test_squeeze_film_of_a_journal_at_rest(row: dict[str, str]) -> None:
     stiffness = 0.5 * math.pi * gas.ambient_pressure * sizes.length * 2.0 * sizes.journal_radius / sizes.clearance
     expected = stiffness * complex(float(row["Sk"]), float(row["Sd"]))
     turn = 2.0 * math.pi / frequency
-    longest = 0.05 * Orbit(bearing, OrbitRequest(duration=turn)).system.rotor.clock.rate / frequency
+    longest = 0.05 * Orbit.begin(bearing, OrbitRequest(duration=turn)).system.rotor.clock.rate / frequency
     course = OrbitRequest(duration=12.0 * turn, tolerance=1e-7, longest=longest)
     force = 1e-3 * bearing.bearing.clearance * abs(expected - 1e-3 * frequency**2)
     found = measured_impedance(bearing, force, frequency, course, [])
@@ -187,7 +190,7 @@ def test_squeeze_film_of_a_journal_at_rest(row: dict[str, str]) -> None:
 
 def equal_steps(bearing: Case, step: float, end: float) -> Orbit:
     """A motion in equal steps [units of time]."""
-    orbit = Orbit(bearing, OrbitRequest(duration=1.0))
+    orbit = Orbit.begin(bearing, OrbitRequest(duration=1.0))
     options = MarchOptions(tolerance=1e-5, first=step, longest=step, fixed=True)
     for stepped in march(orbit.system, orbit.start, end, RunLog(), options):
         orbit.trace.add(stepped.end)
@@ -235,10 +238,10 @@ def test_audits_close_to_second_order() -> None:
 def test_steps_adapt_to_the_tolerance() -> None:
     """A hundredth of the tolerance: smaller error, more steps."""
     bearing = falling()
-    best = run(bearing, OrbitRequest(revolutions=0.5, tolerance=1e-6, longest=0.02))
+    best = follow(bearing, OrbitRequest(revolutions=0.5, tolerance=1e-6, longest=0.02))
     ends, steps = [], []
     for tolerance in (1e-2, 1e-4):
-        record = run(bearing, OrbitRequest(revolutions=0.5, tolerance=tolerance, longest=10.0))
+        record = follow(bearing, OrbitRequest(revolutions=0.5, tolerance=tolerance, longest=10.0))
         ends.append(abs(np.asarray(record.fields["x"])[-1] - np.asarray(best.fields["x"])[-1]))
         steps.append(int(record.scalars["steps"]))
     assert ends[1] < 0.2 * ends[0]
@@ -251,7 +254,7 @@ def test_steps_adapt_to_the_tolerance() -> None:
 @pytest.mark.slow
 def test_touching_rubbing_and_lifting_off_without_a_failed_step() -> None:
     """A large unbalance throws the journal onto the petals and off again."""
-    record = run(petals(rotor={"mass": 3.0, "unbalance": 30e-6}), OrbitRequest(revolutions=6.0))
+    record = follow(petals(rotor={"mass": 3.0, "unbalance": 30e-6}), OrbitRequest(revolutions=6.0))
     share = np.asarray(record.fields["contact_fraction"])
     touching = share > 0.01
     assert np.any(touching)
@@ -264,7 +267,7 @@ def test_touching_rubbing_and_lifting_off_without_a_failed_step() -> None:
 def test_an_unstable_orbit_grows_to_the_wall_and_stays_within() -> None:
     """A heavy rotor whirls at half speed until the bore stops it."""
     bearing = plain(rotor={"mass": 20.0}, **{"operation.load": (0.0, -1.0)})
-    record = run(bearing, OrbitRequest(revolutions=15.0))
+    record = follow(bearing, OrbitRequest(revolutions=15.0))
     radius = np.hypot(np.asarray(record.fields["x"]), np.asarray(record.fields["y"]))
     room = bearing.bearing.clearance - bearing.surface.contact_film_thickness
     corner = room / math.cos(math.pi / bearing.cells_per_pitch)  # contact is at nodes: the room is a polygon
@@ -277,7 +280,7 @@ def test_speed_may_rise_from_rest() -> None:
     """A run-up in time: the shaft turns as the ramp says, the film lifts the journal on the way."""
     bearing = petals(rotor={"mass": 0.5})
     course = OrbitRequest(speeds=((0.0, 0.0), (2e-3, 8000.0)), initial=(0.0, 0.0))
-    record = run(bearing, course)
+    record = follow(bearing, course)
     turned = np.asarray(record.fields["shaft_angle"])[-1]
     assert turned == pytest.approx(0.5 * 2e-3 * 8000.0, rel=1e-9)
     assert np.asarray(record.fields["shaft_speed"])[-1] == pytest.approx(8000.0)
@@ -288,6 +291,6 @@ def test_a_released_rotor_on_petals_ends_where_its_load_balances() -> None:
     """Petals hardly damp: steps too long to follow the swing, which an L-stable scheme takes out, lead there."""
     loaded, (x, y) = under(petals(), 1e-3, 20.0)
     course = OrbitRequest(revolutions=40.0, initial=(x + 2e-6, y + 5e-6), tolerance=1e3, longest=3.0)
-    record = run(loaded, course)
+    record = follow(loaded, course)
     end = np.asarray(record.fields["x"])[-1], np.asarray(record.fields["y"])[-1]
     assert math.hypot(end[0] - x, end[1] - y) <= 1e-9

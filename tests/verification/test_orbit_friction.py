@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from petalfoil.analysis.orbit import Orbit, OrbitRequest, run
+from petalfoil.analysis.motion import Orbit, follow
+from petalfoil.analysis.release import OrbitRequest
 from petalfoil.case import Case
 from petalfoil.results.dataset import to_dataset
 from petalfoil.results.record import Record
@@ -20,7 +21,7 @@ def rubbing(mu: float, **changes: object) -> Case:
 
 def bounce(mu: float) -> Record:
     """Let go 20 um above its balance, two thirds of an oscillation long."""
-    return run(rubbing(mu, **{"operation.eccentricity": (0.0, -260e-6)}), OrbitRequest(revolutions=30.0))
+    return follow(rubbing(mu, **{"operation.eccentricity": (0.0, -260e-6)}), OrbitRequest(revolutions=30.0))
 
 
 def swing(record: Record) -> float:
@@ -51,7 +52,7 @@ def test_friction_damps_the_swing() -> None:
 
 
 def test_without_friction_nothing_is_lost() -> None:
-    record = run(rubbing(0.0), OrbitRequest(revolutions=1.0, initial="balance"))
+    record = follow(rubbing(0.0), OrbitRequest(revolutions=1.0, initial="balance"))
     assert not np.any(np.asarray(record.fields["petal_friction_work"]))
 
 
@@ -60,7 +61,7 @@ def test_the_motion_does_not_hang_on_the_width_of_the_stick() -> None:
     """Half the width, a loss that differs by a few per cent at most."""
     losses = []
     for width in (4e-9, 2e-9, 1e-9):
-        record = run(
+        record = follow(
             rubbing(0.2, **{"surface.friction_width": width, "operation.eccentricity": (0.0, -260e-6)}),
             OrbitRequest(revolutions=20.0),
         )
@@ -72,10 +73,10 @@ def test_the_motion_does_not_hang_on_the_width_of_the_stick() -> None:
 def test_a_restart_goes_on_with_the_friction_that_was_there() -> None:
     bearing = rubbing(0.2, **{"operation.eccentricity": (0.0, -260e-6)})
     half, whole = OrbitRequest(revolutions=1.0), OrbitRequest(revolutions=2.0)
-    first = to_dataset(run(bearing, half))
+    first = to_dataset(follow(bearing, half))
     assert np.any(first["last_friction"].to_numpy())
-    second, once = run(bearing, half, first), run(bearing, whole)
-    begin = Orbit(bearing, half, first).start
+    second, once = follow(bearing, half, first), follow(bearing, whole)
+    begin = Orbit.begin(bearing, half, first).start
     assert begin.rubbed is not None
     assert np.array_equal(begin.rubbed.force, first["last_friction"].to_numpy())
     for name in ("x", "y"):

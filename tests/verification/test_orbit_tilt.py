@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from petalfoil.analysis.orbit import Orbit, OrbitRequest, run
+from petalfoil.analysis.motion import Orbit, follow
+from petalfoil.analysis.release import OrbitRequest
 from petalfoil.case import Case
 from petalfoil.errors import DefinitionError
 from petalfoil.physics.forces import node_area
@@ -39,8 +40,8 @@ def at(record: Record, name: str, time: Array) -> Array:
 
 def test_parallel_motion_is_that_of_one_bearing() -> None:
     """Twice the mass in two bearings moves as one mass in one, and does not tilt."""
-    one = run(plain({"mass": 0.2, "unbalance": 1e-6}, **OFF, **{"model.symmetry": False}), COURSE)
-    two = run(
+    one = follow(plain({"mass": 0.2, "unbalance": 1e-6}, **OFF, **{"model.symmetry": False}), COURSE)
+    two = follow(
         plain({"mass": 0.4, "unbalance": 1e-6, "span": 0.5, "transverse_inertia": 1e-3, "polar_inertia": 1e-4}, **OFF),
         COURSE,
     )
@@ -61,8 +62,8 @@ def test_conical_motion_is_that_of_one_bearing_too() -> None:
     )
     conical = conical.replace(**{"operation.load": (0.0, 0.0)})
     single = plain({"mass": mass}, **{"operation.load": (0.0, 0.0), "model.symmetry": False}, **OFF)
-    one = run(single, COURSE)
-    two = run(conical, OrbitRequest(**{**COURSE.__dict__, "slope": (0.0, -5e-6 / lever)}))
+    one = follow(single, COURSE)
+    two = follow(conical, OrbitRequest(**{**COURSE.__dict__, "slope": (0.0, -5e-6 / lever)}))
     time = np.asarray(one.coords["time"])
     for name, slope in (("x", "slope_x"), ("y", "slope_y")):
         assert np.max(np.abs(lever * at(two, slope, time) - at(one, name, time))) < 2e-3 * 25e-6
@@ -74,7 +75,7 @@ def test_nutation_of_a_rotor_that_hardly_feels_its_film() -> None:
     inertia, polar, skew = 1e4, 0.3e4, 1e-8
     rotor = {"mass": 1e6, "span": 0.5, "transverse_inertia": inertia, "polar_inertia": polar, "skew": skew}
     bearing = plain(rotor, **{"operation.load": (0.0, 0.0), "operation.eccentricity": (0.0, 0.0)})
-    record = run(bearing, OrbitRequest(revolutions=6.0, tolerance=1e-7, longest=0.02))
+    record = follow(bearing, OrbitRequest(revolutions=6.0, tolerance=1e-7, longest=0.02))
     turned = np.asarray(record.fields["shaft_angle"])
     slope = path(record, "slope_x", "slope_y") @ np.array([1.0, 1j])
     ratio = polar / inertia
@@ -126,7 +127,7 @@ def test_petal_bearings_carry_a_tilting_rotor_through_contact() -> None:
         "skew": 1e-4,
     }
     bearing = case("paper_n8", **{"model.cells_per_pitch": 16}).replace(rotor=rotor)
-    record = run(bearing, OrbitRequest(revolutions=3.0, initial="balance"))
+    record = follow(bearing, OrbitRequest(revolutions=3.0, initial="balance"))
     assert record.scalars["failed_steps"] == 0
     assert np.max(np.abs(path(record, "slope_x", "slope_y"))) > 1e-6
     assert float(record.scalars["energy_balance_error"]) < 5e-3
@@ -142,4 +143,4 @@ def test_what_cannot_be_is_refused() -> None:
         with pytest.raises(DefinitionError, match=reason):
             plain(rotor)
     assert math.isclose(plain({"mass": 2.0, "span": 0.5, "transverse_inertia": 1.0}).rotor.mass_on_bearing, 1.0)  # type: ignore[union-attr]
-    assert Orbit(plain({"mass": 1.0}, **OFF), COURSE).start.e.shape == (2,)
+    assert Orbit.begin(plain({"mass": 1.0}, **OFF), COURSE).start.e.shape == (2,)

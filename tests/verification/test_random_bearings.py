@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from petalfoil.analysis import equilibrium
+from petalfoil.analysis.solve import solve
 from petalfoil.case import Case, Edges, Mount
 from petalfoil.errors import ConvergenceError
 from petalfoil.mesh.axial import axis_2d
@@ -98,7 +98,7 @@ def run_random(count: int, seed: int) -> tuple[list[tuple[Case, Record]], list[t
     for _ in range(count):
         drawn = random_case(rng)
         try:
-            solved.append((drawn, equilibrium.run(drawn)))
+            solved.append((drawn, solve.record(drawn)))
         except ConvergenceError as error:
             failed.append((drawn, error))
     return solved, failed
@@ -134,5 +134,5 @@ def test_continuous_edges_and_a_coating() -> None:
     changes = {"model.kind": "3d", "model.edges": Edges.CONTINUOUS, "petals.coating": 5e-6}
     for _ in range(4):
         drawn = random_case(rng, **changes, **{"model.cells_per_pitch": 16, "model.axial_cells": 6})
-        record = equilibrium.run(drawn)
+        record = solve.record(drawn)
         assert record.scalars["residual"] <= 1e-8  # type: ignore[operator]

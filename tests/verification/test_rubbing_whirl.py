@@ -10,8 +10,11 @@ import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from petalfoil.analysis import coefficients, stability
-from petalfoil.analysis.coefficients import elastic, impedance, operating_point, sliding_at
+from petalfoil.analysis import threshold
+from petalfoil.analysis.coefficients import coefficients
+from petalfoil.analysis.impedance import elastic, impedance, sliding_at
+from petalfoil.analysis.operating_point import operating_point
+from petalfoil.analysis.stability import stability
 from petalfoil.case import Case
 from petalfoil.dynamics.harmonic_balance import Cycle
 from petalfoil.equilibrium.friction_path import slide
@@ -19,7 +22,7 @@ from petalfoil.equilibrium.linear_response import Motion
 from petalfoil.equilibrium.loaded import journal_force
 from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.errors import UsageError
+from petalfoil.errors import UnitError, UsageError
 from petalfoil.results.record import Record
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.friction import FrictionState, friction_of, held_together
@@ -40,12 +43,12 @@ def bearing(friction: float = 0.3, width: float = 1e-9, speed: float = 8000.0) -
 @cache
 def answer_of(speed: float = 8000.0) -> Solution:
     """The equilibrium under the load; friction has no force there."""
-    answer, _ = operating_point(bearing(speed=speed), LOAD, RunLog())
+    answer = operating_point(bearing(speed=speed), LOAD, RunLog()).answer
     return answer
 
 
 def run(rubs: Case, **asked: float) -> Record:
-    return coefficients.run(rubs, [2000.0, 8000.0], load=LOAD, **asked)
+    return coefficients.record(rubs, [2000.0, 8000.0], load=LOAD, **asked)
 
 
 def impedances(record: Record) -> Complex:
@@ -94,11 +97,11 @@ def differences(rubs: Case, answer: Solution, step: float) -> Array:
 
 def test_natural_modes_are_those_of_stuck_petals(monkeypatch: pytest.MonkeyPatch) -> None:
     """They solve (E7) with sticking contacts in the tangent, and are stiffer."""
-    monkeypatch.setattr(stability, "RANGE", 1.0)  # no search for a threshold speed
+    monkeypatch.setattr(threshold, "RANGE", 1.0)  # no search for a threshold speed
     mass, bearings = 0.05, [bearing(mu).replace(**{"model.cells_per_pitch": 12}) for mu in (0.3, 0.0)]
-    stuck, free = (stability.run(one, load=LOAD, mass=mass).fields for one in bearings)
+    stuck, free = (stability.record(one, load=LOAD, mass=mass).fields for one in bearings)
     assert np.all(stuck["natural_frequency"][-1] > 1.3 * free["natural_frequency"])
-    answer, _ = operating_point(bearings[0], LOAD, RunLog())
+    answer = operating_point(bearings[0], LOAD, RunLog()).answer
     scales = answer.problem.layout.scales
     s = (stuck["mode_growth_rate"] + 1j * stuck["natural_frequency"]) / 8000.0
     for value in s:
@@ -202,7 +205,7 @@ def test_friction_damps_both_ways_and_most_where_it_neither_sticks_nor_is_small(
 
 def test_a_frequency_costs_one_factorisation() -> None:
     counts = [
-        int(coefficients.run(bearing(), np.linspace(1e3, 9e3, n).tolist(), load=LOAD, amplitude=MICRON).scalars[
+        int(coefficients.record(bearing(), np.linspace(1e3, 9e3, n).tolist(), load=LOAD, amplitude=MICRON).scalars[
             "probe_factorizations"
         ])
         for n in (1, 5)
@@ -219,12 +222,15 @@ def test_where_little_gives_way_newton_still_arrives() -> None:
 
 
 def test_what_cannot_be_asked() -> None:
-    for amplitude in (0.0, -MICRON, float("nan"), float("inf")):
-        with pytest.raises(UsageError, match="amplitude must be positive"):
+    for amplitude in (0.0, -MICRON):
+        with pytest.raises(UsageError, match=r"amplitude: .* is outside its range; allowed: greater than 0 m"):
+            run(bearing(), amplitude=amplitude)
+    for amplitude in (float("nan"), float("inf")):
+        with pytest.raises(UnitError, match=r"amplitude: .* is not finite"):
             run(bearing(), amplitude=amplitude)
     with pytest.raises(UsageError, match="petal_friction is 0"):
         run(bearing(0.0), amplitude=MICRON)
     with pytest.raises(UsageError, match="petals that rub"):
-        coefficients.run(case("plain_journal", **{"surface.petal_friction": 0.3}), [1.0], amplitude=MICRON)
+        coefficients.record(case("plain_journal", **{"surface.petal_friction": 0.3}), [1.0], amplitude=MICRON)
     with pytest.raises(UsageError, match="above zero"):
-        coefficients.iterate(bearing(), [8000.0], [0.0, 100.0], amplitude=MICRON)
+        coefficients.records(bearing(), [0.0, 100.0], speeds=[8000.0], amplitude=MICRON)

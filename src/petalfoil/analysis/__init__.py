@@ -1,23 +1,23 @@
-"""One question a file: a case in, records out.
+"""Questions about a case. An analysis stands in the file of its name, which declares arguments, results and layout.
 
 ====================  ====================================================================
-`equilibrium.py`      one position of the journal (`solve`)
-`load_curve.py`       the load characteristic along a displacement (`curve`)
+`solve.py`            one position of the journal
+`curve.py`            the load characteristic along a displacement
 `static.py`           the package at rest: preload, static characteristic, starting torque
-`balance.py`          where the journal sits under a load (`balance`)
-`speeds.py`           that balance followed over speed
-`liftoff.py`          speeds of lift-off and touch-down (`liftoff`)
-`runup.py`            from rest to speed under a load, and back (`runup`)
-`coefficients.py`     stiffness and damping over whirl frequency (`coefficients`)
-`whirl.py`            the smallest rotor that whirls at an operating point
-`stability.py`        that over speed and load, and the threshold speed (`stability`)
-`grid_study.py`       the same answer on finer and finer grids (`converge`, error bars)
-`richardson.py`       values on a sequence of grids -> limit, order, error bar
+`balance.py`          the position of the journal under a load
+`liftoff.py`          speeds of lift-off and touchdown
+`runup.py`            from rest to speed under a load, and back
+`coefficients.py`     stiffness and damping over whirl frequency
+`stability.py`        critical mass, threshold speed, damped natural frequencies
+`orbit.py`            a rigid rotor through time
+`converge.py`         one position on finer and finer grids
 `check.py`            what follows from a case without a run
-`classic_method.py`   the paper's own method behind `solve`, `curve`, `static`
-`figures.py`          an answer -> its figures
-`fields.py`           an answer -> its fields on the mesh
-`checks.py`           an answer -> its balances
-`session.py`          one BLAS thread, progress, wall time
 ====================  ====================================================================
+
+How they are declared: `declaration.py`, `arguments.py`, `registry.py`, `runs.py`. What they share: `operating_point.py`
+(the equilibrium they are about), `speeds.py` and `crossings.py` (a load followed over speed), `impedance.py` and
+`threshold.py` (small motions), `motion.py` with `release.py`, `restart.py`, `trace.py` (large ones), `grid_study.py`
+with `richardson.py`, `displacements.py` and `hysteresis.py` (the journal displaced), `classic_method.py` (the paper's
+method). From a solution to a record: `evaluation.py`, `balances.py`, `extremes.py`, `fields.py`, `records.py`;
+`session.py`: threads, clock, progress.
 """

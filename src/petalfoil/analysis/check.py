@@ -1,64 +1,75 @@
-"""What follows from a case without a run: geometry, stiffness, room, and the assembled cross-section."""
+"""`check`: what follows from a case without a run: geometry, stiffness, clearance, and the assembled cross-section."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
+from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.fields import coordinates, wall_state
-from petalfoil.analysis.figures import given
-from petalfoil.analysis.session import one_thread
+from petalfoil.analysis.records import asked_position, geometry, record_of
 from petalfoil.case import Case, ModelKind
 from petalfoil.equilibrium.ascent import rest
 from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.errors import ConvergenceError
+from petalfoil.results.layout import Point
 from petalfoil.results.record import Record
 from petalfoil.system.build import build_problem
 from petalfoil.system.scales import Scales
 from petalfoil.walls import Capability, wall_kind
 
-Named = dict[str, float | int | bool | str]
+
+@dataclass(frozen=True, kw_only=True)
+class BearingNumbers:
+    """Clearances, the bearing number on the clearance, and what decides whether slip matters."""
+
+    radial_clearance: float
+    pack_clearance: float
+    compressibility_number: float
+    viscosity: float
+    mean_free_path: float
+    knudsen_number: float
 
 
-def run(case: Case) -> Record:
-    """Derive the figures of `case` and assemble its package at rest.
+@analysis(Point())
+def check(case: Case) -> Record:
+    """Validate a case: derived results such as overlap and clearance, cross-section.
+
+    Nothing is run beyond the package at zero speed that the cross-section shows.
+
+    Example: petalfoil check case.toml --plot section.svg
 
     Raises
     ------
     ConvergenceError
         The package did not settle.
     """
-    kind = wall_kind(case)
-    scalars: Named = {**given(case), **bearing_figures(case), **kind.check_scalars(case)}
+    kind, work = wall_kind(case), RunLog()
+    derived = (*geometry(case), asked_position(case), bearing_numbers(case), kind.check_scalars(case))
     if not kind.can(Capability.PACK):
-        return Record(analysis="check", scalars=scalars, case_toml=case.to_toml(), title=case.title)
-    flat = case.replace(**{"model.kind": ModelKind.TWO_D, "operation.speed": 0.0})
-    with one_thread():
-        work = RunLog()
-        answer = rest(build_problem(flat), work)
+        return record_of("check", case, *derived, work=work)
+    slow = case.replace(**{"model.kind": ModelKind.TWO_D, "operation.speed": 0.0})
+    answer = rest(build_problem(slow), work)
     if answer is None:
         raise ConvergenceError("the package did not settle at rest", history=work.history, advice="check its geometry")
-    return Record(
-        analysis="check",
-        scalars=scalars,
-        fields=dict(kind.cross_section(flat, wall_state(answer).deflection)),
-        coords=coordinates(flat, answer),
-        case_toml=case.to_toml(),
-        title=case.title,
-    )
+    section = kind.cross_section(slow, wall_state(answer).deflection)
+    return record_of("check", case, *derived, work=RunLog(), fields=dict(section), coords=coordinates(slow, answer))
 
 
-def bearing_figures(case: Case) -> Named:
-    """Room, bearing number on the clearance, and what decides whether slip matters.
+def bearing_numbers(case: Case) -> BearingNumbers:
+    """Numbers of any bearing.
 
-    Without a run the smallest film is the room of a plain bearing, and at the least the film floor of a package.
+    Without a run the minimum film thickness is the radial clearance of a plain bearing, and at the least the contact
+    film thickness of a package.
     """
     scales = Scales(case.bearing.clearance, case.gas.ambient_pressure, 1.0)
     number = scales.bearing_number(case.gas.viscosity, case.operation.speed, case.bearing.journal_radius)
     on_journal = wall_kind(case).can(Capability.PACK)
     thinnest = case.surface.contact_film_thickness if on_journal else case.room
-    return {
-        "radial_clearance": case.room,
-        "pack_clearance": case.pack_clearance,
-        "compressibility_number": number,
-        "viscosity": case.gas.viscosity,
-        "mean_free_path": case.gas.mean_free_path,
-        "knudsen_number": case.gas.mean_free_path / thinnest,
-    }
+    return BearingNumbers(
+        radial_clearance=case.room,
+        pack_clearance=case.pack_clearance,
+        compressibility_number=number,
+        viscosity=case.gas.viscosity,
+        mean_free_path=case.gas.mean_free_path,
+        knudsen_number=case.gas.mean_free_path / thinnest,
+    )

@@ -1,243 +1,232 @@
-"""Stiffness and damping of the bearing over whirl frequency and speed at operating points (model, question 6)."""
+"""`coefficients`: stiffness and damping over whirl frequency and speed at operating points (model, question 6)."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from petalfoil.analysis.balance import given_load, loaded, settled
+from petalfoil.analysis.arguments import Load, Quantity, Speed, Speeds, Values
 from petalfoil.analysis.classic_method import newton_only
-from petalfoil.analysis.equilibrium import Named, chosen, positioned
-from petalfoil.analysis.figures import effort, failed_record, forces, given
-from petalfoil.analysis.session import Clock, Progress, one_thread, part, telling_work
+from petalfoil.analysis.declaration import Export, analysis
+from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.analysis.impedance import Array, cycle_impedance, elastic, impedance, sliding_at
+from petalfoil.analysis.operating_point import OperatingPoint, Vector, at, operating_point
+from petalfoil.analysis.records import effort, failed_record, geometry, position, record_of
+from petalfoil.analysis.runs import Points
+from petalfoil.analysis.session import Clock, Progress, part, telling_work
 from petalfoil.case import Case
-from petalfoil.dynamics.harmonic_balance import Cycle, Sliding
-from petalfoil.equilibrium.linear_response import Motion
 from petalfoil.equilibrium.run_log import RunLog
-from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError, UsageError
+from petalfoil.results.export import LEAST_POINTS
+from petalfoil.results.layout import ArrayTable, Cell, Point, Series, at_speed
+from petalfoil.results.parts import AppliedLoad, Outcome
 from petalfoil.results.record import Record
-from petalfoil.system.friction import friction_of
+from petalfoil.results.summary import cell
 from petalfoil.walls import Capability, required
 
-Array = NDArray[np.float64]
-Load = tuple[float, float]
-Wanted = tuple[Array, float | None]
-"""Whirl frequencies [rad/s], and the amplitude at which petals rub [m]."""
+Frequencies = Annotated[
+    Sequence[float] | None,
+    Values(
+        unit="rad/s",
+        option="frequency",
+        metavar="LIST",
+        help='Whirl frequencies: "4000 rad/s, 8000 rad/s", or "0 rad/s : 9000 rad/s : 10"; by default the speed.',
+        at_least=0.0,
+    ),
+]
+Amplitude = Annotated[
+    float | None,
+    Quantity(
+        unit="m",
+        help='Amplitude of the whirl at which petals with friction rub: "1 um"; by default they stick.',
+        above=0.0,
+    ),
+]
+MATRICES = {"stiffness": ("K", "N/m"), "damping": ("C", "N s/m")}
 
 
-def run(
+@dataclass(frozen=True)
+class Asked:
+    """Whirl frequencies [rad/s], and the amplitude at which petals rub [m]."""
+
+    frequencies: Array
+    amplitude: float | None
+
+
+@dataclass(frozen=True)
+class Amplitudes:
+    """The amplitude of the whirl, if one was given."""
+
+    whirl_amplitude: float | None
+
+
+@dataclass(frozen=True)
+class Contact:
+    """What solid contact carries."""
+
+    contact_fraction: float
+
+
+def entry(name: str, row: int, column: int) -> Callable[[Record, int], Cell]:
+    """One entry of a matrix at each frequency."""
+    return lambda record, index: float(record.fields[name][index][row][column])
+
+
+TABLE = ArrayTable(
+    dim="whirl_frequency",
+    columns={
+        "speed\nrpm": lambda record, _: cell("speed", record.scalars["speed"]).value,
+        "whirl\nrad/s": lambda record, index: float(record.coords["whirl_frequency"][index]),
+        "ratio": lambda record, index: float(record.coords["whirl_frequency"][index]) / float(record.scalars["speed"]),
+        **{
+            f"{letter}_{'xy'[row]}{'xy'[column]}\n{unit}": entry(name, row, column)
+            for name, (letter, unit) in MATRICES.items()
+            for row in (0, 1)
+            for column in (0, 1)
+        },
+    },
+)
+LISTS = ("whirl_frequency", *MATRICES)
+
+
+def check_ross(values: Mapping[str, Any], known_as: Mapping[str, str]) -> None:
+    """Refuse speeds and frequencies that make no table for ROSS."""
+    speeds = values.get("speeds") or []
+    for name, axis in (("speeds", speeds), ("frequencies", values.get("frequencies") or speeds)):
+        if len(set(axis)) < max(len(axis), LEAST_POINTS):
+            raise UsageError(
+                f"a table for ROSS needs {LEAST_POINTS} different values of {known_as[name]} or more, "
+                f"got {len(set(axis))}"
+            )
+
+
+EXPORTS = (
+    Export(
+        option="csv",
+        metavar="FILE.csv",
+        help="Write the coefficients as a table, units in its header.",
+        suffixes=(".csv",),
+        writer="petalfoil.results.export:write_csv",
+    ),
+    Export(
+        option="ross",
+        metavar="FILE.toml",
+        help="Write them for ROSS 3: .toml or .json; needs 5 speeds or more.",
+        suffixes=(".toml", ".json"),
+        writer="petalfoil.results.export:write_ross",
+        check=check_ross,
+    ),
+)
+
+
+@analysis(
+    Point(lists=LISTS, table=TABLE),
+    Series(lists=LISTS, table=TABLE, at=at_speed),
+    exports=EXPORTS,
+    excludes={"speed": ("speeds",)},
+)
+def coefficients(  # noqa: PLR0913 - the options of the verb
     case: Case,
-    frequencies: Sequence[float] | None = None,
+    frequencies: Frequencies = None,
     *,
-    load: Load | None = None,
-    speed: float | None = None,
-    amplitude: float | None = None,
+    load: Load = None,
+    speed: Speed = None,
+    speeds: Speeds = None,
+    amplitude: Amplitude = None,
     progress: Progress | None = None,
-) -> Record:
-    """Coefficients at whirl `frequencies` [rad/s] (by default the speed itself), at the case's position or load.
+) -> Record | Points:
+    """Find stiffness and damping at whirl frequencies, at one speed or several.
 
-    `dF = -(K + i Omega C) de` for a displacement `de exp(i Omega t)` (E5); contacts that carry load stay closed. Petals
-    with friction stick, or rub in cycles of an `amplitude` of the journal [m] (E11).
+    At the case's eccentricity, or under a load where one is given. Force on
+    the journal: dF = -(K + i W C) de for a whirl de exp(i W t). Petals with
+    friction stick, or rub in cycles of the --amplitude.
+
+    Example: petalfoil coefficients case.toml --frequency "4000 rad/s, 8000 rad/s"
 
     Raises
     ------
     UsageError
-        A shaft at rest has no film that could respond; a frequency is negative, or zero with an amplitude; an amplitude
-        is not positive, or nothing rubs.
+        A shaft at zero speed has no film that could respond; a frequency is zero with an amplitude; nothing rubs.
     ConvergenceError
-        The operating point was not found, or it is pressed solid.
-    """
-    case = positioned(case, speed, None)
-    newton_only(case)
-    wanted = whirl([case.operation.speed], frequencies)
-    check_amplitude(case, wanted, amplitude)
-    return point(case, (wanted, amplitude), load, telling_work(progress, "coefficients"))
-
-
-def iterate(
-    case: Case,
-    speeds: Sequence[float],
-    frequencies: Sequence[float] | None = None,
-    *,
-    load: Load | None = None,
-    amplitude: float | None = None,
-    progress: Progress | None = None,
-) -> Iterator[Record]:
-    """Yield the coefficients at each of the `speeds` [rad/s], all at the same `frequencies` (by default the speeds).
-
-    Raises
-    ------
-    UsageError
-        A speed is not positive, a frequency or the amplitude is not as `run` wants them.
+        The operating point was not found, or the pack is bottomed out.
     """
     newton_only(case)
-    wanted = whirl(speeds, frequencies)
-    check_amplitude(case, wanted, amplitude)
-    return _records([positioned(case, speed, None) for speed in speeds], (wanted, amplitude), load, progress)
-
-
-def _records(cases: list[Case], wanted: Wanted, load: Load | None, progress: Progress | None) -> Iterator[Record]:
-    for number, case in enumerate(cases):
-        work = telling_work(part(progress, number, len(cases)), "coefficients")
-        try:
-            record = point(case, wanted, load, work)
-        except ConvergenceError as failure:
-            asked = load if load is not None else case.operation.load
-            extra = {**({} if asked is None else given_load(asked)), **given_amplitude(wanted[1])}
-            record = failed_record("coefficients", case, f"not converged: {failure}", work, extra)
-        yield record
-
-
-def whirl(speeds: Sequence[float], frequencies: Sequence[float] | None) -> Array:
-    """The whirl frequencies of a run at `speeds` [rad/s], (n,), checked.
-
-    Raises
-    ------
-    UsageError
-        A speed is not positive, or a frequency is negative.
-    """
-    if not speeds or any(not speed > 0.0 for speed in speeds):
+    turn = list(speeds) if speeds is not None else [at(case, speed).operation.speed]
+    if not all(omega > 0.0 for omega in turn):
         raise UsageError("coefficients need a turning shaft: give speeds above zero")
-    wanted = np.array(list(speeds) if frequencies is None else list(frequencies), dtype=float)
-    if np.any(wanted < 0.0) or not len(wanted):
-        raise UsageError("whirl frequencies must not be negative")
-    return wanted
+    asked = Asked(np.array(turn if frequencies is None else frequencies, dtype=float), amplitude)
+    check_amplitude(case, asked)
+    cases = [at(case, omega) for omega in turn]
+    if speeds is None:
+        return point(cases[0], asked, load, telling_work(progress, "coefficients"))
+    return Points(_points(cases, asked, load, progress), len(cases))
 
 
-def check_amplitude(case: Case, frequencies: Array, amplitude: float | None) -> None:
-    """Refuse an amplitude that is not one, or that changes nothing.
+def check_amplitude(case: Case, asked: Asked) -> None:
+    """Refuse an amplitude that changes nothing, or that has no meaning.
 
     Raises
     ------
     UsageError
-        It is not positive, no petals rub, or a frequency is zero.
+        No petals rub, or a frequency is zero.
     """
-    if amplitude is None:
+    if asked.amplitude is None:
         return
-    if not 0.0 < amplitude < math.inf:
-        raise UsageError("the amplitude must be positive; without one, petals with friction stick")
     required(case, Capability.RUBBING, "an amplitude")
     if not case.surface.petal_friction > 0.0:
         raise UsageError("an amplitude says how far petals rub, and here none do: surface.petal_friction is 0")
-    if np.any(frequencies == 0.0):
+    if np.any(asked.frequencies == 0.0):
         raise UsageError(
             "with an amplitude, whirl frequencies must be above zero: what friction takes in a cycle does not vanish "
             "with the frequency, so its equivalent damping has no bound"
         )
 
 
-def given_amplitude(amplitude: float | None) -> Named:
-    """The amplitude asked for, if one was."""
-    return {} if amplitude is None else {"whirl_amplitude": amplitude}
+def _points(cases: list[Case], asked: Asked, load: Vector | None, progress: Progress | None) -> Iterator[Record]:
+    for number, case in enumerate(cases):
+        work = telling_work(part(progress, number, len(cases)), "coefficients")
+        try:
+            yield point(case, asked, load, work)
+        except ConvergenceError as failure:
+            given = load if load is not None else case.operation.load
+            applied = () if given is None else (AppliedLoad.of(given),)
+            yield failed_record("coefficients", case, failure, *applied, Amplitudes(asked.amplitude), work=work)
 
 
-def point(case: Case, wanted: Wanted, load: Load | None, work: RunLog) -> Record:
-    """The record of one operating point; `wanted` are the whirl frequencies [rad/s] and the amplitude [m].
+def point(case: Case, asked: Asked, load: Vector | None, work: RunLog) -> Record:
+    """The record of one operating point.
 
     Raises
     ------
     ConvergenceError
-        The operating point was not found, or it is pressed solid.
+        The operating point was not found, or the pack is bottomed out.
     """
-    clock, (frequencies, amplitude), speed = Clock(), wanted, case.operation.speed
-    with one_thread():
-        answer, known = operating_point(case, load, work)
-        motion, sliding = elastic(case, answer, work), sliding_at(case, answer)
-        if amplitude is None or sliding is None:
-            pairs = [impedance(motion, frequency, speed, work) for frequency in frequencies]
-        else:
-            free, rubs = replace(motion, held=None), (sliding, amplitude)
-            pairs = [cycle_impedance(free, frequency, speed, rubs, work) for frequency in frequencies]
-    asked: Named = {**given(case), **known, **at_position(case, answer), **given_amplitude(amplitude)}
-    return Record(
-        analysis="coefficients",
-        scalars={**asked, **effort(work), "wall_time": clock.seconds},
+    clock, speed = Clock(), case.operation.speed
+    found = operating_point(case, load, work)
+    motion, sliding = elastic(case, found.answer, work), sliding_at(case, found.answer)
+    if asked.amplitude is None or sliding is None:
+        pairs = [impedance(motion, frequency, speed, work) for frequency in asked.frequencies]
+    else:
+        free, rubs = replace(motion, held=None), (sliding, asked.amplitude)
+        pairs = [cycle_impedance(free, frequency, speed, rubs, work) for frequency in asked.frequencies]
+    cost = effort(work, clock.seconds)
+    return record_of(
+        "coefficients",
+        case,
+        *state_parts(case, found),
+        Amplitudes(asked.amplitude),
+        Outcome(residual=found.answer.residual),
+        cost,
+        work=work,
         fields={"stiffness": np.array([K for K, _ in pairs]), "damping": np.array([C for _, C in pairs])},
-        coords={"whirl_frequency": frequencies, "row": np.arange(2), "column": np.arange(2)},
-        case_toml=case.to_toml(),
-        title=case.title,
-        history=list(work.history),
+        coords={"whirl_frequency": asked.frequencies, "row": np.arange(2), "column": np.arange(2)},
     )
 
 
-def operating_point(case: Case, load: Load | None, work: RunLog) -> tuple[Solution, Named]:
-    """The balance under a load where one is given, else the case's eccentricity."""
-    if load is None and case.operation.load is None:
-        return chosen(case, work)
-    wanted = loaded(case, load)
-    found, known = settled(positioned(case, None, (0.0, 0.0)), wanted, work)
-    return found.answer, {**known, **given_load(wanted), "force_residual": found.force_residual}
-
-
-def at_position(case: Case, answer: Solution) -> Named:
-    """Where the journal is and what is to be known of the state there."""
-    e = answer.problem.displacement * answer.problem.layout.scales.length
-    return {
-        "eccentricity_x": float(e[0]),
-        "eccentricity_y": float(e[1]),
-        "contact_fraction": forces(case, answer)["contact_fraction"],
-        "residual": answer.residual,
-        "converged": True,
-        "status": "converged",
-    }
-
-
-def sliding_at(case: Case, answer: Solution) -> Sliding | None:
-    """Contacts that slide under load, if petals have friction."""
-    friction = friction_of(case, answer.problem.layout)
-    return None if friction is None else Sliding.at(friction, answer)
-
-
-def elastic(case: Case, answer: Solution, work: RunLog) -> Motion:
-    """Small motions about `answer`, if the bearing gives way there; petals with friction stick.
-
-    Raises
-    ------
-    ConvergenceError
-        It is pressed solid: the journal cannot move without bending what has no room to bend.
-    """
-    sliding = sliding_at(case, answer)
-    motion = Motion.about(answer, None if sliding is None else sliding.stuck(len(answer.x)))
-    if not motion.ties.determinate:
-        raise ConvergenceError(
-            "no coefficients: the journal is pressed on what is pressed solid, its stiffness has no bound",
-            history=work.history,
-            advice="lower the load, or ask `balance` which share of it the contacts carry",
-        )
-    return motion
-
-
-def impedance(motion: Motion, frequency: float, speed: float, work: RunLog) -> tuple[Array, Array]:
-    """`K` [N/m] and `C` [N s/m] at one whirl frequency [rad/s], each (2, 2); one factorisation.
-
-    At a frequency of zero, `C` is the limit of small ones.
-    """
-    scales = motion.problem.layout.scales
-    nu = max(frequency / speed, SLOW)
-    Z = -motion.respond(nu, work.probe_solver).force_gradient() * scales.force / scales.length
-    return Z.real, Z.imag / (nu * speed)
-
-
-SLOW = 1e-6
-"""Whirl ratio that stands for zero: stiffness depends on its square."""
-
-
-def cycle_impedance(
-    motion: Motion, frequency: float, speed: float, rubs: tuple[Sliding, float], work: RunLog
-) -> tuple[Array, Array]:
-    """The same where contacts rub in a whirl of an amplitude [m]; `motion` is without their friction.
-
-    Raises
-    ------
-    ConvergenceError
-        Slips and friction did not agree.
-    """
-    scales, (sliding, amplitude) = motion.problem.layout.scales, rubs
-    cycle = Cycle(sliding, motion.respond(frequency / speed, work.probe_solver), amplitude / scales.length)
-    Z = -cycle.force_gradient(work) * scales.force / scales.length
-    return Z.real, Z.imag / frequency
+def state_parts(case: Case, found: OperatingPoint) -> tuple[object, ...]:
+    """What is told of the equilibrium that small motions are about."""
+    contact = Contact(Evaluation.of(case, found.answer).contact_fraction)
+    return *geometry(case), position(case, found.answer), contact, found.branch, *found.loaded

@@ -1,10 +1,11 @@
-"""Fields of an answer on the whole bearing: arrays and coordinates of a record."""
+"""Fields of a solution on the whole bearing: arrays and coordinates of a record."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.case import Case
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.walls import WallState, wall_kind
@@ -13,18 +14,14 @@ Array = NDArray[np.float64]
 Named = dict[str, Array]
 
 
-def film_fields(answer: Solution) -> Named:
+def film_fields(found: Evaluation) -> Named:
     """Pressure [Pa] and film thickness [m] over the whole length, (strip, node, axial)."""
-    problem = answer.problem
-    scales, axial = problem.layout.scales, problem.layout.wall.film.axial
-    return {
-        "pressure": axial.whole(problem.pressure(answer.x) * scales.pressure),
-        "film_thickness": axial.whole(problem.film(answer.x) * scales.length),
-    }
+    whole = found.answer.problem.layout.wall.film.axial.whole
+    return {"pressure": whole(found.pressure), "film_thickness": whole(found.film_thickness)}
 
 
 def wall_state(answer: Solution) -> WallState:
-    """Deflections [m] and contact pressures [Pa] of an answer."""
+    """Deflections [m] and contact pressures [Pa] of a solution."""
     layout = answer.problem.layout
     deflection = answer.x[: layout.n_wall] * layout.scales.length
     return WallState(deflection, answer.lam * layout.scales.force / layout.wall.contacts.area)
@@ -49,6 +46,6 @@ def coordinates(case: Case, answer: Solution) -> dict[str, NDArray[np.generic]]:
     }
 
 
-def all_fields(case: Case, answer: Solution) -> Named:
-    """All fields of an answer."""
-    return {**film_fields(answer), **wall_fields(case, answer)}
+def all_fields(found: Evaluation) -> Named:
+    """All fields of a solution."""
+    return {**film_fields(found), **wall_fields(found.case, found.answer)}

@@ -1,39 +1,40 @@
-"""The same question on finer and finer grids: how far is an answer from its limit?
+"""The same question on finer and finer grids: how far is a result from its grid-converged value?
 
-Grids are nested: cells double along the pitch and, in a spatial model, along the axis too.
+Grids are nested: cells double along the pitch and, in a 3-D model, along the axis too.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.analysis import equilibrium
-from petalfoil.analysis.equilibrium import positioned
-from petalfoil.analysis.figures import failed_record
+from petalfoil.analysis.records import failed_record
 from petalfoil.analysis.richardson import richardson
 from petalfoil.analysis.session import Progress
 from petalfoil.case import Case, ModelKind
 from petalfoil.equilibrium.run_log import RunLog
-from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.mesh.pitch import COARSEST_FAMILY
+from petalfoil.errors import ConvergenceError
 from petalfoil.results.estimate import Estimate
 from petalfoil.results.record import Record
 from petalfoil.results.schema import SCALARS, DataType, Role
 
 Array = NDArray[np.float64]
 
+Point = Callable[[Case, Progress | None], Record]
+"""Solves a case on its grid."""
+
 RATIO = 2.0
 """Cells of a grid over those of the next coarser one [1]."""
 
 MOST_LEVELS = 10
+"""Grids of a study: the finest then has 512 times the cells of the coarsest along a pitch."""
 
 LEAST_CELLS = {ModelKind.TWO_D: 32, ModelKind.THREE_D: 24}
-"""Cells along a pitch below which the default adds finer grids instead of coarser ones: at 16 the film of the paper's
+"""Cells per pitch below which the default adds finer grids instead of coarser ones: at 16 the film of the paper's
 packages comes down to the floor where it should not, and such a grid only widens the bars."""
 
 LEAST_AXIAL = 4
@@ -45,67 +46,38 @@ RESIDUAL = 1e-8
 ANGLES = {name for name, variable in SCALARS.items() if variable.units == "rad"}
 
 
-def run(
-    case: Case,
-    *,
-    speed: float | None = None,
-    eccentricity: tuple[float, float] | None = None,
-    levels: int = 3,
-    coarsest: int | None = None,
-    progress: Progress | None = None,
-) -> list[Record]:
-    """Solve `case` on nested grids, coarsest first; a grid without an answer is recorded as such.
+def grid_records(
+    cases: Sequence[Case], point: Point, progress: Progress | None = None, known: Record | None = None
+) -> Iterator[Record]:
+    """Yield the record of each case, from `point` or `known`; a grid without a solution is recorded as such."""
+    done = [0.0, *parts(cases)]
+    for number, case in enumerate(cases):
+        if known is not None and known.case_toml == case.to_toml():
+            yield _labelled(known, case)
+        else:
+            part = _part(progress, done[number], done[number + 1], grid_text(case))
+            yield _record(case, point, part)
+
+
+def parts(cases: Sequence[Case]) -> list[float]:
+    """Part of the whole cost that is spent after each grid."""
+    spent = np.cumsum([float(unknowns(case)) for case in cases])
+    return [float(part) for part in spent / spent[-1]]
+
+
+def grids(case: Case, levels: int = 3, coarsest: int | None = None) -> list[Case]:
+    """The case on nested grids, coarsest first.
 
     Parameters
     ----------
     case : Case
         The bearing.
-    speed : float, optional
-        Angular speed instead of the case's [rad/s].
-    eccentricity : pair of float, optional
-        Displacement (x, y) instead of the case's [m].
     levels : int
-        Number of grids, 2 at least.
+        Number of grids.
     coarsest : int, optional
-        Cells along a pitch of the coarsest grid. By default the case's own grid is the finest, as long as coarser
-        ones can be nested in it.
-    progress : callable, optional
-        Called with the share done (0 to 1) and a text.
-
-    Raises
-    ------
-    UsageError
-        These grids cannot be made.
-    PackageError
-        The displaced journal leaves the package no room.
+        Cells per pitch of the coarsest grid. By default the case's own grid is the finest, as long as coarser ones can
+        be nested in it.
     """
-    cases = grids(case, levels, coarsest, speed=speed, eccentricity=eccentricity)
-    return list(iterate(cases, progress))
-
-
-def iterate(cases: Sequence[Case], progress: Progress | None = None, known: Record | None = None) -> Iterator[Record]:
-    """Yield the record of each case; the one of `known` is not solved again."""
-    done = np.cumsum([0.0, *(float(unknowns(case)) for case in cases)])
-    done /= done[-1]
-    for number, case in enumerate(cases):
-        if known is not None and known.case_toml == case.to_toml():
-            yield _labelled(known, case)
-        else:
-            yield _record(case, _part(progress, float(done[number]), float(done[number + 1]), grid_text(case)))
-
-
-def grids(
-    case: Case,
-    levels: int = 3,
-    coarsest: int | None = None,
-    *,
-    speed: float | None = None,
-    eccentricity: tuple[float, float] | None = None,
-) -> list[Case]:
-    """The case on nested grids, coarsest first; arguments and errors as of `run`."""
-    case = positioned(case, speed, eccentricity)
-    if not 2 <= levels <= MOST_LEVELS:
-        raise UsageError(f"levels: a grid study takes 2 to {MOST_LEVELS} grids, got {levels}")
     cells, axial = (case.cells_per_pitch, case.axial_cells) if coarsest is None else _shared(case, coarsest)
     if coarsest is None:
         for _ in range(levels - 1):
@@ -116,7 +88,7 @@ def grids(
 
 
 def grid_of(case: Case) -> tuple[int, int]:
-    """Cells along a pitch, and over the length (0 in a flat model)."""
+    """Cells per pitch, and over the length (0 in a 2-D model)."""
     return case.cells_per_pitch, case.axial_cells if case.model.kind is ModelKind.THREE_D else 0
 
 
@@ -133,7 +105,7 @@ def unknowns(case: Case) -> int:
 
 
 def table(records: Sequence[Record]) -> list[Estimate]:
-    """What the grids tell about every figure that all answers have.
+    """What the grids tell about every result that all solutions have.
 
     The last three grids in unbroken order count; of fewer than three, no order can be observed.
 
@@ -148,23 +120,23 @@ def table(records: Sequence[Record]) -> list[Estimate]:
         advice = "choose other grids with --coarsest, or see why a single one does not converge with `solve`"
         raise ConvergenceError(f"a grid study needs answers on two grids at least ({states})", advice=advice)
     first, good = records[answered.index(True)], [record for record in records if record.converged]
-    names = [name for name in SCALARS if _is_figure(name) and all(_known(name, record) for record in good)]
+    names = [name for name in SCALARS if _is_result(name) and all(_known(name, record) for record in good)]
     scale = resolution(first)
     return [_estimate(name, records, scale.get(SCALARS[name].units, 0.0)) for name in names]
 
 
-def error_bars(own: Record, progress: Progress | None = None) -> dict[str, float]:
-    """Error bars of the figures of an answer, from its own grid and two more that are nested with it.
+def error_bars(own: Record, point: Point, progress: Progress | None = None) -> dict[str, float]:
+    """Error bars of the results of `point`, from its own grid and two more that are nested with it.
 
     Raises
     ------
     ConvergenceError
-        Neither of the other grids has an answer.
+        Neither of the other grids has a solution.
     """
     case = Case.from_toml(own.case_toml)
     case = _on(case, *grid_of(case))
     own = replace(own, case_toml=case.to_toml())
-    estimates = table(list(iterate(grids(case), progress, known=own)))
+    estimates = table(list(grid_records(grids(case), point, progress, known=own)))
     return {estimate.name: _bar(estimate, float(own.scalars[estimate.name])) for estimate in estimates}
 
 
@@ -180,8 +152,6 @@ def resolution(record: Record) -> dict[str, float]:
 
 def _shared(case: Case, coarsest: int) -> tuple[int, int]:
     """Cells of the coarsest grid; those along the axis in the proportion of the case."""
-    if coarsest < COARSEST_FAMILY:
-        raise UsageError(f"coarsest: nested grids begin at {COARSEST_FAMILY} cells along a pitch, got {coarsest}")
     axial = 2 * round(case.axial_cells * coarsest / case.cells_per_pitch / 2)
     return coarsest, max(axial, LEAST_AXIAL)
 
@@ -203,13 +173,13 @@ def _on(case: Case, cells: int, axial: int) -> Case:
 # ---------------------------------------------------------------------------------------------- records
 
 
-def _record(case: Case, progress: Progress) -> Record:
+def _record(case: Case, point: Point, progress: Progress) -> Record:
     try:
-        record = equilibrium.run(case, progress=progress)
+        record = point(case, progress)
     except ConvergenceError as failure:
         work = RunLog()
         work.history.extend(failure.history)
-        record = failed_record("solve", case, f"not converged: {failure}", work)
+        record = failed_record("solve", case, failure, work=work)
     return _labelled(record, case)
 
 
@@ -229,10 +199,10 @@ def _part(progress: Progress | None, start: float, end: float, text: str) -> Pro
     return tell
 
 
-# ---------------------------------------------------------------------------------------------- figures
+# ---------------------------------------------------------------------------------------------- results
 
 
-def _is_figure(name: str) -> bool:
+def _is_result(name: str) -> bool:
     return SCALARS[name].role is Role.ANSWER and SCALARS[name].kind is DataType.FLOAT
 
 

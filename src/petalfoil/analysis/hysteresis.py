@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.analysis.session import Clock, one_thread
+from petalfoil.analysis.session import Clock
 from petalfoil.case import Case
 from petalfoil.equilibrium.friction_path import FrictionResult, slide
 from petalfoil.equilibrium.package_at_rest import at_rest, unloaded
@@ -77,8 +77,7 @@ def follow(way: list[tuple[str, Case]]) -> Iterator[Point]:
     for leg, case in way:
         clock, work = Clock(), RunLog()
         problem = base.at(displacement=np.array(case.operation.eccentricity) / base.layout.scales.length)
-        with one_thread():
-            slid = moved(friction, before, problem, work) if before else assembled(friction, problem, work)
+        slid = moved(friction, before, problem, work) if before else assembled(friction, problem, work)
         if slid is None:
             yield Point(case, leg, None, total * unit, work, clock.seconds)
             continue

@@ -1,69 +1,87 @@
-"""Run-up and coast-down under a load: torque, contact, film and position over speed (the paper's Figures 10 and 11)."""
+"""`runup`: torque, contact, film and position over speed under a load (the paper's Figures 10 and 11)."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
-from petalfoil.analysis.balance import balance_record, given_load, loaded
-from petalfoil.analysis.equilibrium import Named
-from petalfoil.analysis.figures import effort, failed_record
-from petalfoil.analysis.session import Clock, Progress, one_thread, part, telling_work
+from petalfoil.analysis.arguments import Load, Quantity, Whole
+from petalfoil.analysis.balance import balance_record
+from petalfoil.analysis.declaration import analysis
+from petalfoil.analysis.operating_point import applied_load, at
+from petalfoil.analysis.records import effort, failed_record
+from petalfoil.analysis.runs import Points
+from petalfoil.analysis.session import Clock, Progress, part, telling_work
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
-from petalfoil.errors import ConvergenceError, UsageError
+from petalfoil.errors import ConvergenceError
+from petalfoil.results.layout import Series, at_speed
+from petalfoil.results.parts import AppliedLoad, Branch
 from petalfoil.results.record import Record
 from petalfoil.walls import Capability, required
 
-POINTS = 25
-"""Speeds of a run-up, rest included."""
+Top = Annotated[
+    float, Quantity(unit="rad/s", help='Speed to run up to, and back from: "30000 rpm".', option="to", above=0.0)
+]
+Count = Annotated[int, Whole(metavar="COUNT", help="Speeds on the way up, rest included.", at_least=3)]
+
+COLUMNS = {
+    "leg": "leg",
+    "speed": "speed",
+    "eccentricity_x": "e_x",
+    "eccentricity_y": "e_y",
+    "contact_fraction": "contact\nfraction",
+    "min_film_thickness": "min. film",
+    "peak_pressure": "peak\npressure",
+    "friction_torque": "torque",
+}
 
 
-def iterate(
-    case: Case,
-    load: tuple[float, float] | None,
-    top: float,
-    *,
-    points: int = POINTS,
-    progress: Progress | None = None,
-) -> Iterator[tuple[str, Record]]:
-    """Yield ("up", record) from rest to `top` [rad/s], then ("down", record) back, each followed from the one before.
+@dataclass(frozen=True)
+class Leg:
+    """Part of the way: up or down."""
 
-    The load [N] is by default the case's.
+    leg: str
+
+
+@analysis(Series(columns=COLUMNS, legs=("up", "down"), at=at_speed))
+def runup(case: Case, load: Load = None, *, to: Top, points: Count = 25, progress: Progress | None = None) -> Points:
+    """Follow torque, contact, film and position from rest to a speed, and back.
+
+    Each point is followed from the one before. With --out the file is
+    rewritten as points finish; Ctrl-C keeps what is finished.
+
+    Example: petalfoil runup case.toml --load "46.4 N" --to "30000 rpm"
 
     Raises
     ------
     UsageError
-        A wall that has no pack at zero speed, no load, or the top speed or the number of points is out of range.
+        The wall has no pack at zero speed, or there is no load.
     """
     required(case, Capability.PACK, "a run-up")
-    if not top > 0.0:
-        raise UsageError("the top speed of a run-up must be above zero")
-    if points < 3:
-        raise UsageError("a run-up needs at least 3 points")
-    speeds = top * np.linspace(0.0, 1.0, points) ** 2  # close together where contacts give way to the film
+    speeds = to * np.linspace(0.0, 1.0, points) ** 2  # close together where contacts give way to the film
     way = [("up", float(v)) for v in speeds] + [("down", float(v)) for v in speeds[-2::-1]]
-    return _records(case, loaded(case, load), way, progress)
+    return Points(_points(case, applied_load(case, load), way, progress), len(way))
 
 
-def _records(
+def _points(
     case: Case, load: tuple[float, float], way: list[tuple[str, float]], progress: Progress | None
-) -> Iterator[tuple[str, Record]]:
+) -> Iterator[Record]:
     line: SpeedLine | None = None
     for number, (leg, speed) in enumerate(way):
         clock, work = Clock(), telling_work(part(progress, number, len(way)), f"runup {leg}")
-        here = case.replace(**{"operation.speed": speed, "operation.eccentricity": (0.0, 0.0)})
+        here = at(case, speed, (0.0, 0.0))
         line = line or SpeedLine(here, load, work)
         line.work = work
+        asked = (AppliedLoad.of(load), Leg(leg))
         try:
-            with one_thread():
-                found = line.at(speed)
+            found = line.at(speed)
         except ConvergenceError as failure:
             line.known = None
-            lost: Named = {**given_load(load), "leg": leg}
-            yield leg, failed_record("runup", here, f"not converged: {failure}", work, lost)
+            yield failed_record("runup", here, failure, *asked, work=work)
             continue
-        extra: Named = {**given_load(load), "leg": leg, **effort(work), "solution_path": found.answer.way}
-        extra["wall_time"] = clock.seconds
-        yield leg, balance_record("runup", here, found, extra, work)
+        own = (*asked, Branch(solution_path=found.answer.way), effort(work, clock.seconds))
+        yield balance_record("runup", here, found, *own, work=work)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.analysis.figures import forces
+from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.case import Case
 from petalfoil.equilibrium.loaded import Balance
 from petalfoil.equilibrium.run_log import RunLog
@@ -74,6 +74,6 @@ class SpeedLine:
             found = self.at(part * speed)
         return found
 
-    def share(self, speed: float) -> float:
-        """Share of the contacts at `speed`."""
-        return float(forces(self.case, self.at(speed).answer)["contact_fraction"])
+    def contact_fraction(self, speed: float) -> float:
+        """Contact fraction at `speed` [1]."""
+        return Evaluation.of(self.case, self.at(speed).answer).contact_fraction

@@ -1,128 +1,163 @@
-"""Whirl of a rigid rotor on the bearing: smallest mass that whirls, threshold speed, damped natural frequencies."""
+"""`stability`: a rigid rotor on the bearing: critical mass, threshold speed, damped natural frequencies."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
-from petalfoil.analysis.balance import given_load, loaded
+from petalfoil.analysis.arguments import Load, Loads, Mass, Speed, Speeds
 from petalfoil.analysis.classic_method import newton_only
-from petalfoil.analysis.coefficients import Load, at_position, elastic, operating_point
-from petalfoil.analysis.equilibrium import Named, about, positioned
-from petalfoil.analysis.figures import effort, failed_record, given
-from petalfoil.analysis.session import Clock, Progress, one_thread, part, telling_work
+from petalfoil.analysis.coefficients import state_parts
+from petalfoil.analysis.declaration import analysis
+from petalfoil.analysis.impedance import elastic
+from petalfoil.analysis.operating_point import OperatingPoint, Vector, applied_load, at, operating_point
+from petalfoil.analysis.records import branch, effort, failed_record, record_of
+from petalfoil.analysis.runs import Points
+from petalfoil.analysis.session import Clock, Progress, part, telling_work
 from petalfoil.analysis.speeds import SpeedLine
+from petalfoil.analysis.threshold import rotor_mass, threshold_speed
 from petalfoil.case import Case
 from petalfoil.dynamics.critical_mass import Whirl, neutral_whirl, scan
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.dynamics.natural_modes import Mode, natural_modes
-from petalfoil.dynamics.rotor import GRAVITY
 from petalfoil.equilibrium.run_log import RunLog
-from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError, UsageError
+from petalfoil.results.grid import Grid
+from petalfoil.results.layout import ArrayTable, Point
+from petalfoil.results.parts import AppliedLoad, Outcome
 from petalfoil.results.record import Array, Record
+from petalfoil.results.summary import cell
 
-RANGE, FACTOR = 16.0, 1.3
-"""Speeds between which the threshold is looked for, over the case's, and the factor between looks."""
+MODES = ("natural_frequency", "mode_growth_rate", "damping_ratio", "participation", "whirl_direction")
+"""What is told of each natural mode."""
 
-PRECISION = 1e-3
-"""Relative precision of the threshold speed."""
+MODE_TABLE = ArrayTable(
+    dim="mode",
+    columns={
+        "natural\nrpm": lambda record, k: cell("speed", float(record.fields["natural_frequency"][k])).value,
+        "Hz": lambda record, k: float(record.fields["natural_frequency"][k]) / (2.0 * math.pi),
+        "growth\n1/s": lambda record, k: float(record.fields["mode_growth_rate"][k]),
+        "damping\nratio": lambda record, k: float(record.fields["damping_ratio"][k]),
+        "participation\nof the rotor": lambda record, k: float(record.fields["participation"][k]),
+        "forward (+1) or\nbackward (-1)": lambda record, k: float(record.fields["whirl_direction"][k]),
+    },
+)
+GRID = Grid(
+    names=("critical_mass", "whirl_ratio", "contact_fraction", "eccentricity_x", "eccentricity_y", "status"),
+    tables={
+        "critical_mass": "critical mass [kg] over load and speed",
+        "whirl_ratio": "whirl ratio over load and speed",
+    },
+)
 
-Threshold = tuple[float, str]
-"""Threshold speed [rad/s], nan where there is none, and how the search ended."""
+
+@dataclass(frozen=True)
+class CriticalMass:
+    """Mass of a rigid rotor above which it whirls, and its whirl frequency over the speed."""
+
+    critical_mass: float
+    whirl_ratio: float
 
 
-def run(
+@dataclass(frozen=True)
+class Rotor:
+    """The rotor, and the speed at which it becomes unstable."""
+
+    rotor_mass: float
+    threshold_speed: float
+
+
+@analysis(
+    Point(lists=MODES, table=MODE_TABLE),
+    GRID,
+    excludes={"speed": ("speeds",), "load": ("loads",), "mass": ("speeds", "loads")},
+)
+def stability(  # noqa: PLR0913 - the options of the verb
     case: Case,
     *,
-    load: Load | None = None,
-    mass: float | None = None,
-    speed: float | None = None,
+    load: Load = None,
+    mass: Mass = None,
+    speed: Speed = None,
+    speeds: Speeds = None,
+    loads: Loads = None,
     progress: Progress | None = None,
-) -> Record:
-    """Smallest mass that whirls at the operating point, the speed at which `mass` [kg] begins to, and its modes.
+) -> Record | Points:
+    """Find critical mass, threshold speed and damped natural frequencies of a rigid rotor.
 
-    Without `mass` that of the case's rotor is taken, without one the load over gravity; without a load there are no
-    threshold speed (nan) and no modes.
+    At the case's eccentricity, or under a load where one is given; with
+    --speeds or --loads as a table over load and speed. Petals with friction
+    stick, as in the smallest motions.
+
+    Example: petalfoil stability case.toml --load "20 N" --mass "2 kg"
 
     Raises
     ------
     UsageError
-        A shaft at rest, or a mass that is not positive.
+        The shaft does not turn, or there is no load where a table needs one.
     ConvergenceError
-        The operating point was not found, or it is pressed solid.
+        The operating point was not found, or the pack is bottomed out.
+    """
+    newton_only(case)
+    if speeds is None and loads is None:
+        return point(turning(at(case, speed)), load, mass, progress)
+    wanted = [applied_load(case, load)] if loads is None else [(0.0, -size) for size in loads]
+    turn = [case.operation.speed if speed is None else speed] if speeds is None else speeds
+    cases = [turning(at(case, omega, (0.0, 0.0))) for omega in turn]
+    return Points(_points(cases, wanted, progress), len(cases) * len(wanted))
+
+
+def turning(case: Case) -> Case:
+    """The case, if its shaft turns."""
+    if not case.operation.speed > 0.0:
+        raise UsageError("stability needs a turning shaft: give a speed above zero")
+    return case
+
+
+def point(case: Case, load: Vector | None, mass: float | None, progress: Progress | None) -> Record:
+    """Critical mass at the operating point, the speed at which a rotor of `mass` [kg] becomes unstable, and its modes.
+
+    Without `mass` that of the case's rotor is taken, without one the load over gravity; without a load there are no
+    threshold speed (nan) and no modes.
     """
     clock, work = Clock(), telling_work(progress, "stability")
-    case = turning(positioned(case, speed, None))
-    if mass is not None and not mass > 0.0:
-        raise UsageError("the mass of the rotor must be positive")
-    with one_thread():
-        answer, known = operating_point(case, load, work)
-        motion = elastic(case, answer, work)
-        scanned = scan(motion, work)
-        whirl = neutral_whirl(motion, case.operation.speed, work, scanned)
-        rotor = rotor_mass(case, load, mass)
-        inertia = rotor * case.operation.speed**2
-        modes = None if math.isnan(rotor) else natural_modes(motion, inertia, scanned, work)
-        threshold, ended = threshold_speed(case, load, (rotor, whirl), work)
-    own: Named = {**known, "rotor_mass": rotor, "threshold_speed": threshold}
-    whole = record(case, answer, whirl, own, (work, clock, ended))
-    return whole if modes is None else with_modes(whole, modes, case.operation.speed)
+    found = operating_point(case, load, work)
+    motion = elastic(case, found.answer, work)
+    scanned = scan(motion, work)
+    whirl = neutral_whirl(motion, case.operation.speed, work, scanned)
+    rotor = rotor_mass(case, load, mass)
+    inertia = rotor * case.operation.speed**2
+    modes = None if math.isnan(rotor) else natural_modes(motion, inertia, scanned, work)
+    threshold, ended = threshold_speed(case, load, (rotor, whirl), work)
+    parts = (Rotor(rotor, threshold), *whirl_parts(case, found, whirl, ended), effort(work, clock.seconds))
+    fields, coords = ({}, {}) if modes is None else mode_fields(modes, case.operation.speed)
+    return record_of("stability", case, *parts, work=work, fields=fields, coords=coords)
 
 
-def with_modes(record: Record, modes: list[Mode], speed: float) -> Record:
-    """The record with fields that tell the modes."""
-    fields = {
+def whirl_parts(case: Case, found: OperatingPoint, whirl: Whirl, ended: str) -> tuple[object, ...]:
+    """The state and its critical mass; what has no number is told by the status."""
+    remarks = ["converged", "" if math.isfinite(whirl.mass) else "stable for any rotor mass", ended]
+    outcome = Outcome(status="; ".join(filter(None, remarks)), residual=found.answer.residual)
+    return *state_parts(case, found), CriticalMass(whirl.mass, whirl.ratio), outcome
+
+
+def mode_fields(modes: list[Mode], speed: float) -> tuple[dict[str, Array], dict[str, Array]]:
+    """Fields and coordinates that tell the modes."""
+    values = {
         "natural_frequency": [mode.s.imag * speed for mode in modes],
         "mode_growth_rate": [mode.s.real * speed for mode in modes],
         "damping_ratio": [mode.damping_ratio for mode in modes],
         "participation": [mode.participation for mode in modes],
         "whirl_direction": [mode.direction for mode in modes],
     }
-    arrays: dict[str, Array] = {name: np.array(values, dtype=float) for name, values in fields.items()}
-    return replace(record, fields=arrays, coords={"mode": np.arange(1, len(modes) + 1)})
+    fields: dict[str, Array] = {name: np.array(each, dtype=float) for name, each in values.items()}
+    return fields, {"mode": np.arange(1, len(modes) + 1)}
 
 
-def iterate(
-    case: Case,
-    speeds: Sequence[float] | None = None,
-    loads: Sequence[float] | None = None,
-    *,
-    load: Load | None = None,
-    progress: Progress | None = None,
-) -> Iterator[Record]:
-    """Yield the smallest mass that whirls for each load at each speed, load by load, speeds in order.
-
-    Parameters
-    ----------
-    case : Case
-        The bearing.
-    speeds : sequence of float, optional
-        Speeds instead of the case's [rad/s].
-    loads : sequence of float, optional
-        Loads along -y [N], instead of the one load.
-    load : (x, y), optional
-        The one load instead of the case's [N].
-    progress : callable, optional
-        Told how far it has come.
-
-    Raises
-    ------
-    UsageError
-        A speed is not positive, or there is no load, or one that is not positive.
-    """
-    if loads is not None and any(not size > 0.0 for size in loads):
-        raise UsageError("loads must be positive; they act along -y")
-    wanted = [loaded(case, load)] if loads is None else [(0.0, -size) for size in loads]
-    turn = [case.operation.speed] if speeds is None else speeds
-    return _records([turning(positioned(case, speed, (0.0, 0.0))) for speed in turn], wanted, progress)
-
-
-def _records(cases: list[Case], loads: list[Load], progress: Progress | None) -> Iterator[Record]:
+def _points(cases: list[Case], loads: list[Vector], progress: Progress | None) -> Iterator[Record]:
+    """Critical masses load by load, speeds in order, each balance followed from the one before."""
     for row, load in enumerate(loads):
         line: SpeedLine | None = None
         for column, case in enumerate(cases):
@@ -131,107 +166,18 @@ def _records(cases: list[Case], loads: list[Load], progress: Progress | None) ->
             line = line or SpeedLine(case, load, work)
             line.work = work
             try:
-                with one_thread():
-                    answer = line.at(case.operation.speed).answer
-                    whirl = neutral_whirl(elastic(case, answer, work), case.operation.speed, work)
-                    known = about(leading_eigenvalue(answer, work), case, (1, answer.way))
+                found, whirl = _followed(line, case, work)
             except ConvergenceError as failure:
                 line.known = None
-                yield failed_record("stability", case, f"not converged: {failure}", work, given_load(load))
+                yield failed_record("stability", case, failure, AppliedLoad.of(load), work=work)
                 continue
-            yield record(case, answer, whirl, {**known, **given_load(load)}, (work, clock, ""))
+            parts = (*whirl_parts(case, found, whirl, ""), effort(work, clock.seconds))
+            yield record_of("stability", case, *parts, work=work)
 
 
-def turning(case: Case) -> Case:
-    """The case, if its shaft turns."""
-    newton_only(case)
-    if not case.operation.speed > 0.0:
-        raise UsageError("stability needs a turning shaft: give a speed above zero")
-    return case
-
-
-def rotor_mass(case: Case, load: Load | None, mass: float | None) -> float:
-    """The mass on this bearing [kg]: as asked, else the case's, else the load's; nan where nothing tells it."""
-    if mass is not None:
-        return mass
-    if case.rotor is not None:
-        return case.rotor.mass_on_bearing
-    if load is None and case.operation.load is None:
-        return math.nan
-    return float(np.hypot(*loaded(case, load))) / GRAVITY  # a load without a mass is taken for a weight
-
-
-def margin(whirl: Whirl, mass: float) -> float:
-    """Logarithm of the smallest whirling mass over `mass`: positive where the rotor is stable."""
-    return math.log(whirl.mass / mass) if math.isfinite(whirl.mass) else NEVER
-
-
-NEVER = 50.0
-"""Margin of a bearing on which no mass whirls."""
-
-
-def threshold_speed(case: Case, load: Load | None, start: tuple[float, Whirl], work: RunLog) -> Threshold:
-    """Speed at which the mass begins to whirl, within the range.
-
-    Upward from a stable bearing, downward from an unstable one. A speed without an equilibrium ends the search.
-    """
-    mass, whirl = start
-    if math.isnan(mass):
-        return math.nan, "no threshold speed: give a mass or a load"
-    margin_at = margins(case, load, mass, work)
-    known, here = case.operation.speed, margin(whirl, mass)
-    factor = FACTOR if here > 0.0 else 1.0 / FACTOR
-    first, last = sorted((known, known * RANGE if here > 0.0 else known / RANGE))
-    try:
-        while first <= known * factor <= last:
-            ahead = known * factor
-            there = margin_at(ahead)
-            if (there > 0.0) != (here > 0.0):
-                return float(brentq(margin_at, min(known, ahead), max(known, ahead), rtol=PRECISION)), ""
-            known, here = ahead, there
-    except ConvergenceError as failure:
-        work.note("threshold", outcome=str(failure))
-        return math.nan, f"no threshold speed: no operating point beyond {in_rpm(known)}"
-    if here > 0.0:
-        return math.nan, f"no threshold speed: the rotor is stable up to {in_rpm(known)}"
-    return math.nan, f"no threshold speed: the rotor whirls down to {in_rpm(known)}"
-
-
-def margins(case: Case, load: Load | None, mass: float, work: RunLog) -> Callable[[float], float]:
-    """The margin over speed [rad/s], under the load or at the case's position."""
-    if load is None and case.operation.load is None:
-
-        def in_place(speed: float) -> float:
-            answer, _ = operating_point(positioned(case, speed, None), None, work)
-            return margin(neutral_whirl(elastic(case, answer, work), speed, work), mass)
-
-        return in_place
-    line = SpeedLine(case, loaded(case, load), work)
-
-    def under_load(speed: float) -> float:
-        answer = line.at(speed).answer
-        return margin(neutral_whirl(elastic(case, answer, work), speed, work), mass)
-
-    return under_load
-
-
-def in_rpm(speed: float) -> str:
-    """A speed as people read it."""
-    return f"{speed * 30.0 / math.pi:.0f} rpm"
-
-
-def record(case: Case, answer: Solution, whirl: Whirl, extra: Named, ran: tuple[RunLog, Clock, str]) -> Record:
-    """The record of a stability analysis; what it has no number for is told by its status."""
-    work, clock, ended = ran
-    remarks = ["converged", "" if math.isfinite(whirl.mass) else "no mass whirls", ended]
-    own: Named = {
-        **at_position(case, answer),
-        "critical_mass": whirl.mass,
-        "whirl_ratio": whirl.ratio,
-        "status": "; ".join(filter(None, remarks)),
-        "wall_time": clock.seconds,
-    }
-    scalars: Named = {**given(case), **extra, **effort(work), **own}
-    return Record(
-        analysis="stability", scalars=scalars, case_toml=case.to_toml(), title=case.title, history=list(work.history)
-    )
+def _followed(line: SpeedLine, case: Case, work: RunLog) -> tuple[OperatingPoint, Whirl]:
+    """The balance at the case's speed and its critical mass."""
+    answer = line.at(case.operation.speed).answer
+    whirl = neutral_whirl(elastic(case, answer, work), case.operation.speed, work)
+    known = branch(leading_eigenvalue(answer, work), case, 1, answer.way)
+    return OperatingPoint(answer, known, (AppliedLoad.of(line.load),)), whirl

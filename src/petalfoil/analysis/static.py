@@ -1,85 +1,126 @@
-"""The package at rest: preload, reaction against displacement, starting torque (model, question 1)."""
+"""`static`: the package at rest: preload, reaction against displacement, starting torque (model, question 1)."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, Any
 
 import numpy as np
 
+from petalfoil.analysis.arguments import DOWNWARD, Direction, Displacements, Flag
 from petalfoil.analysis.classic_method import is_classic, rest_by_classic
+from petalfoil.analysis.declaration import analysis
+from petalfoil.analysis.displacements import CHARACTERISTIC, displaced
+from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.fields import coordinates, wall_fields
-from petalfoil.analysis.figures import Named, effort, failed_record, forces, given
 from petalfoil.analysis.hysteresis import follow, legs
-from petalfoil.analysis.load_curve import points
-from petalfoil.analysis.session import Clock, Progress, one_thread, telling_work
+from petalfoil.analysis.records import asked_position, effort, failed_record, geometry, record_of
+from petalfoil.analysis.runs import Points
+from petalfoil.analysis.session import Clock, Progress, telling_work
 from petalfoil.case import Case
 from petalfoil.equilibrium.ascent import rest
 from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError, UsageError
+from petalfoil.results.layout import Series
+from petalfoil.results.parts import Branch, Outcome
 from petalfoil.results.record import Record
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.walls import Capability, required, wall_kind
 
+Loop = Annotated[bool, Flag(help="There, back and there again: the hysteresis of petals with friction.")]
 
-def iterate(
+
+@dataclass(frozen=True)
+class Torque:
+    """Torque of dry friction at rest."""
+
+    starting_torque: float
+    friction_torque: float
+
+
+@dataclass(frozen=True)
+class Leg:
+    """Part of the way, and the energy lost to friction up to here."""
+
+    leg: str
+    petal_friction_work: float | None = None
+
+
+def preload(points: list[dict[str, Any]]) -> dict[str, Any]:
+    """Normal force [N] and starting torque [N m] of the centred journal; null without such a point."""
+    for point in points:
+        if math.hypot(point["eccentricity_x"], point["eccentricity_y"]) == 0.0:
+            return {"preload": point.get("contact_normal_force"), "starting_torque": point.get("starting_torque")}
+    return {"preload": None, "starting_torque": None}
+
+
+@analysis(Series(columns=CHARACTERISTIC, head=preload))
+def static(
     case: Case,
-    eccentricities: Sequence[float] = (0.0,),
+    eccentricities: Displacements = (0.0,),
     *,
-    direction: float = -math.pi / 2.0,
-    loop: bool = False,
+    direction: Direction = DOWNWARD,
+    loop: Loop = False,
     progress: Progress | None = None,
-) -> Iterator[Record]:
-    """Yield the package at rest for each displacement [m] along `direction` [rad].
+) -> Points:
+    """Press the journal into the package at rest: preload, load, starting torque.
 
-    With friction between the petals each state comes from the one before, the first from the assembled package; `loop`
-    goes back and there again, so that a closed cycle stands between the ends of the first and of the third leg.
+    Preload and starting torque are those of the centred journal, so let the
+    displacements begin at 0. With --out the file is rewritten as points
+    finish; Ctrl-C keeps what is finished.
+
+    With friction between the petals (surface.petal_friction) each point
+    comes from the one before; --loop goes back and there again.
+
+    Example: petalfoil static case.toml --eccentricity "0 um : 280 um : 15"
 
     Raises
     ------
     UsageError
         The wall has no pack at zero speed; or a loop is asked for where petals have no friction, or of a single point.
     PackageError
-        A displacement leaves the package no room.
+        A displacement leaves the package no clearance.
     """
     required(case, Capability.PACK, "`static`")
-    cases = points(case, eccentricities, direction, 0.0)
+    cases = displaced(case, eccentricities, direction, 0.0)
     if case.surface.petal_friction > 0.0 and not is_classic(case):
         if loop and len(cases) < 2:
             raise UsageError("a loop needs at least two displacements")
-        return _with_friction(legs(cases, loop), progress)
+        way = legs(cases, loop)
+        return Points(_with_friction(way, progress), len(way))
     if loop:
         raise UsageError("a loop needs friction: give surface.petal_friction, and the default method")
-    return _records(cases, progress)
+    return Points(_without_friction(cases, progress), len(cases))
 
 
 def _with_friction(way: list[tuple[str, Case]], progress: Progress | None) -> Iterator[Record]:
     for number, point in enumerate(follow(way)):
         if progress is not None:
             progress(number / len(way), f"static: {point.leg}")
-        extra: Named = {"leg": point.leg, "petal_friction_work": point.lost}
         if point.answer is None:
-            status = "not converged: the package did not settle on the way"
-            yield failed_record("static", point.case, status, point.work, {"leg": point.leg})
+            reason = "the package did not settle on the way"
+            yield failed_record("static", point.case, reason, Leg(point.leg), work=point.work)
         else:
-            yield static_record(point.case, point.answer, point.work, point.seconds, extra)
+            own = (Leg(point.leg, point.lost), effort(point.work, point.seconds))
+            yield static_record(point.case, point.answer, *own, work=point.work)
 
 
-def _records(cases: list[Case], progress: Progress | None) -> Iterator[Record]:
+def _without_friction(cases: list[Case], progress: Progress | None) -> Iterator[Record]:
     base = build_problem(cases[0])
     for number, case in enumerate(cases):
         clock, work = Clock(), telling_work(None, "static")
         if progress is not None:
             progress(number / len(cases), "static")
-        with one_thread():
-            problem = base.at(displacement=np.array(case.operation.eccentricity) / base.layout.scales.length)
-            answer = at_rest(case, problem, work)
+        problem = base.at(displacement=np.array(case.operation.eccentricity) / base.layout.scales.length)
+        answer = at_rest(case, problem, work)
         if answer is None:
-            yield failed_record("static", case, "not converged: the package did not settle", work)
+            yield failed_record("static", case, "the package did not settle", work=work)
         else:
-            yield static_record(case, answer, work, clock.seconds)
+            yield static_record(case, answer, effort(work, clock.seconds), work=work)
 
 
 def at_rest(case: Case, problem: CoupledProblem, work: RunLog) -> Solution | None:
@@ -93,33 +134,22 @@ def at_rest(case: Case, problem: CoupledProblem, work: RunLog) -> Solution | Non
         return None
 
 
-def static_record(case: Case, answer: Solution, work: RunLog, seconds: float, extra: Named | None = None) -> Record:
-    """Reactions of the package; there is no film to speak of."""
-    carried = forces(case, answer)
-    torque = case.surface.friction_coefficient * case.bearing.journal_radius * float(carried["contact_normal_force"])
-    fields = wall_fields(case, answer)
-    scalars = {
-        **given(case),
-        **carried,
-        "starting_torque": torque,
-        "friction_torque": torque,
-        **wall_kind(case).scalars(fields),
-        "residual": answer.residual,
-        "stable": True,
-        "solution_path": answer.way,
-        "known_equilibria": 1,
-        "converged": True,
-        "status": "converged",
-        "wall_time": seconds,
-        **effort(work),
-        **(extra or {}),
-    }
-    return Record(
-        analysis="static",
-        scalars=scalars,
+def static_record(case: Case, answer: Solution, *parts: object, work: RunLog) -> Record:
+    """The record of a package at rest: its reactions; there is no film to speak of."""
+    forces, fields = Evaluation.of(case, answer).forces(), wall_fields(case, answer)
+    torque = case.surface.friction_coefficient * case.bearing.journal_radius * forces.contact_normal_force
+    return record_of(
+        "static",
+        case,
+        *geometry(case),
+        asked_position(case),
+        forces,
+        Torque(torque, torque),
+        wall_kind(case).scalars(fields),
+        Branch(solution_path=answer.way, stable=True, known_equilibria=1),
+        Outcome(residual=answer.residual),
+        *parts,
+        work=work,
         fields=dict(fields),
         coords=coordinates(case, answer),
-        case_toml=case.to_toml(),
-        title=case.title,
-        history=list(work.history),
     )

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
+from petalfoil.analysis.evaluation import contact_fraction, smallest_film
 from petalfoil.analysis.extremes import highest, lowest
 from petalfoil.case import Case
 from petalfoil.dynamics.time_state import Instant
@@ -46,6 +47,14 @@ AS_THEY_ARE = (
 
 TILT = ("slope_x", "slope_y")
 """The same of a shaft that tilts."""
+
+
+@dataclass(frozen=True)
+class Audits:
+    """Balances that a motion must keep [1]."""
+
+    mass_balance_error: float
+    energy_balance_error: float
 
 
 @dataclass
@@ -132,11 +141,9 @@ class Trace:
         viscous = viscous_torque(mesh, case.bearing.journal_radius, (p, h), shear, case.slip_length * ambient)
         film = FilmState(problem.layout.film_rows, P, H, self.system.rotor.bearing_number(instant.tau))
         return {
-            "min_film_thickness": max(
-                lowest(h, mesh.phi).value, min(case.surface.contact_film_thickness, float(h.min()))
-            ),
+            "min_film_thickness": smallest_film(case, h, lowest(h, mesh.phi).value),
             "peak_pressure": highest(p, mesh.phi).value,
-            "contact_fraction": touching / (touching + lift) if touching > 0.0 else 0.0,
+            "contact_fraction": contact_fraction(touching, lift),
             "force_x": float(pushed[0]),
             "force_y": float(pushed[1]),
             "friction_torque": viscous + rubbing,
@@ -180,17 +187,17 @@ class Trace:
             over[work] = cumulative_trapezoid(self.column(torque) * speed, time, initial=0.0)
         return time, over
 
-    def audits(self, over: Named) -> dict[str, float]:
-        """Mass-balance and energy-balance errors (O6) of the histories `over` [1]: both fall as the square of steps."""
+    def audits(self, over: Named) -> Audits:
+        """Mass-balance and energy-balance errors (O6) of the histories `over`: both fall as the square of the steps."""
         gas, outflow, time = self.column("gas"), self.column("outflow"), self.column("time")
         gained = gas - gas[0] + cumulative_trapezoid(outflow, time, initial=0.0)
         energy = over["kinetic_energy"] + over["elastic_energy"] - over["kinetic_energy"][0]
         missing = energy - over["load_work"] - over["film_work"] + over["petal_friction_work"]
         exchanged = np.sum(np.abs(self.column("load_step"))) + np.sum(np.abs(self.column("film_step")))
-        return {
-            "mass_balance_error": float(np.max(np.abs(gained)) / gas[0]) if gas[0] else 0.0,
-            "energy_balance_error": float(np.max(np.abs(missing)) / exchanged) if exchanged else 0.0,
-        }
+        return Audits(
+            mass_balance_error=float(np.max(np.abs(gained)) / gas[0]) if gas[0] else 0.0,
+            energy_balance_error=float(np.max(np.abs(missing)) / exchanged) if exchanged else 0.0,
+        )
 
     def pictures(self) -> tuple[dict[str, NDArray[np.generic]], Named]:
         """Coordinates and fields of the pictures."""

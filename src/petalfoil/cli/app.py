@@ -2,39 +2,57 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.core import TyperCommand, TyperGroup
 
 from petalfoil import __version__
-from petalfoil.cli.balance import balance
-from petalfoil.cli.check import check
-from petalfoil.cli.coefficients import coefficients
-from petalfoil.cli.converge import converge
-from petalfoil.cli.curve import curve
+from petalfoil.analysis import registry
 from petalfoil.cli.failures import handled
-from petalfoil.cli.liftoff import liftoff
-from petalfoil.cli.orbit import orbit
 from petalfoil.cli.reproduce import reproduce
-from petalfoil.cli.runup import runup
 from petalfoil.cli.show import show
-from petalfoil.cli.solve import solve
-from petalfoil.cli.stability import stability
-from petalfoil.cli.static import static
 from petalfoil.cli.streams import accept_any_text, emit
 
+if TYPE_CHECKING:
+    Context = Any
+
+
+class Verbs(TyperGroup):
+    """The analyses, read from their declarations, and the commands that are none.
+
+    The list of commands needs names and one line each; only the analysis that is called is loaded.
+    """
+
+    def list_commands(self, ctx: Context) -> list[str]:
+        """Names of all verbs."""
+        return [*registry.summaries(), *super().list_commands(ctx)]
+
+    def get_command(self, ctx: Context, cmd_name: str) -> Any:
+        """The command of a verb as the list of commands shows it."""
+        if cmd_name in registry.summaries():
+            return TyperCommand(cmd_name, help=registry.summaries()[cmd_name])
+        return super().get_command(ctx, cmd_name)
+
+    def resolve_command(self, ctx: Context, args: list[str]) -> Any:
+        """The command that is called, with all its options."""
+        name, command, rest = super().resolve_command(ctx, args)
+        if name in registry.summaries():
+            from petalfoil.cli.commands import command_of
+
+            command = command_of(str(name))
+        return name, command, rest
+
+
 app = typer.Typer(
+    cls=Verbs,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,  # `failures` speaks to the user, not a decorated traceback
     rich_markup_mode="rich",
 )
-VERBS = (
-    *(solve, curve, static, balance, liftoff, runup, coefficients, stability, orbit),
-    *(check, converge, show, reproduce),
-)
-for verb in VERBS:
-    app.command()(verb)
+app.command()(show)
+app.command()(reproduce)
 
 
 def _print_version(wanted: bool) -> None:

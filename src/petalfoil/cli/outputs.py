@@ -17,7 +17,7 @@ from petalfoil.errors import UsageError
 if TYPE_CHECKING:
     import xarray as xr
 
-    from petalfoil.cli.answer import Answer
+    from petalfoil.results.layout import Answer
 
 Writer: TypeAlias = "Callable[[xr.Dataset, Path], None]"
 
@@ -112,11 +112,11 @@ class Outputs:
         finally:  # an answer that took minutes is shown also when its file cannot be written
             self._print(answer)
         failures = answer.failures()
-        for line in failures:
+        for line in (*failures, *(remark for record in answer.records for remark in record.remarks)):
             say(line)
         if answer.interrupted:
             raise typer.Exit(INTERRUPTED)
-        if failures:
+        if failures or any(record.errors == {} for record in answer.records):
             raise typer.Exit(NOT_CONVERGED)
 
     def _write_files(self, answer: Answer, dataset: xr.Dataset | None) -> None:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from petalfoil.cli.failures import NOT_CONVERGED, handled
-from petalfoil.cli.options import Json
 from petalfoil.cli.progress import bar
 from petalfoil.cli.streams import emit, say
 from petalfoil.errors import UsageError
@@ -20,6 +19,7 @@ if TYPE_CHECKING:
     from petalfoil.report.claims import Evidence
 
 Folder = Annotated[Path, typer.Option(metavar="FOLDER", help="Where page and data go; it is made if it is not there.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object in SI units.")]
 
 
 def reproduce(out: Folder = Path("report"), as_json: Json = False) -> None:

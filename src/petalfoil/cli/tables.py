@@ -1,59 +1,23 @@
-"""An answer as the printed table, in the units an engineer reads."""
+"""An answer as printed tables, in the units an engineer reads."""
 
 from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Sequence
 
 from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from petalfoil.cli.answer import Answer
-from petalfoil.cli.kinds import ChartAnswer, CoefficientsAnswer, OrbitAnswer, StabilityAnswer
-from petalfoil.cli.motion_table import motion
-from petalfoil.cli.study import StudyAnswer, grid_text
-from petalfoil.cli.wide_tables import charts, coefficients, modes
-from petalfoil.results import Record
-from petalfoil.results.summary import ABSENT, cell, in_order, with_bar
+from petalfoil.results.estimate import Estimate
+from petalfoil.results.grid import Grid
+from petalfoil.results.layout import Answer, Cell, Layout, Point, Series
+from petalfoil.results.record import Record
+from petalfoil.results.study import GridStudy, grid_text
+from petalfoil.results.summary import ABSENT, cell, in_order, number, rows, with_bar
 
-PIPE_WIDTH = 120  # where no terminal says how wide it is: no column of a curve is cut off
-
-# Columns of a curve with their headings, by verb where they differ; those that no point has are left out.
-COLUMNS = {
-    "eccentricity_x": "e_x",
-    "eccentricity_y": "e_y",
-    "bearing_force": "load",
-    "attitude_angle": "attitude",
-    "contact_normal_force": "contacts",
-    "contact_fraction": "contact share",
-    "min_film_thickness": "film",
-    "peak_pressure": "pressure",
-    "friction_torque": "torque",
-    "starting_torque": "starting torque",
-    "max_bending_stress": "stress",
-    "petal_friction_work": "lost",
-}
-OWN_COLUMNS = {
-    "liftoff": {
-        "load_y": "load y",
-        "liftoff_speed": "lift-off",
-        "touchdown_speed": "touch-down",
-        "liftoff_by_contact_film_thickness": "d ln up\n/ d ln floor",
-        "liftoff_by_contact_fraction": "d ln up\n/ d ln share",
-    },
-    "runup": {
-        "leg": "leg",
-        "speed": "speed",
-        "eccentricity_x": "e_x",
-        "eccentricity_y": "e_y",
-        "contact_fraction": "contact share",
-        "min_film_thickness": "film",
-        "peak_pressure": "pressure",
-        "friction_torque": "torque",
-    },
-}
+PIPE_WIDTH = 120  # where no terminal says how wide it is: no column of a series is cut off
 
 
 def render(answer: Answer) -> str:
@@ -71,82 +35,113 @@ def render(answer: Answer) -> str:
     """
     width = None if sys.stdout.isatty() else PIPE_WIDTH
     console = Console(width=width, markup=False, highlight=False, emoji=False)
-    tables = _tables(answer)
     with console.capture() as capture:
         console.print(f"{answer.verb}: {answer.title}" if answer.title else answer.verb, style="bold")
-        for table in tables:
+        for table in _tables(answer):
             console.print(table)
     return "\n".join(line.rstrip() for line in capture.get().rstrip().splitlines()) + "\n"
 
 
-def _tables(answer: Answer) -> list[Table]:
-    if isinstance(answer, StudyAnswer):
-        return [_study(answer)]
-    if isinstance(answer, ChartAnswer):
-        return list(charts(answer))
-    if isinstance(answer, OrbitAnswer):
-        return [motion(answer.records[0])]
-    if answer.is_curve and not isinstance(answer, CoefficientsAnswer):
-        return [_curve(answer)]
-    tables = [] if answer.is_curve else [_single(answer.records[0], answer.errors or {})]
-    if isinstance(answer, StabilityAnswer):
-        return [*tables, *modes(answer.records[0])]
-    return [*tables, coefficients(answer)] if isinstance(answer, CoefficientsAnswer) else tables
+def _tables(answer: Answer) -> Iterator[Table]:
+    layout, records = answer.layout, answer.records
+    if isinstance(layout, Grid):
+        yield from _grids(layout, records)
+    elif isinstance(layout, GridStudy):
+        yield _study(records, answer.estimates)
+    elif isinstance(layout, Series) and layout.table is None:
+        yield _series(layout, records)
+    if isinstance(layout, Point):
+        yield _rows(layout.rows(records[-1]) if layout.rows else _with_bars(records[-1]))
+    if layout.table is not None and any(list(layout.table.lines(record)) for record in records):
+        yield _arrays(layout, records)
 
 
-def _single(record: Record, errors: Mapping[str, float]) -> Table:
+def _rows(lines: Iterable[tuple[str, ...]]) -> Table:
+    """Lines of label, value, unit; or of label, value, error bar, unit."""
     table = Table(box=None, show_header=False, pad_edge=False)
     table.add_column()
-    table.add_column(justify="right")
-    table.add_column(justify="right")
-    table.add_column()
-    reported = record.reported()
+    for line in lines:
+        while len(table.columns) < len(line):
+            table.add_column(justify="right" if len(table.columns) < len(line) - 1 else "left")
+        table.add_row(*line)
+    return table
+
+
+def _with_bars(record: Record) -> Iterator[tuple[str, ...]]:
+    reported, errors = record.reported(), record.errors or {}
+    if not errors:
+        yield from rows(record)
+        return
     for name in in_order(reported):
         row, bar = cell(name, reported[name]), ""
         if name in errors:
             (value,), bar = with_bar(name, [float(reported[name])], errors[name])
             row = row._replace(value=value)
-        table.add_row(row.label, row.value, bar and f"± {bar}", row.unit)
-    return table
+        yield row.label, row.value, bar and f"± {bar}", row.unit
 
 
-def _study(answer: StudyAnswer) -> Table:
-    estimates = {estimate.name: estimate for estimate in answer.estimates}
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("cells")
-    table.add_column("")
-    for record in answer.records:
-        table.add_column(grid_text(record), justify="right")
-    for heading in ("order", "limit", "error"):
-        table.add_column(heading, justify="right")
-    table.add_column("trust")
+def _study(records: Sequence[Record], found: Sequence[Estimate]) -> Table:
+    estimates = {estimate.name: estimate for estimate in found}
+    grids = [(grid_text(record), "right") for record in records]
+    trust = [("order", "right"), ("limit", "right"), ("error", "right"), ("trust", "left")]
+    table = _headed([("cells", "left"), ("", "left"), *grids, *trust])
     for name in in_order(estimates):
-        found = estimates[name]
-        (*values, limit), bar = with_bar(name, [*found.values, found.limit], found.error)
-        order = ABSENT if math.isnan(found.order) else f"{found.order:.2f}"
-        row = cell(name, 0.0)
-        table.add_row(row.label.strip(), row.unit, *values, order, limit, f"± {bar}", found.trust)
+        estimate, row = estimates[name], cell(name, 0.0)
+        (*values, limit), bar = with_bar(name, [*estimate.values, estimate.limit], estimate.error)
+        order = ABSENT if math.isnan(estimate.order) else f"{estimate.order:.2f}"
+        table.add_row(row.label.strip(), row.unit, *values, order, limit, f"± {bar}", estimate.trust)
     return table
 
 
-def _curve(answer: Answer) -> Table:
-    points = [record.reported() for record in answer.records]
-    columns = OWN_COLUMNS.get(answer.verb, COLUMNS)
-    names = [name for name in columns if any(name in point for point in points)]
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("point", justify="right")
-    for name in names:
-        unit = cell(name, 0.0).unit
-        table.add_column(f"{columns[name]}\n{unit}" if unit else columns[name], justify="right")
-    table.add_column("")
-    for number, (point, record) in enumerate(zip(points, answer.records, strict=True), start=1):
-        figures = [cell(name, point.get(name, float("nan"))).value for name in names]
-        table.add_row(str(number), *figures, _remark(record))
+def _series(layout: Series, records: Sequence[Record]) -> Table:
+    points = [record.reported() for record in records]
+    headings = layout.columns or {name: cell(name, 0.0).label for name in in_order(set().union(*points))}
+    names = [name for name in headings if any(name in point for point in points)]
+    columns = [(f"{headings[name]}\n{cell(name, 0.0).unit}".rstrip(), "right") for name in names]
+    table = _headed([("point", "right"), *columns, ("", "left")])
+    for position, (point, record) in enumerate(zip(points, records, strict=True), start=1):
+        values = [cell(name, point.get(name, math.nan)).value for name in names]
+        table.add_row(str(position), *values, _remark(record))
     return table
 
 
 def _remark(record: Record) -> str:
-    """What is to be said of a point that its figures do not tell."""
+    """What is to be said of a point that its results do not tell."""
     if not record.converged:
         return "failed"
     return str(record.scalars.get("status", "")).removeprefix("converged").removeprefix("; ")
+
+
+def _grids(layout: Grid, records: Sequence[Record]) -> Iterator[Table]:
+    """One table for each result: a row for each load, a column for each speed."""
+    speeds = [(f"{cell('speed', speed).value}\nrpm", "right") for speed in layout.speeds(records)]
+    for name, title in layout.tables.items():
+        table = _headed([("load\nN", "right"), *speeds])
+        table.title, table.title_justify, table.title_style = title, "left", ""
+        for load, line in zip(layout.loads(records), layout.over(records, name), strict=True):
+            table.add_row(number(load), *(number(math.nan if value is None else float(value)) for value in line))
+        yield table
+
+
+def _arrays(layout: Layout, records: Sequence[Record]) -> Table:
+    """A line for each entry of the arrays of each record."""
+    if layout.table is None:
+        raise ValueError("this layout has no table of arrays")
+    table = _headed([*((heading, "right") for heading in layout.table.columns), ("", "left")])
+    for position, record in enumerate(records, start=1):
+        for line in layout.table.lines(record):
+            table.add_row(*map(_text, line), "")
+        if not record.converged:
+            table.add_row(*[""] * len(layout.table.columns), f"{layout.place(position, record)} failed")
+    return table
+
+
+def _headed(columns: Iterable[tuple[str, str]]) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for heading, side in columns:
+        table.add_column(heading, justify="right" if side == "right" else "left")
+    return table
+
+
+def _text(value: Cell) -> str:
+    return value if isinstance(value, str) else number(value)

@@ -117,7 +117,7 @@ def liftoff(ds: xr.Dataset) -> Figure:
         _draw_bars(ax, {name: float(values[0]) for name, values in speeds.items()})
     else:
         _draw_over_load(ax, load, speeds)
-    fraction = float(np.nanmax(array(ds, "share")))
+    fraction = float(np.nanmax(array(ds, "contact_fraction_limit")))
     criterion = f"lift-off: contact fraction below {100.0 * fraction:.3g} %"
     style.set_title(fig, ds, f"load {load[0]:.4g} N" if single else "", criterion)
     return fig

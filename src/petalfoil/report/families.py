@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from petalfoil.analysis import load_curve
+from petalfoil.analysis.curve import curve
 from petalfoil.report.paper import package
 from petalfoil.report.scope import COMPARED, Scope
 from petalfoil.results import Record
@@ -125,7 +125,7 @@ def _curves(
     curves = []
     for number, count in enumerate(counts):
         report = part(progress, number, len(counts), f"{count} petals")
-        records = load_curve.iterate(package(count, **changes), displacements, progress=report)
+        records = curve.records(package(count, **changes), displacements, progress=report)
         curves.append(Curve(count, tuple(records)))
     return tuple(curves)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from petalfoil.analysis import equilibrium
+from petalfoil.analysis.solve import solve
 from petalfoil.errors import ConvergenceError
 from petalfoil.report.families import Progress
 from petalfoil.report.paper import package
@@ -59,7 +59,7 @@ def on(nodes: tuple[int, int]) -> Grid:
     if nodes[1] > 1:
         changes |= {"model.kind": "3d", "model.axial_cells": cells[1]}
     try:
-        record = equilibrium.run(case.replace(**changes), eccentricity=(0.0, -AT))
+        record = solve.record(case.replace(**changes), eccentricity=(0.0, -AT))
     except ConvergenceError as failure:
         return Grid(nodes, cells, math.nan, len(failure.history), math.nan)
     scalars = record.scalars

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from petalfoil.analysis import static
+from petalfoil.analysis.static import static
 from petalfoil.report.families import Curve, Family
 from petalfoil.report.paper import package
 from petalfoil.report.scope import Scope
@@ -78,7 +78,7 @@ def meanings(family: Family, changes: Mapping[str, object], scope: Scope) -> tup
 def _at_rest(count: int, changes: Mapping[str, object], scope: Scope) -> tuple[float, float]:
     """Preload of the central journal and reaction at `AT`, no rotation [N]."""
     case = package(count, **{**changes, "model.cells_per_pitch": scope.flat_cells})
-    central, displaced = static.iterate(case, (0.0, AT))
+    central, displaced = static.records(case, (0.0, AT))
     return float(central.reported().get("contact_normal_force", math.nan)), load(displaced)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from petalfoil.analysis.session import Clock
@@ -44,6 +45,29 @@ def report(folder: Path, scope: Scope | None = None, progress: Progress | None =
     """Compute everything and write it into `folder`; gives the page too."""
     evidence = run(scope, progress)
     return evidence, write(evidence, folder)
+
+
+def reproduce(folder: str | os.PathLike[str] = "report", *, progress: Progress | None = None) -> Path:
+    """Compute the figures and claims of the paper, in 2-D and 3-D, and write a page with data.
+
+    Parameters
+    ----------
+    folder : str or path
+        Where to; it is made if it is not there.
+    progress : callable, optional
+        Called with the part done (0 to 1) and a text.
+
+    Returns
+    -------
+    pathlib.Path
+        The page, ``index.html``.
+
+    Raises
+    ------
+    StoreError
+        Something cannot be written.
+    """
+    return report(Path(folder), progress=progress)[1]
 
 
 def _parts(progress: Progress) -> list[Progress]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from petalfoil.analysis import load_curve
+from petalfoil.analysis.curve import curve
 from petalfoil.mesh.quadrature import cubic_weights
 from petalfoil.report.bounds import bounded_loads
 from petalfoil.report.families import Progress
@@ -107,7 +107,7 @@ def loads(variation: Variation, count: int, scope: Scope) -> Loads:
     case = variation.case(count, scope.study_cells)
     if variation.bounds:
         return Loads(count, *bounded_loads(case, COMPARED))
-    central, *displaced = load_curve.iterate(case, (0.0, *COMPARED))
+    central, *displaced = curve.records(case, (0.0, *COMPARED))
     share = max(float(record.reported().get("contact_fraction", math.nan)) for record in (central, *displaced))
     return Loads(count, tuple(load(record) for record in displaced), push(central), share)
 

@@ -39,3 +39,13 @@ class Estimate:
         if self.trusted:
             return "yes"
         return "no order" if math.isnan(self.order) else "odd order"
+
+    def to_json(self) -> dict[str, object]:
+        """The estimate as a JSON object; null where there is no value or no order."""
+        return {
+            "values": [value if math.isfinite(value) else None for value in self.values],
+            "order": self.order if math.isfinite(self.order) else None,
+            "limit": self.limit,
+            "error": self.error,
+            "trusted": self.trusted,
+        }

@@ -30,9 +30,9 @@ class Record:
     Parameters
     ----------
     analysis : str
-        Verb that gave it: "solve", "curve", "static", "check".
+        Analysis that gave it, such as "solve".
     scalars : dict
-        Figures by name, SI.
+        Results by name, SI.
     fields : dict
         Arrays by name, SI, with the dimensions the schema declares.
     coords : dict
@@ -43,6 +43,10 @@ class Record:
         Title of the case.
     history : list of dict
         One entry an iteration.
+    errors : dict of float, optional
+        Error bars of the results from a grid study; None where none was asked for, empty where none was found.
+    remarks : tuple of str
+        What the user is told beside the results.
 
     Raises
     ------
@@ -57,6 +61,8 @@ class Record:
     case_toml: str = ""
     title: str = ""
     history: list[dict[str, float | int | str]] = field(default_factory=list)
+    errors: Mapping[str, float] | None = None
+    remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         _refuse_unknown("scalar", self.scalars, SCALARS)

@@ -6,6 +6,7 @@ attributes from here.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
@@ -27,9 +28,18 @@ class Role(Enum):
     BOOKKEEPING = "bookkeeping"
     """How the run went: kept whatever happens."""
     ANSWER = "answer"
-    """Figure of the state: NaN (false, for a flag) when the state did not converge."""
+    """Result of the state: NaN (false, for a flag) when the state did not converge."""
     GEOMETRY = "geometry"
     """Same for all points of a curve: kept, and stored once."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """How a table shows a scalar: label, unit for engineers, factor from the SI unit."""
+
+    label: str
+    unit: str = ""
+    factor: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +60,8 @@ class Variable:
         Type of the values.
     role : Role
         Given, bookkeeping, answer or geometry.
+    shown : Shown, optional
+        How tables show a scalar that an analysis declares for itself.
     """
 
     dims: tuple[str, ...]
@@ -58,6 +70,7 @@ class Variable:
     symbol: str
     kind: DataType = DataType.FLOAT
     role: Role = Role.ANSWER
+    shown: Shown | None = None
 
 
 def _given(units: str, long_name: str, symbol: str) -> Variable:
@@ -127,10 +140,8 @@ FIELDS: dict[str, Variable] = {
     "natural_frequency": Variable(("mode",), "rad s-1", "damped natural frequency of the rotor", "omega_d"),
     "mode_growth_rate": Variable(("mode",), "s-1", "growth rate of the mode, negative where it dies out", "Re s_k"),
     "damping_ratio": Variable(("mode",), "1", "damping ratio of the mode, negative where it grows", "zeta"),
-    "participation": Variable(("mode",), "1", "share of the rotor's mass in the mode", "q"),
-    "whirl_direction": Variable(
-        ("mode",), "1", "1 for a circle with the rotation, -1 against it, 0 along a line", "kappa"
-    ),
+    "participation": Variable(("mode",), "1", "part of the rotor's mass in the mode", "q"),
+    "whirl_direction": Variable(("mode",), "1", "1 for forward, -1 for backward whirl, 0 along a line", "kappa"),
     "bending_stress": Variable(
         _PETAL, "Pa", "bending stress of the petal's metal along phi, assembly included", "sigma_phi"
     ),
@@ -145,11 +156,11 @@ HISTORIES: dict[str, Variable] = {
     "slope_y": Variable(_TIME, "rad", "slope of the shaft's axis along y", "a_y"),
     "shaft_speed": Variable(_TIME, "rad s-1", "angular velocity of the shaft", "omega"),
     "shaft_angle": Variable(_TIME, "rad", "angle that the shaft has turned", "theta_s"),
-    "min_film_thickness": Variable(_TIME, "m", "smallest film thickness", "min h"),
+    "min_film_thickness": Variable(_TIME, "m", "minimum film thickness", "min h"),
     "contact_fraction": Variable(
-        _TIME, "1", "contact reactions over contact reactions plus integral of the film's excess pressure", "s_c"
+        _TIME, "1", "contact normal force over contact normal force plus integral of the film's excess pressure", "s_c"
     ),
-    "peak_pressure": Variable(_TIME, "Pa", "largest absolute pressure of the film", "p_max"),
+    "peak_pressure": Variable(_TIME, "Pa", "peak absolute pressure of the film", "p_max"),
     "force_x": Variable(_TIME, "N", "force of film and contact on the journal along x", "F_x"),
     "force_y": Variable(_TIME, "N", "force of film and contact on the journal along y", "F_y"),
     "friction_torque": Variable(_TIME, "N m", "friction torque on the journal, film and contact", "M"),
@@ -184,7 +195,7 @@ SCALARS: dict[str, Variable] = {
     "leg": Variable(
         (), "", "part of the way: up or down, loading, unloading or reloading", "leg", DataType.STR, Role.GIVEN
     ),
-    "share": _given("1", "contact share below which the journal floats", "s_f"),
+    "contact_fraction_limit": _given("1", "contact fraction at lift-off and touchdown", "s_c*"),
     "whirl_amplitude": _given("m", "amplitude of the whirl at which petals rub", "a"),
     "rotor_mass": _given("kg", "mass of a rigid rotor on this bearing", "m"),
     "force_x": _answer("N", "force of film and contact on the journal along x", "F_x"),
@@ -197,32 +208,32 @@ SCALARS: dict[str, Variable] = {
     "film_force_y": _answer("N", "force of the film on the journal along y", "F_film,y"),
     "contact_force_x": _answer("N", "force of the contacts on the journal along x", "F_contact,x"),
     "contact_force_y": _answer("N", "force of the contacts on the journal along y", "F_contact,y"),
-    "contact_normal_force": _answer("N", "sum of the contact reactions over the journal", "sum lambda_J"),
+    "contact_normal_force": _answer("N", "sum of the normal forces of contact on the journal", "sum lambda_J"),
     "contact_fraction": _answer(
-        "1", "contact reactions over contact reactions plus integral of the film's excess pressure", "s_c"
+        "1", "contact normal force over contact normal force plus integral of the film's excess pressure", "s_c"
     ),
-    "min_film_thickness": _answer("m", "smallest film thickness", "min h"),
-    "min_film_thickness_angle": _answer("rad", "bushing angle of the smallest film thickness", "theta(min h)"),
-    "min_film_thickness_z": _answer("m", "axial place of the smallest film thickness", "z(min h)"),
-    "knudsen_number": _answer("1", "mean free path at ambient pressure over the smallest film", "Kn"),
-    "peak_pressure": _answer("Pa", "largest absolute pressure of the film", "p_max"),
-    "peak_pressure_angle": _answer("rad", "bushing angle of the largest pressure", "theta(p_max)"),
+    "min_film_thickness": _answer("m", "minimum film thickness", "min h"),
+    "min_film_thickness_angle": _answer("rad", "bushing angle of the minimum film thickness", "theta(min h)"),
+    "min_film_thickness_z": _answer("m", "axial place of the minimum film thickness", "z(min h)"),
+    "knudsen_number": _answer("1", "mean free path at ambient pressure over the minimum film thickness", "Kn"),
+    "peak_pressure": _answer("Pa", "peak absolute pressure of the film", "p_max"),
+    "peak_pressure_angle": _answer("rad", "bushing angle of the peak pressure", "theta(p_max)"),
     "petal_friction_work": _answer("J", "energy lost where petals slide on each other and the bushing", "W_p"),
     "friction_torque": _answer("N m", "friction torque on the journal, film and contact", "M"),
     "starting_torque": _answer("N m", "torque of dry friction at rest", "M_0"),
     "power_loss": _answer("W", "friction torque times angular velocity", "M omega"),
     "side_leakage": _answer("kg s-1", "mass flow of gas that leaves at both ends", "m_dot"),
-    "max_bending_stress": _answer("Pa", "largest magnitude of the bending stress of the petals", "sigma_max"),
-    "critical_mass": _answer("kg", "smallest mass of a rigid rotor that whirls", "m_c"),
+    "max_bending_stress": _answer("Pa", "maximum magnitude of the bending stress of the petals", "sigma_max"),
+    "critical_mass": _answer("kg", "critical mass of a rigid rotor: it whirls above", "m_c"),
     "whirl_ratio": _answer("1", "whirl frequency over speed at the critical mass", "gamma"),
-    "threshold_speed": _answer("rad s-1", "speed at which the rotor's mass begins to whirl", "omega_c"),
-    "liftoff_speed": _answer("rad s-1", "speed above which the journal floats, ascending", "omega_up"),
-    "touchdown_speed": _answer("rad s-1", "speed below which the journal touches, descending", "omega_down"),
+    "threshold_speed": _answer("rad s-1", "speed at which the rotor becomes unstable", "omega_c"),
+    "liftoff_speed": _answer("rad s-1", "lift-off speed, ascending", "omega_up"),
+    "touchdown_speed": _answer("rad s-1", "touchdown speed, descending", "omega_down"),
     "liftoff_by_contact_film_thickness": _answer(
-        "1", "logarithmic derivative of the lift-off speed by the film floor", "d ln omega_up/d ln h_min"
+        "1", "logarithmic derivative of the lift-off speed by the contact film thickness", "d ln omega_up/d ln h_c"
     ),
     "liftoff_by_contact_fraction": _answer(
-        "1", "logarithmic derivative of the lift-off speed by the share", "d ln omega_up/d ln s_f"
+        "1", "logarithmic derivative of the lift-off speed by the contact fraction", "d ln omega_up/d ln s_c*"
     ),
     "stable": _answer("", "the equilibrium of film and petals is stable at the fixed journal", "stable", DataType.BOOL),
     "growth_rate": _answer(
@@ -236,7 +247,7 @@ SCALARS: dict[str, Variable] = {
     ),
     "amplitude": _answer("m", "largest distance from the mean position, in the last half of a motion", "A"),
     "dominant_whirl_ratio": _answer(
-        "1", "frequency of the largest circle of the whirl over the speed, negative against the rotation", "Omega/omega"
+        "1", "frequency of the largest circle of the whirl over the speed, negative for backward whirl", "Omega/omega"
     ),
     "revolutions": _answer("1", "turns of the shaft", "N_rev"),
     "steps": _run("1", "steps in time", "N_steps", DataType.INT),
@@ -248,7 +259,7 @@ SCALARS: dict[str, Variable] = {
     "carried_by": _run("", "what carries the load", "carried by", DataType.STR),
     "mass_balance_error": _run("1", "relative error of the mass balance of the film", "d_mass"),
     "reaction_balance_error": _run(
-        "1", "relative defect of the balance of loads and reactions of the petals", "d_force"
+        "1", "relative error of the balance of loads and reactions of the petals", "d_force"
     ),
     "iterations": _run("1", "iterations of the coupled system", "N_it", DataType.INT),
     "factorizations": _run("1", "factorisations of the coupled system", "N_lu", DataType.INT),
@@ -256,7 +267,7 @@ SCALARS: dict[str, Variable] = {
     "probe_factorizations": _run(
         "1", "factorisations that only asked a question: stability, other equilibria", "N_probe", DataType.INT
     ),
-    "cells_per_pitch": _run("1", "cells along a pitch; of a plain bearing, round the circle", "N", DataType.INT),
+    "cells_per_pitch": _run("1", "cells per pitch; of a plain bearing, round the circle", "N", DataType.INT),
     "axial_cells": _run("1", "cells over the whole length", "N_z", DataType.INT),
     "reference_film_thickness": _run("m", "film thickness the film equation is scaled with", "h_ref"),
     "wall_time": _run("s", "time spent", "t_wall"),
@@ -270,15 +281,17 @@ SCALARS: dict[str, Variable] = {
     "length": _geometry("m", "length of the bearing", "L"),
     "petal_thickness": _geometry("m", "thickness of a petal with its coating", "delta"),
     "ambient_pressure": _geometry("Pa", "ambient pressure, absolute", "p_a"),
-    "contact_film_thickness": _geometry("m", "film floor, below which the journal touches", "h_min"),
+    "contact_film_thickness": _geometry("m", "contact film thickness, at which the journal touches", "h_min"),
     "overlap": _geometry("1", "petal angle over pitch", "phi_1/phi_0"),
     "layers": _geometry("1", "largest number of petals at one angle", "N_layers", DataType.INT),
     "petal_angle": _geometry("rad", "angle a petal spans", "phi_1"),
     "pitch": _geometry("rad", "angle between neighbouring roots", "phi_0"),
     "covered_angle": _geometry("rad", "angle over which a petal is covered by the one before", "phi_3"),
     "metric_radius": _geometry("m", "radius of the mid-surface of a petal on the bore", "r_m"),
-    "radial_clearance": _geometry("m", "narrowest radial room between journal and bushing", "c"),
-    "pack_clearance": _geometry("m", "room less the package at its thickest and the film floor", "c_left"),
+    "radial_clearance": _geometry("m", "radial clearance between journal and bushing", "c"),
+    "pack_clearance": _geometry(
+        "m", "radial clearance above the solid pack height and the contact film thickness", "c_left"
+    ),
     "compressibility_number": _geometry("1", "compressibility number on the radial clearance", "Lambda"),
     "viscosity": _geometry("Pa s", "dynamic viscosity of the gas", "mu"),
     "mean_free_path": _geometry("m", "mean free path of the gas at ambient pressure", "lambda_a"),
@@ -291,3 +304,17 @@ SCALARS: dict[str, Variable] = {
 }
 
 VARIABLES: dict[str, Variable] = {**COORDINATES, **FIELDS, **SCALARS}
+
+
+def declare(results: Mapping[str, Variable]) -> None:
+    """Add the results that an analysis declares for itself; the same declaration twice is one.
+
+    Raises
+    ------
+    ValueError
+        A name is already declared differently.
+    """
+    for name, variable in results.items():
+        if VARIABLES.setdefault(name, variable) != variable:
+            raise ValueError(f"the result {name!r} is already declared as {VARIABLES[name]}")
+        (FIELDS if variable.dims else SCALARS)[name] = variable

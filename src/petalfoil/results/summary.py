@@ -8,7 +8,7 @@ from decimal import Decimal
 from typing import NamedTuple
 
 from petalfoil.results.record import Record, Scalar
-from petalfoil.results.schema import SCALARS, DataType
+from petalfoil.results.schema import SCALARS, DataType, Shown
 
 
 class Row(NamedTuple):
@@ -19,81 +19,75 @@ class Row(NamedTuple):
     unit: str
 
 
-class _Show(NamedTuple):
-    label: str
-    unit: str = ""
-    factor: float = 1.0
-
-
 ABSENT = "-"
 FINEST_SHARE = 1e-7
 """Share of a value below which its error bar adds no digits."""
 _DEG = 180.0 / math.pi
 _RPM = 30.0 / math.pi
 
-_SHOWN: dict[str, _Show] = {
-    "status": _Show("status"),
-    "carried_by": _Show("carried by"),
-    "speed": _Show("speed", "rpm", _RPM),
-    "load_x": _Show("load x", "N"),
-    "load_y": _Show("load y", "N"),
-    "whirl_amplitude": _Show("amplitude of the whirl", "µm", 1e6),
-    "share": _Show("floats below", "%", 100.0),
-    "liftoff_speed": _Show("lift-off speed", "rpm", _RPM),
-    "touchdown_speed": _Show("touch-down speed", "rpm", _RPM),
-    "liftoff_by_contact_film_thickness": _Show("d ln lift-off / d ln floor"),
-    "liftoff_by_contact_fraction": _Show("d ln lift-off / d ln share"),
-    "critical_mass": _Show("critical mass", "kg"),
-    "whirl_ratio": _Show("whirl ratio"),
-    "rotor_mass": _Show("mass of the rotor", "kg"),
-    "threshold_speed": _Show("threshold speed", "rpm", _RPM),
-    "eccentricity_x": _Show("displacement x", "µm", 1e6),
-    "eccentricity_y": _Show("displacement y", "µm", 1e6),
-    "bearing_force": _Show("bearing force", "N"),
-    "force_x": _Show("force x", "N"),
-    "force_y": _Show("force y", "N"),
-    "attitude_angle": _Show("attitude angle", "deg", _DEG),
-    "contact_normal_force": _Show("contact normal force", "N"),
-    "contact_fraction": _Show("contact share", "%", 100.0),
-    "min_film_thickness": _Show("minimum film thickness", "µm", 1e6),
-    "min_film_thickness_angle": _Show("  at angle", "deg", _DEG),
-    "min_film_thickness_z": _Show("  at z", "mm", 1e3),
-    "knudsen_number": _Show("Knudsen number", "%", 100.0),
-    "peak_pressure": _Show("peak pressure", "kPa", 1e-3),
-    "peak_pressure_angle": _Show("  at angle", "deg", _DEG),
-    "friction_torque": _Show("friction torque", "mN·m", 1e3),
-    "starting_torque": _Show("starting torque", "mN·m", 1e3),
-    "power_loss": _Show("power loss", "W"),
-    "side_leakage": _Show("side leakage", "mg/s", 1e6),
-    "max_bending_stress": _Show("maximum bending stress", "MPa", 1e-6),
-    "overlap": _Show("overlap"),
-    "layers": _Show("layers"),
-    "petal_angle": _Show("petal angle", "deg", _DEG),
-    "pitch": _Show("pitch", "deg", _DEG),
-    "covered_angle": _Show("covered angle", "deg", _DEG),
-    "metric_radius": _Show("metric radius", "mm", 1e3),
-    "radial_clearance": _Show("radial room", "µm", 1e6),
-    "pack_clearance": _Show("room left", "µm", 1e6),
-    "root_tilt": _Show("root tilt", "deg", _DEG),
-    "free_petal_height": _Show("free petal height", "µm", 1e6),
-    "first_contact_angle": _Show("first contact at", "deg", _DEG),
-    "bending_stiffness": _Show("bending stiffness", "N·mm", 1e3),
-    "compressibility_number": _Show("compressibility number"),
-    "viscosity": _Show("viscosity", "µPa·s", 1e6),
-    "mean_free_path": _Show("mean free path", "nm", 1e9),
-    "stable": _Show("stable"),
-    "growth_rate": _Show("growth rate", "1/s"),
-    "growth_frequency": _Show("growth frequency", "Hz", 0.5 / math.pi),
-    "solution_path": _Show("solution_path"),
-    "known_equilibria": _Show("branches known"),
-    "jump": _Show("jump"),
-    "cells_per_pitch": _Show("cells a pitch"),
-    "axial_cells": _Show("cells along the axis"),
-    "residual": _Show("residual"),
-    "force_residual": _Show("force residual"),
-    "iterations": _Show("iterations"),
-    "factorizations": _Show("factorisations"),
-    "wall_time": _Show("time", "s"),
+_SHOWN: dict[str, Shown] = {
+    "status": Shown("status"),
+    "carried_by": Shown("carried by"),
+    "speed": Shown("speed", "rpm", _RPM),
+    "load_x": Shown("load x", "N"),
+    "load_y": Shown("load y", "N"),
+    "whirl_amplitude": Shown("whirl amplitude", "µm", 1e6),
+    "contact_fraction_limit": Shown("contact fraction limit", "%", 100.0),
+    "liftoff_speed": Shown("lift-off speed", "rpm", _RPM),
+    "touchdown_speed": Shown("touch-down speed", "rpm", _RPM),
+    "liftoff_by_contact_film_thickness": Shown("d ln lift-off / d ln film floor"),
+    "liftoff_by_contact_fraction": Shown("d ln lift-off / d ln limit"),
+    "critical_mass": Shown("critical mass", "kg"),
+    "whirl_ratio": Shown("whirl ratio"),
+    "rotor_mass": Shown("rotor mass", "kg"),
+    "threshold_speed": Shown("threshold speed", "rpm", _RPM),
+    "eccentricity_x": Shown("displacement x", "µm", 1e6),
+    "eccentricity_y": Shown("displacement y", "µm", 1e6),
+    "bearing_force": Shown("bearing force", "N"),
+    "force_x": Shown("force x", "N"),
+    "force_y": Shown("force y", "N"),
+    "attitude_angle": Shown("attitude angle", "deg", _DEG),
+    "contact_normal_force": Shown("contact normal force", "N"),
+    "contact_fraction": Shown("contact fraction", "%", 100.0),
+    "min_film_thickness": Shown("minimum film thickness", "µm", 1e6),
+    "min_film_thickness_angle": Shown("  at angle", "deg", _DEG),
+    "min_film_thickness_z": Shown("  at z", "mm", 1e3),
+    "knudsen_number": Shown("Knudsen number", "%", 100.0),
+    "peak_pressure": Shown("peak pressure", "kPa", 1e-3),
+    "peak_pressure_angle": Shown("  at angle", "deg", _DEG),
+    "friction_torque": Shown("friction torque", "mN·m", 1e3),
+    "starting_torque": Shown("starting torque", "mN·m", 1e3),
+    "power_loss": Shown("power loss", "W"),
+    "side_leakage": Shown("side leakage", "mg/s", 1e6),
+    "max_bending_stress": Shown("maximum bending stress", "MPa", 1e-6),
+    "overlap": Shown("overlap"),
+    "layers": Shown("layers"),
+    "petal_angle": Shown("petal angle", "deg", _DEG),
+    "pitch": Shown("pitch", "deg", _DEG),
+    "covered_angle": Shown("covered angle", "deg", _DEG),
+    "metric_radius": Shown("metric radius", "mm", 1e3),
+    "radial_clearance": Shown("radial clearance", "µm", 1e6),
+    "pack_clearance": Shown("clearance above solid pack", "µm", 1e6),
+    "root_tilt": Shown("root tilt", "deg", _DEG),
+    "free_petal_height": Shown("free petal height", "µm", 1e6),
+    "first_contact_angle": Shown("first contact at", "deg", _DEG),
+    "bending_stiffness": Shown("bending stiffness", "N·mm", 1e3),
+    "compressibility_number": Shown("compressibility number"),
+    "viscosity": Shown("viscosity", "µPa·s", 1e6),
+    "mean_free_path": Shown("mean free path", "nm", 1e9),
+    "stable": Shown("stable"),
+    "growth_rate": Shown("growth rate", "1/s"),
+    "growth_frequency": Shown("growth frequency", "Hz", 0.5 / math.pi),
+    "solution_path": Shown("solution path"),
+    "known_equilibria": Shown("known equilibria"),
+    "jump": Shown("jump"),
+    "cells_per_pitch": Shown("cells per pitch"),
+    "axial_cells": Shown("axial cells"),
+    "residual": Shown("residual"),
+    "force_residual": Shown("force residual"),
+    "iterations": Shown("iterations"),
+    "factorizations": Shown("factorisations"),
+    "wall_time": Shown("time", "s"),
 }
 
 
@@ -128,7 +122,7 @@ def rows(record: Record) -> list[Row]:
         Label, value and unit.
     """
     reported = record.reported()
-    return [cell(name, reported[name]) for name in _SHOWN if name in reported]
+    return [cell(name, reported[name]) for name in in_order(reported)]
 
 
 def cell(name: str, value: Scalar) -> Row:
@@ -146,7 +140,7 @@ def cell(name: str, value: Scalar) -> Row:
     Row
         Label, value and unit.
     """
-    shown = _SHOWN.get(name, _Show(name.replace("_", " "), SCALARS[name].units.removeprefix("1")))
+    shown = _shown(name)
     if isinstance(value, bool):
         return Row(shown.label, "yes" if value else "no", shown.unit)
     if isinstance(value, str) or SCALARS[name].kind is DataType.INT:
@@ -157,7 +151,8 @@ def cell(name: str, value: Scalar) -> Row:
 def in_order(names: Iterable[str]) -> list[str]:
     """Those of the names that the printed table shows, in its order."""
     known = set(names)
-    return [name for name in _SHOWN if name in known]
+    own = (name for name, variable in SCALARS.items() if variable.shown is not None)
+    return [name for name in (*_SHOWN, *own) if name in known]
 
 
 def with_bar(name: str, values: Sequence[float], error: float) -> tuple[list[str], str]:
@@ -177,7 +172,7 @@ def with_bar(name: str, values: Sequence[float], error: float) -> tuple[list[str
     tuple of (list of str, str)
         Values and bar, in the unit of `cell`.
     """
-    factor = _SHOWN[name].factor if name in _SHOWN else 1.0
+    factor = _shown(name).factor
     bar, size = abs(error * factor), max((abs(v * factor) for v in values if math.isfinite(v)), default=0.0)
     if bar == 0.0 or not math.isfinite(bar) or bar < size * FINEST_SHARE:
         return [cell(name, value).value for value in values], number(bar)
@@ -186,6 +181,12 @@ def with_bar(name: str, values: Sequence[float], error: float) -> tuple[list[str
     decimals = max(0, 1 - math.floor(math.log10(bar)))  # two digits of the bar
     texts = [ABSENT if math.isnan(v) else f"{v * factor:.{decimals}f}" for v in values]
     return texts, f"{bar:.{decimals}f}"
+
+
+def _shown(name: str) -> Shown:
+    """How a scalar is shown: as the table says, as its analysis declares, or plainly in SI units."""
+    plain = Shown(name.replace("_", " "), SCALARS[name].units.removeprefix("1"))
+    return _SHOWN.get(name) or SCALARS[name].shown or plain
 
 
 def number(value: float) -> str:

@@ -8,8 +8,10 @@ from typing import Any
 import pytest
 from numpy.testing import assert_allclose
 
-from petalfoil.analysis import equilibrium, grid_study
-from petalfoil.analysis.grid_study import error_bars, grid_of, grids, resolution, run, table
+import petalfoil
+from petalfoil.analysis.converge import converge
+from petalfoil.analysis.grid_study import error_bars, grid_of, grid_records, grids, resolution, table
+from petalfoil.analysis.solve import point as solved
 from petalfoil.case import Case
 from petalfoil.errors import ConvergenceError, PackageError, UsageError
 from petalfoil.results import Record
@@ -49,23 +51,28 @@ def test_the_length_is_divided_in_step() -> None:
 
 
 def test_speed_and_position_go_to_every_grid() -> None:
-    for one in grids(FLAT, speed=100.0, eccentricity=(1e-6, 2e-6)):
-        assert one.operation.speed == 100.0
-        assert one.operation.eccentricity == (1e-6, 2e-6)
+    for record in converge.records(JOURNAL, speed=100.0, eccentricity=(1e-6, 2e-6), levels=2, coarsest=16):
+        names = ("speed", "eccentricity_x", "eccentricity_y")
+        assert [record.scalars[name] for name in names] == [100.0, 1e-6, 2e-6]
 
 
 @pytest.mark.parametrize(
     ("arguments", "reason"),
-    [({"levels": 1}, "2 to 10"), ({"levels": 11}, "2 to 10"), ({"coarsest": 15}, "begin at 16")],
+    [
+        ({"levels": 1}, "levels: .* at least 2 and at most 10"),
+        ({"levels": 11}, "at least 2 and at most 10"),
+        ({"levels": "three"}, "levels: 'three' is not a whole number"),
+        ({"coarsest": 15}, "coarsest: .* at least 16"),
+    ],
 )
 def test_grids_that_tell_nothing_are_refused(arguments: dict[str, Any], reason: str) -> None:
     with pytest.raises(UsageError, match=reason):
-        grids(FLAT, **arguments)
+        converge.records(FLAT, **arguments)
 
 
 def test_a_position_without_room_is_refused_before_any_grid() -> None:
     with pytest.raises(PackageError):
-        grids(FLAT, eccentricity=(0.0, 1e-3))
+        converge.records(FLAT, eccentricity=(0.0, 1e-3))
 
 
 # ---------------------------------------------------------------------------------------------- studies
@@ -78,12 +85,12 @@ def named(estimates: list[Estimate]) -> dict[str, Estimate]:
 @pytest.fixture(scope="module")
 def smooth() -> list[Record]:
     """A plain gas bearing: no contact, second order."""
-    return run(JOURNAL, levels=3, coarsest=32)
+    return list(converge.records(JOURNAL, levels=3, coarsest=32))
 
 
 def test_a_smooth_figure_has_order_two_and_its_limit(smooth: list[Record]) -> None:
     found = named(table(smooth))["bearing_force"]
-    fine = named(table(run(JOURNAL, levels=3, coarsest=128)))["bearing_force"]
+    fine = named(table(list(converge.records(JOURNAL, levels=3, coarsest=128))))["bearing_force"]
     assert found.trusted
     assert_allclose(found.order, 2.0, atol=0.1)
     assert abs(found.limit - fine.limit) < found.error
@@ -96,13 +103,12 @@ def test_figures_without_a_value_are_left_out_and_no_bookkeeping_is_in(smooth: l
     names = named(table(smooth))
     assert {"bearing_force", "min_film_thickness", "peak_pressure", "friction_torque", "attitude_angle"} <= set(names)
     assert not {"wall_time", "residual", "speed", "iterations", "stable", "converged"} & set(names)
-    centred = run(JOURNAL, eccentricity=(0.0, 0.0), levels=2, coarsest=16)
+    centred = list(converge.records(JOURNAL, eccentricity=(0.0, 0.0), levels=2, coarsest=16))
     assert "attitude_angle" not in named(table(centred))
 
 
 def test_error_bars_belong_to_the_own_grid(smooth: list[Record]) -> None:
-    own = equilibrium.run(JOURNAL)
-    bars = error_bars(own)
+    bars = error_bars(solved(JOURNAL), solved)
     load = named(table(smooth))["bearing_force"]  # 32, 64, 128: the grids of a case with 64 cells, too
     assert_allclose(bars["bearing_force"], abs(load.values[1] - load.values[2]) + load.error, rtol=1e-6)
     assert abs(load.values[1] - load.limit) < bars["bearing_force"]
@@ -118,16 +124,13 @@ def point(cells: int, **scalars: float) -> Record:
     return Record(analysis="solve", scalars={**known, **outcome, **scalars})
 
 
-def test_a_failed_grid_is_recorded_and_the_others_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    solve = equilibrium.run
-
-    def play(case: Case, **options: Any) -> Record:
+def test_a_failed_grid_is_recorded_and_the_others_go_on() -> None:
+    def play(case: Case, progress: Any) -> Record:
         if case.cells_per_pitch == 64:
             raise ConvergenceError("no equilibrium found", history=[{"phase": "film"}], advice="try")
-        return solve(case, **options)
+        return solved(case, progress)
 
-    monkeypatch.setattr(grid_study.equilibrium, "run", play)
-    records = run(JOURNAL, levels=3, coarsest=32)
+    records = list(grid_records(grids(JOURNAL, levels=3, coarsest=32), play))
     assert [record.converged for record in records] == [True, False, True]
     assert records[1].scalars["status"] == "not converged: no equilibrium found"
     assert records[1].history == [{"phase": "film"}]
@@ -177,9 +180,10 @@ def test_angles_are_compared_the_short_way_round() -> None:
 
 def test_progress_rises_from_grid_to_grid() -> None:
     told: list[tuple[float, str]] = []
-    run(JOURNAL, levels=2, coarsest=16, progress=lambda share, text: told.append((share, text)))
+    petalfoil.converge(JOURNAL, levels=2, coarsest=16, progress=lambda share, text: told.append((share, text)))
     shares = [share for share, _ in told]
     assert shares == sorted(shares)
     assert 0.0 <= shares[0] < 1.0 / 3.0 < shares[-1] <= 1.0
     assert told[0][1].startswith("grid 16, ")
-    assert told[-1][1].startswith("grid 32, ")
+    assert told[-2][1].startswith("grid 32, ")
+    assert told[-1] == (1.0, "converge: 2 of 2 grids")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from petalfoil.cli.kinds import MODES
+from petalfoil.analysis.stability import MODES
 from tests.cases import EXAMPLES
 
 PLAIN = str(EXAMPLES / "plain_journal.toml")

@@ -9,15 +9,14 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from typer.testing import Result
 
-from petalfoil.analysis.orbit import Orbit
-from petalfoil.cli import autosave
+from petalfoil.analysis.motion import Orbit
+from petalfoil.cli import keeping
 from petalfoil.errors import ConvergenceError
 from petalfoil.results.store import load
 
@@ -60,15 +59,17 @@ def rotor(tmp_path: Path) -> str:
 
 def stopping(monkeypatch: pytest.MonkeyPatch, after: int, error: BaseException) -> None:
     """Let the motion end with an error after some steps."""
-    taken = Orbit.steps
+    taken = Orbit.advance
 
-    def steps(self: Orbit, progress: Any = None) -> Iterator[float]:
-        for number, share in enumerate(taken(self, progress)):
+    def steps(self: Orbit) -> Iterator[tuple[float, str]]:
+        if after == 0:
+            raise error
+        for number, step in enumerate(taken(self)):
             if number == after:
                 raise error
-            yield share
+            yield step
 
-    monkeypatch.setattr(Orbit, "steps", steps)
+    monkeypatch.setattr(Orbit, "advance", steps)
 
 
 def test_json_gives_lists_over_time(cli: Run, rotor: str, tmp_path: Path) -> None:
@@ -94,9 +95,9 @@ def test_the_table_is_the_same_from_the_file(cli: Run, rotor: str, tmp_path: Pat
     result = cli("orbit", rotor, "--duration", "3 ms", "--out", str(out))
     assert result.exit_code == 0
     assert result.stdout.startswith("orbit: Plain [b]bearing[/b]\n")
-    for label in ("turns", "steps", "factorisations", "failed steps", "largest displacement", "smallest film"):
+    for label in ("turns", "steps", "factorisations", "failed steps", "largest displacement", "minimum film thickness"):
         assert f"\n{label} " in result.stdout
-    for label in ("largest contact share", "dominating whirl over speed", "defect of the gas", "defect of the energy"):
+    for label in ("largest contact fraction", "dominant whirl ratio", "mass-balance error", "energy-balance error"):
         assert f"\n{label} " in result.stdout
     assert cli("show", str(out)).stdout == result.stdout
 
@@ -129,7 +130,8 @@ def test_an_interrupt_keeps_what_is_done(cli: Run, rotor: str, tmp_path: Path, m
     answer = json.loads(result.stdout)
     assert answer["interrupted"] is True
     assert answer["status"].startswith("interrupted after 0.")
-    assert result.stderr == f"{answer['status']}: what is done is kept\n"
+    turns = answer["status"].removeprefix("interrupted after ")
+    assert result.stderr == f"interrupted: {turns} are finished and kept\n"
     stored = load(out)
     assert stored.sizes["time"] == len(answer["time"]) == 22  # the start, 20 steps, and the one it was handed after
     monkeypatch.undo()
@@ -157,26 +159,26 @@ def test_a_motion_that_is_stuck_keeps_what_is_done(
     assert result.exit_code == 3
     assert json.loads(result.stdout)["converged"] is False
     kept, *reason = result.stderr.splitlines()
-    assert kept.startswith("stopped after 0.")
+    assert kept.startswith("stopped: 0.")
     assert reason == ["Error: no step leads on", "Advice: refine the grid"]
     assert load(out).sizes["time"] == 12
-    assert str(load(out)["status"].item()) in kept
+    assert kept == f"stopped: {_turns(out)} are finished and kept in {out}"
 
 
 def test_the_file_grows_with_the_motion(cli: Run, rotor: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out, seen = tmp_path / "orbit.nc", []
-    monkeypatch.setattr(autosave, "PERIOD", 0.0)
-    monkeypatch.setattr(autosave, "MAX_SHARE", 1.0)
-    taken = Orbit.steps
+    monkeypatch.setattr(keeping, "PERIOD", 0.0)
+    monkeypatch.setattr(keeping, "MAX_SHARE", 1.0)
+    taken = Orbit.advance
 
-    def steps(self: Orbit, progress: Any = None) -> Iterator[float]:
-        for share in taken(self, progress):
+    def steps(self: Orbit) -> Iterator[tuple[float, str]]:
+        for step in taken(self):
             if out.exists():
                 ds = load(out)
                 seen.append((ds.sizes["time"], str(ds["status"].item())))
-            yield share
+            yield step
 
-    monkeypatch.setattr(Orbit, "steps", steps)
+    monkeypatch.setattr(Orbit, "advance", steps)
     assert cli("orbit", rotor, "--duration", "0.2 ms", "--out", str(out)).exit_code == 0
     sizes = [size for size, _ in seen]
     assert len(sizes) >= 2
@@ -188,19 +190,19 @@ def test_the_file_grows_with_the_motion(cli: Run, rotor: str, tmp_path: Path, mo
 
 CTRL_C = """
 import os, signal, sys
-from petalfoil.analysis.orbit import Orbit
+from petalfoil.analysis.motion import Orbit
 from petalfoil.cli import main
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # whoever runs the tests may have it ignored
-taken = Orbit.steps
+taken = Orbit.advance
 
-def steps(self, progress=None):
-    for number, share in enumerate(taken(self, progress)):
+def steps(self):
+    for number, step in enumerate(taken(self)):
         if number == 5:
             os.kill(os.getpid(), signal.SIGINT)
-        yield share
+        yield step
 
-Orbit.steps = steps
+Orbit.advance = steps
 main()
 """
 
@@ -212,10 +214,15 @@ def test_ctrl_c_ends_with_its_code(rotor: str, tmp_path: Path) -> None:
         [sys.executable, "-c", CTRL_C, *arguments], capture_output=True, text=True, check=False, env={**os.environ}
     )
     assert done.returncode == 128 + signal.SIGINT
-    assert done.stderr.startswith("interrupted after 0.")
+    assert done.stderr.startswith("interrupted: 0.")
     assert "Traceback" not in done.stderr
     assert "\nstatus " in done.stdout
     assert load(out).sizes["time"] >= 6
+
+
+def _turns(path: Path) -> str:
+    """How far a stored motion has come, by its status."""
+    return str(load(path)["status"].item()).removeprefix("stopped after ")
 
 
 # ---------------------------------------------------------------------------------------------- refusals
@@ -227,16 +234,16 @@ def test_ctrl_c_ends_with_its_code(rotor: str, tmp_path: Path) -> None:
         (("--ramp", "0 rpm : 60 rpm : -1 s"), "--ramp: the segment '0 rpm : 60 rpm : -1 s' goes back in time"),
         (("--ramp", "0 : 60 : 0 s"), "lasts no time"),
         (("--ramp", "0 : 60 : 1 s, 50 : 0 : 1 s"), "--ramp: the segment '50 : 0 : 1 s' does not join on"),
-        (("--duration", "-1 ms"), "duration must be above zero"),
+        (("--duration", "-1 ms"), "--duration: '-1 ms' is outside its range; allowed: greater than 0 s"),
         (("--duration", "1 N"), "--duration: '1 N' measures something else"),
-        (("--revolutions", "0"), "revolutions must be above zero"),
-        (("--revolutions", "1", "--duration", "1 s"), "either revolutions or a duration"),
+        (("--revolutions", "0"), "--revolutions: '0' is outside its range; allowed: greater than 0"),
+        (("--revolutions", "1", "--duration", "1 s"), "--revolutions says nothing beside --duration"),
         (("--initial", "1 um"), "--initial: '1 um' is not a pair"),
         (("--initial", "30 um, 0 um"), "touches the bushing"),
         (("--tolerance", "nought"), "--tolerance: 'nought' does not begin with a number"),
         (("--restart", "nothing.nc"), "no result file nothing.nc"),
         (("--restart", "here.nc", "--initial", "0 um, 0 um"), "--initial says nothing beside --restart"),
-        (("--restart", "here.nc", "--out", "here.nc"), "--out: here.nc is the motion to go on from"),
+        (("--restart", "here.nc", "--out", "here.nc"), "--out: here.nc is what --restart reads"),
         (("--animate", "orbit.mp4"), "--animate: orbit.mp4 has the suffix '.mp4'; known: .html, .gif"),
     ],
 )

@@ -11,10 +11,12 @@ from pathlib import Path
 
 import pytest
 
-from petalfoil.cli.autosave import MAX_SHARE, PERIOD, Autosave
-from petalfoil.cli.series import collect
+from petalfoil.analysis.registry import find
+from petalfoil.analysis.runs import Points
+from petalfoil.cli.keeping import MAX_SHARE, PERIOD, Autosave, follow
 from petalfoil.errors import StoreError
 from petalfoil.results import Record
+from petalfoil.results.layout import Answer, Series
 from petalfoil.results.store import load
 
 from .conftest import point
@@ -94,6 +96,11 @@ class Clock:
         return self.now
 
 
+def finished() -> Answer:
+    """A curve of one point."""
+    return Answer(verb="curve", layout=Series(), records=(point(0.0, 0.0),))
+
+
 def test_file_is_rewritten_as_points_finish(tmp_path: Path) -> None:
     clock, out, seen = Clock(), tmp_path / "curve.nc", []
 
@@ -103,7 +110,7 @@ def test_file_is_rewritten_as_points_finish(tmp_path: Path) -> None:
             yield point(0.0, -1e-6 * index)
             seen.append(load(out).sizes["point"] if out.exists() else 0)
 
-    answer = collect(points(), 6, Autosave(out, "curve", clock), lambda done, text: None)
+    answer = follow(find("curve"), Points(points(), 6), Autosave(out, clock), lambda done, text: None)
     assert len(answer.records) == 6
     assert seen == [0, 0, 3, 3, 3, 6]
 
@@ -116,10 +123,10 @@ def test_slow_writing_is_done_less_often(tmp_path: Path, monkeypatch) -> None:
         written.append(clock.now)
 
     monkeypatch.setattr("petalfoil.results.store.save", slow)
-    autosave = Autosave(tmp_path / "curve.nc", "curve", clock)
+    autosave = Autosave(tmp_path / "curve.nc", clock)
     for _ in range(100):
         clock.now += 1.0
-        autosave.offer([point(0.0, 0.0)])
+        autosave.offer(finished)
     gaps = [later - earlier for earlier, later in itertools.pairwise(written)]
     assert len(gaps) > 1
     assert all(gap >= 3.0 / MAX_SHARE for gap in gaps)
@@ -132,12 +139,12 @@ def test_a_file_that_cannot_be_rewritten_does_not_end_the_run(tmp_path: Path, mo
         raise StoreError("disk full")
 
     monkeypatch.setattr("petalfoil.results.store.save", refuse)
-    autosave = Autosave(tmp_path / "curve.nc", "curve", clock)
+    autosave = Autosave(tmp_path / "curve.nc", clock)
     clock.now += PERIOD
-    autosave.offer([point(0.0, 0.0)])
+    autosave.offer(finished)
     assert capsys.readouterr().err == "Warning: disk full; the run goes on and tries again\n"
 
 
 def test_without_a_file_nothing_is_written(tmp_path: Path) -> None:
-    Autosave(None, "curve").flush([point(0.0, 0.0)])
+    Autosave(None).flush(finished())
     assert list(tmp_path.iterdir()) == []

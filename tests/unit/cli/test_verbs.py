@@ -101,7 +101,7 @@ def test_static_has_no_preload_without_the_centred_point(cli, played, case) -> N
 def test_check_prints_derived_figures(cli, played, case) -> None:
     played.single = lambda: point(0.0, 0.0, overlap=1.5, radial_clearance=1e-3)
     assert json.loads(cli("check", case, "--json").stdout)["overlap"] == 1.5
-    assert "radial room" in cli("check", case).stdout
+    assert "radial clearance" in cli("check", case).stdout
 
 
 @pytest.mark.parametrize("verb", ["solve", "check"])

@@ -11,7 +11,7 @@ from petalfoil import plot
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results import Record
 from petalfoil.results.estimate import Estimate
-from petalfoil.results.study import study_dataset
+from petalfoil.results.study import GridStudy, with_estimates
 
 CELLS = (32, 64, 128)
 
@@ -41,7 +41,8 @@ def study(load_error: float = 0.02, **grid: int) -> xr.Dataset:
         Estimate(name="bearing_force", values=loads, limit=10.0, order=2.0, error=load_error, trusted=True),
         Estimate(name="min_film_thickness", values=films, limit=films[-1], order=nan, error=6e-7, trusted=False),
     ]
-    return study_dataset(records, estimates)
+    layout = GridStudy(conclude=lambda _: estimates)
+    return with_estimates(layout.to_dataset(records, "converge"), estimates)
 
 
 def test_values_limits_and_bars_are_drawn() -> None:

@@ -15,8 +15,8 @@ from numpy.testing import assert_allclose
 from petalfoil import plot
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results import Record, Scalar
-from petalfoil.results.chart import chart_dataset
 from petalfoil.results.dataset import curve_dataset, to_dataset
+from petalfoil.results.grid import grid_dataset
 
 RPM = 30.0 / math.pi
 Texts = Callable[[Figure], str]
@@ -48,7 +48,15 @@ def runup(failing: frozenset[int] = frozenset()) -> xr.Dataset:
 def liftoff(*up: float) -> xr.Dataset:
     sizes = [30.0, 10.0, 20.0][: len(up)]
     records = [
-        record("liftoff", math.isnan(v), load_x=0.0, load_y=-size, share=0.01, liftoff_speed=v, touchdown_speed=0.9 * v)
+        record(
+            "liftoff",
+            math.isnan(v),
+            load_x=0.0,
+            load_y=-size,
+            contact_fraction_limit=0.01,
+            liftoff_speed=v,
+            touchdown_speed=0.9 * v,
+        )
         for size, v in zip(sizes, up, strict=True)
     ]
     return curve_dataset(records, "liftoff")
@@ -67,7 +75,7 @@ def coefficients(speeds: list[float], frequencies: list[float], failing: frozens
 
 
 def chart(masses: dict[tuple[float, float], float]) -> xr.Dataset:
-    return chart_dataset(
+    return grid_dataset(
         [
             record(
                 "stability",
@@ -79,7 +87,8 @@ def chart(masses: dict[tuple[float, float], float]) -> xr.Dataset:
                 whirl_ratio=0.5 if math.isfinite(mass) else math.nan,
             )
             for (size, speed), mass in masses.items()
-        ]
+        ],
+        "stability",
     )
 
 

@@ -9,8 +9,9 @@ import xarray as xr
 
 from petalfoil.results import Record
 from petalfoil.results.estimate import Estimate
+from petalfoil.results.layout import Answer
 from petalfoil.results.store import load, save
-from petalfoil.results.study import error_bars_of, estimates_of, study_dataset, with_error_bars
+from petalfoil.results.study import GridStudy, error_bars_of, estimates_of, with_error_bars
 from petalfoil.results.summary import with_bar
 
 NAN = float("nan")
@@ -22,7 +23,9 @@ ESTIMATE = Estimate(name="bearing_force", values=(2.5, NAN), limit=2.25, order=1
 
 
 def test_a_study_goes_through_a_file_unchanged(tmp_path: Path) -> None:
-    ds = study_dataset(RECORDS, [ESTIMATE])
+    layout = GridStudy(conclude=lambda _: [ESTIMATE])
+    estimates = layout.estimates(RECORDS)
+    ds = Answer(verb="converge", layout=layout, records=tuple(RECORDS), estimates=estimates).to_dataset()
     save(ds, tmp_path / "study.nc")
     again = load(tmp_path / "study.nc")
     xr.testing.assert_identical(again, ds)

@@ -1,4 +1,4 @@
-"""Balances of an answer, computed from the state alone."""
+"""Balances of a solution, computed from its state alone."""
 
 from __future__ import annotations
 
@@ -6,19 +6,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.solution import Solution
+from petalfoil.physics.reynolds import Flux
 
 Array = NDArray[np.float64]
+Fluxes = tuple[Flux, Flux]
 
 
-def mass_balance(answer: Solution) -> float:
-    """Largest defect of a strip's mass over the flow that passes through it [1].
+def mass_balance(answer: Solution, fluxes: Fluxes) -> float:
+    """Largest mass-balance error of a strip over the flow that passes through it [1].
 
     Inflow over the leading edge, outflow over the trailing edge and leakage at the sides are the balances of the
     cells at the strip's border; they must add up to nothing.
     """
-    problem = answer.problem
-    balance = problem.layout.balance
-    fluxes = problem.linearize(answer.x).film.fluxes
+    balance = answer.problem.layout.balance
     gained = balance.outflow(fluxes)
     inside = balance.mesh.unknown >= 0
     inside[:, [0, -1]] = False  # a shared edge belongs to two strips
@@ -28,28 +28,28 @@ def mass_balance(answer: Solution) -> float:
 
 
 def reaction_balance(answer: Solution) -> float:
-    """Largest defect of a petal's loads against its support, in motions that bend nothing (S4), over the loads [1]."""
+    """Largest error of a petal's loads against its support, in motions that bend nothing (S4), over the loads [1]."""
     layout = answer.problem.layout
     w, P = answer.x[: layout.n_wall], answer.x[layout.n_wall :]
     wall, unit = layout.wall, layout.scales.length / layout.scales.force
     loads = layout.push @ (P - 1.0) + wall.contacts.G.T @ answer.lam
     parts = layout.push @ np.abs(P - 1.0) + abs(wall.contacts.G.T) @ answer.lam
-    defect = wall.free_motions.T @ loads + unit * (wall.support @ w + wall.support @ answer.state.fine)
+    error = wall.free_motions.T @ loads + unit * (wall.support @ w + wall.support @ answer.state.fine)
     scale = abs(wall.free_motions.T) @ parts
-    return float(np.max(np.abs(defect) / np.maximum(scale, np.finfo(float).tiny), initial=0.0))
+    return float(np.max(np.abs(error) / np.maximum(scale, np.finfo(float).tiny), initial=0.0))
 
 
-def side_leakage(answer: Solution) -> float:
+def side_leakage(answer: Solution, fluxes: Fluxes) -> float:
     """Gas that leaves at both ends, pressure times volume a second, over `p_a^2 h_ref^3 / (12 mu)` [1].
 
-    What enters again where the film is below ambient pressure is not subtracted: in a film that runs on all round
+    Gas that enters again where the film is below ambient pressure is not subtracted. In a film that runs on all round
     the difference is nothing.
     """
     balance = answer.problem.layout.balance
     axial, unknown = balance.mesh.axial, balance.mesh.unknown
     if axial.flat:
         return 0.0
-    leaving = -balance.outflow(answer.problem.linearize(answer.x).film.fluxes)
+    leaving = -balance.outflow(fluxes)
     ends = leaving[..., [0] if axial.half else [0, -1]]
     shared = unknown[:, -1, unknown.shape[2] // 2] >= 0  # the film runs on over the edge: two halves of one cell
     ends[:, -1] += np.roll(ends[:, 0], -1, axis=0)

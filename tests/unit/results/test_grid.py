@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from petalfoil.results import Record
-from petalfoil.results.chart import chart_dataset
+from petalfoil.results.grid import grid_dataset
 from petalfoil.results.store import load, save
 
 
@@ -23,7 +23,7 @@ POINTS = [point(10.0, 100.0, 1.0), point(10.0, 200.0, math.inf), point(20.0, 100
 
 
 def test_rows_are_loads_and_columns_are_speeds() -> None:
-    ds = chart_dataset(POINTS)
+    ds = grid_dataset(POINTS, "stability")
     assert ds["critical_mass"].dims == ("load", "speed")
     np.testing.assert_array_equal(ds["critical_mass"], [[1.0, math.inf], [4.0, math.nan]])
     np.testing.assert_array_equal(ds["load"], [10.0, 20.0])
@@ -33,12 +33,12 @@ def test_rows_are_loads_and_columns_are_speeds() -> None:
 
 
 def test_what_was_not_computed_stands_empty() -> None:
-    hole = chart_dataset(POINTS).isel(load=1, speed=1)
+    hole = grid_dataset(POINTS, "stability").isel(load=1, speed=1)
     assert (bool(hole["converged"]), str(hole["status"].item()), int(hole["iterations"])) == (False, "", -1)
     assert math.isnan(float(hole["load_y"]))
 
 
 def test_a_table_survives_its_file(tmp_path: Path) -> None:
-    ds = chart_dataset(POINTS)
+    ds = grid_dataset(POINTS, "stability")
     save(ds, tmp_path / "chart.nc")
     xr.testing.assert_identical(load(tmp_path / "chart.nc"), ds)

@@ -1,0 +1,83 @@
+"""`curve`: the load characteristic, the journal displaced step by step, each point from the one before.
+
+A curve follows its branch: along the tangent, on the contact set of the point before. Where that does not lead on, the
+interior point takes over from there; if its answer is not where the branch leads by smaller steps, it is a jump.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from petalfoil.analysis.arguments import DOWNWARD, Direction, Displacements, Speed
+from petalfoil.analysis.classic_method import is_classic, typical_steps
+from petalfoil.analysis.declaration import analysis
+from petalfoil.analysis.displacements import CHARACTERISTIC, displaced
+from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.analysis.operating_point import OperatingPoint, at_position, relaxed
+from petalfoil.analysis.records import asked_position, branch, effort, failed_record, solution_record
+from petalfoil.analysis.runs import Points
+from petalfoil.analysis.session import Clock, Progress, part, telling_work
+from petalfoil.case import Case
+from petalfoil.dynamics.film_stability import leading_eigenvalue
+from petalfoil.equilibrium.continuation import advance
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.errors import ConvergenceError
+from petalfoil.results.layout import Series
+from petalfoil.results.record import Record
+from petalfoil.system.build import build_problem
+from petalfoil.system.coupled import CoupledProblem
+
+
+@analysis(Series(columns=CHARACTERISTIC))
+def curve(
+    case: Case,
+    eccentricities: Displacements,
+    *,
+    direction: Direction = DOWNWARD,
+    speed: Speed = None,
+    progress: Progress | None = None,
+) -> Points:
+    """Follow the load over the displacement of the journal, at one speed.
+
+    Points that do not converge are named and left blank. With --out the file
+    is rewritten as points finish; Ctrl-C keeps what is finished.
+
+    Example: petalfoil curve case.toml --eccentricity "0 um : 280 um : 15"
+
+    Raises
+    ------
+    PackageError
+        A displacement leaves the package no clearance; before any point is computed.
+    """
+    cases = displaced(case, eccentricities, direction, speed)
+    return Points(_points(cases, progress), len(cases))
+
+
+def _points(cases: list[Case], progress: Progress | None) -> Iterator[Record]:
+    before: Solution | None = None
+    base = build_problem(cases[0])
+    for number, case in enumerate(cases):
+        clock, work = Clock(), telling_work(part(progress, number, len(cases)), "curve", typical_steps(case))
+        problem = base.at(displacement=np.array(case.operation.eccentricity) / base.layout.scales.length)
+        try:
+            found = _point(case, problem, before, work)
+        except ConvergenceError as failure:
+            before = None
+            yield failed_record("curve", case, failure, work=work)
+            continue
+        before = found.answer
+        own = (asked_position(case), found.branch, effort(work, clock.seconds))
+        yield solution_record("curve", Evaluation.of(case, before), *own, work=work)
+
+
+def _point(case: Case, problem: CoupledProblem, before: Solution | None, work: RunLog) -> OperatingPoint:
+    if before is None or is_classic(case):
+        found = relaxed(case, problem, work, before) if is_classic(case) else at_position(case, work)
+        return replace(found, branch=replace(found.branch, jump=False))
+    answer, jump = advance(before, problem, work)
+    rate = leading_eigenvalue(answer, work)
+    return OperatingPoint(answer, branch(rate, case, 2 if jump else 1, answer.way, jump))

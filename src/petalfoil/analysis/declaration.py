@@ -1,0 +1,253 @@
+"""An analysis is declared once: a typed function of a case, under a decorator that says what it returns.
+
+::
+
+    @analysis(Point())
+    def balance(case: Case, load: Load = None, speed: Speed = None, *, progress: Progress | None = None) -> Record:
+        \"\"\"Find the position of the journal under a load.\"\"\"
+
+From this follow the Python function ``petalfoil.balance``, the command ``petalfoil balance`` with its options, and all
+outputs. The function gets SI numbers; who calls it may give texts with units.
+"""
+
+from __future__ import annotations
+
+import inspect
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeAlias, get_type_hints
+
+from petalfoil.analysis.arguments import Argument
+from petalfoil.analysis.registry import register
+from petalfoil.analysis.runs import Run, Single
+from petalfoil.analysis.session import Progress, one_thread
+from petalfoil.case import Case
+from petalfoil.errors import UsageError
+from petalfoil.results.layout import Answer, Layout
+from petalfoil.results.record import Record
+from petalfoil.results.schema import Variable, declare
+from petalfoil.units.reading import shown
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Question: TypeAlias = Callable[..., Record | Run]
+Values: TypeAlias = Mapping[str, Any]
+"""Arguments by name, SI."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Export:
+    """A file for another program, by an option of the command line.
+
+    Attributes
+    ----------
+    option : str
+        Name of the option.
+    help, metavar : str
+        Its help text.
+    suffixes : tuple of str
+        Suffixes of its files.
+    writer : str
+        Function of a dataset and a path, as ``module:function``; it is loaded when it is needed.
+    check : callable or None
+        Refuses arguments whose results it could not write; takes them by name in SI units, and their names as the
+        caller knows them.
+    """
+
+    option: str
+    help: str
+    metavar: str
+    suffixes: tuple[str, ...]
+    writer: str
+    check: Callable[[Values, Mapping[str, str]], None] | None = None
+
+
+@dataclass(eq=False)
+class Analysis:
+    """A question about a case.
+
+    Attributes
+    ----------
+    question : callable
+        The function that answers it, in SI numbers.
+    layouts : tuple of Layout
+        What it returns: a point, a series, or either.
+    exports : tuple of Export
+        Files for other programs.
+    excludes : mapping
+        Arguments that say nothing beside others, with these.
+    """
+
+    question: Question
+    layouts: tuple[Layout, ...]
+    exports: tuple[Export, ...] = ()
+    excludes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Look like the function to `help` and to editors."""
+        self.__name__, self.__module__ = self.question.__name__, self.question.__module__
+        self.__doc__ = f"{inspect.getdoc(self.question)}\n\n{_parameters(self)}"
+        self.__signature__ = self.signature
+
+    @property
+    def verb(self) -> str:
+        """Its name."""
+        return self.question.__name__
+
+    @property
+    def help(self) -> str:
+        """The help text: the docstring down to its first section."""
+        return inspect.getdoc(self.question).partition("\n\nRaises\n")[0]  # type: ignore[union-attr]
+
+    @property
+    def summary(self) -> str:
+        """The first line of the help text."""
+        return self.help.partition("\n")[0]
+
+    @cached_property
+    def arguments(self) -> dict[str, Argument]:
+        """The arguments by name, in order, without the case."""
+        hints = get_type_hints(self.question, include_extras=True)
+        declared = {
+            name: [part for part in getattr(hint, "__metadata__", ()) if isinstance(part, Argument)]
+            for name, hint in hints.items()
+        }
+        return {name: declared[name][0] for name in self.signature.parameters if declared.get(name)}
+
+    @cached_property
+    def signature(self) -> inspect.Signature:
+        """The signature of the function."""
+        return inspect.signature(self.question)
+
+    @property
+    def _tells_progress(self) -> bool:
+        return "progress" in self.signature.parameters
+
+    def default(self, name: str) -> Any:
+        """Default of an argument; `inspect.Parameter.empty` where it must be given."""
+        return self.signature.parameters[name].default
+
+    def read(self, given: Values, known_as: Mapping[str, str] | None = None) -> dict[str, Any]:
+        """The arguments in SI numbers; what is None is left to its default.
+
+        Parameters
+        ----------
+        given : mapping
+            What the caller gave, by name.
+        known_as : mapping, optional
+            Names of the arguments as the caller knows them.
+
+        Raises
+        ------
+        UnitError, UsageError
+            An argument cannot be read, is outside its range, or does not go with another.
+        """
+        names = known_as or {name: name for name in self.arguments}
+        there = {name: value for name, value in given.items() if value is not None}
+        for name, others in self.excludes.items():
+            for other in others:
+                if name in there and other in there:
+                    raise UsageError(f"{names[name]} says nothing beside {names[other]}: leave one of them out")
+        return {name: self.arguments[name].named(names[name], value) for name, value in there.items()}
+
+    def start(self, case: Case, values: Values, progress: Progress | None = None) -> Run:
+        """Ask the question; what is checked without a run has been checked when this returns."""
+        if not isinstance(case, Case):
+            raise UsageError(f"{shown(case)} is not a Case; Case.load(path) reads one from a file")
+        with one_thread():
+            begun = self.question(case, **values, **({"progress": progress} if self._tells_progress else {}))
+        return Single(begun) if isinstance(begun, Record) else begun
+
+    def advance(self, run: Run, progress: Progress | None = None) -> Iterator[None]:
+        """Compute on, piece by piece."""
+        with one_thread():
+            for part, text in run.advance():
+                if progress is not None:
+                    progress(part, f"{self.verb}: {text}")
+                yield
+
+    def answer(self, run: Run, ended: str = "") -> Answer:
+        """What a run has computed, in its layout."""
+        records = run.records(ended)
+        layout = next(layout for layout in self.layouts if bool(layout.dimension) is run.is_series)
+        estimates = layout.estimates(records)
+        return Answer(
+            verb=self.verb, layout=layout, records=records, estimates=estimates, interrupted=ended == "interrupted"
+        )
+
+    def layout_of(self, ds: xr.Dataset) -> Layout:
+        """The layout of a stored result."""
+        return next((layout for layout in self.layouts if layout.dimension in ds.dims), self.layouts[0])
+
+    def __call__(self, case: Case, *given: Any, progress: Progress | None = None, **named: Any) -> xr.Dataset:
+        """Answer the question: SI numbers or texts with units in, labelled data out."""
+        run = self._begin(case, given, named, progress)
+        for _ in self.advance(run, progress):
+            pass
+        answer = self.answer(run)
+        for remark in (remark for record in answer.records for remark in record.remarks):
+            warnings.warn(remark, stacklevel=2)
+        return answer.to_dataset()
+
+    def records(self, case: Case, *given: Any, progress: Progress | None = None, **named: Any) -> Iterator[Record]:
+        """The records one by one, as they are computed; arguments are checked at once."""
+        return self._records(self._begin(case, given, named, progress), progress)
+
+    def record(self, case: Case, *given: Any, progress: Progress | None = None, **named: Any) -> Record:
+        """The only record."""
+        (record,) = self.records(case, *given, progress=progress, **named)
+        return record
+
+    def _begin(self, case: Case, given: tuple[Any, ...], named: Values, progress: Progress | None) -> Run:
+        bound = self.signature.bind(case, *given, **named).arguments
+        return self.start(case, self.read({k: v for k, v in bound.items() if k in self.arguments}), progress)
+
+    def _records(self, run: Run, progress: Progress | None) -> Iterator[Record]:
+        given = 0
+        for _ in self.advance(run, progress):
+            if run.is_series:
+                yield from run.records()[given:]
+                given = len(run.records())
+        yield from run.records()[given:]
+
+
+def analysis(
+    *layouts: Layout,
+    exports: tuple[Export, ...] = (),
+    excludes: Mapping[str, tuple[str, ...]] | None = None,
+    results: Mapping[str, Variable] | None = None,
+) -> Callable[[Question], Analysis]:
+    """Declare the function below as an analysis.
+
+    Parameters
+    ----------
+    *layouts : Layout
+        What it returns: one for a point, one for several, or both.
+    exports : tuple of Export
+        Files for other programs.
+    excludes : mapping, optional
+        Arguments that say nothing beside others, with these.
+    results : mapping, optional
+        Results that it introduces, by name.
+    """
+
+    def declared(question: Question) -> Analysis:
+        declare(results or {})
+        made = Analysis(question, layouts, exports, excludes or {})
+        register(made)
+        return made
+
+    return declared
+
+
+def _parameters(declared: Analysis) -> str:
+    """The arguments as a section of the docstring."""
+    lines = ["Parameters", "----------", "case : Case", "    The bearing."]
+    for name, argument in declared.arguments.items():
+        optional = "" if declared.default(name) is inspect.Parameter.empty else ", optional"
+        lines += [f"{name} : {type(argument).__name__}{optional}", f"    {argument.help}"]
+    lines += ["progress : callable, optional", "    Called with the part done (0 to 1) and a text."]
+    return "\n".join([*lines, "", "Returns", "-------", "xarray.Dataset", "    The results, in SI units."])

@@ -1,0 +1,145 @@
+"""A solution evaluated once: film, forces on the journal, friction, leakage, balances, as typed parts of a record."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.analysis.balances import mass_balance, reaction_balance, side_leakage
+from petalfoil.analysis.extremes import highest, lowest
+from petalfoil.case import Case
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.physics.forces import attitude_angle, contact_force, film_force, node_area, viscous_torque
+from petalfoil.results.parts import Balances, Film, Forces
+from petalfoil.system.film_rows import FilmState
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """A solution and its film.
+
+    Attributes
+    ----------
+    case : Case
+        The bearing.
+    answer : Solution
+        Its equilibrium.
+    rows : FilmState
+        Its film in the units of the problem.
+    pressure, film_thickness : (strip, node, axial) arrays
+        Absolute pressure [Pa] and film thickness [m] at the nodes that are solved.
+    reactions : (strip, node) array
+        Normal force of contact on the journal [N].
+    """
+
+    case: Case
+    answer: Solution
+    rows: FilmState
+    pressure: Array
+    film_thickness: Array
+    reactions: Array
+
+    @classmethod
+    def of(cls, case: Case, answer: Solution) -> Evaluation:
+        """Evaluate pressure, film and reactions."""
+        problem, scales = answer.problem, answer.problem.layout.scales
+        film, contacts = problem.layout.wall.film, problem.layout.wall.contacts
+        lam = answer.lam[contacts.journal] * scales.force
+        touching = lam.reshape(*film.theta.shape, -1).sum(axis=2) if len(lam) else np.zeros(film.theta.shape)
+        P, H = problem.pressure(answer.x), problem.film(answer.x)
+        rows = problem.layout.film_rows.at(P, H, problem.bearing_number)
+        return cls(case, answer, rows, P * scales.pressure, H * scales.length, touching)
+
+    @property
+    def normal_force(self) -> float:
+        """Sum of the contact reactions on the journal [N]."""
+        return float(self.reactions.sum())
+
+    @property
+    def lift(self) -> float:
+        """Excess pressure of the film times its area [N]."""
+        area = node_area(self.answer.problem.layout.wall.film, self.case.bearing.journal_radius)
+        return float(np.sum((self.pressure - self.case.gas.ambient_pressure) * area))
+
+    @property
+    def contact_fraction(self) -> float:
+        """Contact fraction (J3) [1]."""
+        return contact_fraction(self.normal_force, self.lift)
+
+    def forces(self) -> Forces:
+        """Forces on the journal (J1), (J2), and the fraction that contact carries (J3)."""
+        film, radius = self.answer.problem.layout.wall.film, self.case.bearing.journal_radius
+        by_film = film_force(film, radius, self.pressure - self.case.gas.ambient_pressure)
+        by_contact, total = contact_force(film.theta, self.reactions), self.normal_force
+        force = by_film + by_contact
+        return Forces(
+            force_x=float(force[0]),
+            force_y=float(force[1]),
+            bearing_force=float(np.hypot(*force)),
+            attitude_angle=attitude_angle(force, self.answer.problem.displacement),
+            film_force_x=float(by_film[0]),
+            film_force_y=float(by_film[1]),
+            contact_force_x=float(by_contact[0]),
+            contact_force_y=float(by_contact[1]),
+            contact_normal_force=total,
+            contact_fraction=contact_fraction(total, self.lift),
+        )
+
+    def film(self) -> Film:
+        """Extremes of film and pressure, friction and leakage."""
+        film, case = self.answer.problem.layout.wall.film, self.case
+        radius, omega, z = case.bearing.journal_radius, case.operation.speed, film.axial.whole_z
+        thin, high = lowest(self.film_thickness, film.phi), highest(self.pressure, film.phi)
+        thinnest = smallest_film(case, self.film_thickness, thin.value)
+        torque = viscous_torque(
+            film,
+            radius,
+            (self.pressure, self.film_thickness),
+            (case.gas.viscosity, omega * radius),
+            case.slip_length * case.gas.ambient_pressure,
+        )
+        torque += case.surface.friction_coefficient * radius * self.normal_force
+        return Film(
+            min_film_thickness=thinnest,
+            min_film_thickness_angle=self._bushing_angle(thin.strip, thin.phi),
+            min_film_thickness_z=float(z[thin.axial]),
+            knudsen_number=case.gas.mean_free_path / thinnest,
+            peak_pressure=high.value,
+            peak_pressure_angle=self._bushing_angle(high.strip, high.phi),
+            friction_torque=torque,
+            power_loss=torque * omega,
+            side_leakage=self._leakage(),
+        )
+
+    def balances(self) -> Balances:
+        """Residual and balances."""
+        return Balances(
+            reference_film_thickness=self.answer.problem.layout.scales.length,
+            residual=self.answer.residual,
+            mass_balance_error=mass_balance(self.answer, self.rows.fluxes),
+            reaction_balance_error=reaction_balance(self.answer),
+        )
+
+    def _bushing_angle(self, strip: int, phi: float) -> float:
+        film = self.answer.problem.layout.wall.film
+        return float(np.mod(film.theta[strip, 0] - film.phi[0] + phi, 2.0 * np.pi))
+
+    def _leakage(self) -> float:
+        """Mass flow out of both ends [kg/s] (J5)."""
+        scales, gas = self.answer.problem.layout.scales, self.case.gas
+        unit = scales.pressure**2 * scales.length**3 / (12.0 * gas.viscosity)  # of pressure times volume flow
+        return side_leakage(self.answer, self.rows.fluxes) * unit * gas.ambient_density / gas.ambient_pressure
+
+
+def contact_fraction(normal_force: float, lift: float) -> float:
+    """Part of what pushes on the journal that its contacts carry (J3) [1]."""
+    return normal_force / (normal_force + lift) if normal_force > 0.0 else 0.0
+
+
+def smallest_film(case: Case, film_thickness: Array, between_nodes: float) -> float:
+    """Minimum film thickness [m]: between nodes, but where the journal touches the contact film thickness."""
+    return max(between_nodes, min(case.surface.contact_film_thickness, float(film_thickness.min())))

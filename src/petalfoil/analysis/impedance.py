@@ -1,0 +1,71 @@
+"""Small motions of the journal about an equilibrium: stiffness and damping at a whirl frequency."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.case import Case
+from petalfoil.dynamics.harmonic_balance import Cycle, Sliding
+from petalfoil.equilibrium.linear_response import Motion
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.errors import ConvergenceError
+from petalfoil.system.friction import friction_of
+
+Array = NDArray[np.float64]
+
+SLOW = 1e-6
+"""Whirl ratio that stands for zero: stiffness depends on its square."""
+
+
+def sliding_at(case: Case, answer: Solution) -> Sliding | None:
+    """Contacts that slide under load, if petals have friction."""
+    friction = friction_of(case, answer.problem.layout)
+    return None if friction is None else Sliding.at(friction, answer)
+
+
+def elastic(case: Case, answer: Solution, work: RunLog) -> Motion:
+    """Small motions about `answer`, if the bearing gives way there; petals with friction stick.
+
+    Raises
+    ------
+    ConvergenceError
+        The pack is bottomed out: the journal cannot move without bending what has no clearance to bend.
+    """
+    sliding = sliding_at(case, answer)
+    motion = Motion.about(answer, None if sliding is None else sliding.stuck(len(answer.x)))
+    if not motion.ties.determinate:
+        raise ConvergenceError(
+            "no coefficients: the journal is on a bottomed-out pack, its stiffness has no bound",
+            history=work.history,
+            advice="lower the load, or ask `balance` what part of it the contacts carry",
+        )
+    return motion
+
+
+def impedance(motion: Motion, frequency: float, speed: float, work: RunLog) -> tuple[Array, Array]:
+    """`K` [N/m] and `C` [N s/m] at one whirl frequency [rad/s], each (2, 2); one factorisation.
+
+    At a frequency of zero, `C` is the limit of small ones.
+    """
+    scales = motion.problem.layout.scales
+    nu = max(frequency / speed, SLOW)
+    Z = -motion.respond(nu, work.probe_solver).force_gradient() * scales.force / scales.length
+    return Z.real, Z.imag / (nu * speed)
+
+
+def cycle_impedance(
+    motion: Motion, frequency: float, speed: float, rubs: tuple[Sliding, float], work: RunLog
+) -> tuple[Array, Array]:
+    """The same where contacts rub in a whirl of an amplitude [m]; `motion` is without their friction.
+
+    Raises
+    ------
+    ConvergenceError
+        Slips and friction did not agree.
+    """
+    scales, (sliding, amplitude) = motion.problem.layout.scales, rubs
+    cycle = Cycle(sliding, motion.respond(frequency / speed, work.probe_solver), amplitude / scales.length)
+    Z = -cycle.force_gradient(work) * scales.force / scales.length
+    return Z.real, Z.imag / frequency

@@ -1,0 +1,191 @@
+"""The journal through time, step by step: weight, loads and unbalance, film and petals moving with it (65)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.analysis.classic_method import newton_only
+from petalfoil.analysis.operating_point import at
+from petalfoil.analysis.records import effort, geometry, record_of
+from petalfoil.analysis.release import OrbitRequest, at_rest, first_position, system_of
+from petalfoil.analysis.restart import continued, end_coordinates, end_state, instant_of
+from petalfoil.analysis.session import Clock
+from petalfoil.analysis.trace import Trace
+from petalfoil.case import Case
+from petalfoil.dynamics.adaptive_steps import MarchOptions, march
+from petalfoil.dynamics.time_state import Instant
+from petalfoil.dynamics.tr_bdf2 import System
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.results.motion import figures_of
+from petalfoil.results.parts import Outcome
+from petalfoil.results.record import Record
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Array = NDArray[np.float64]
+
+TURN = 2.0 * np.pi
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionSummary:
+    """What is told of the motion as a whole."""
+
+    speed: float
+    amplitude: float
+    dominant_whirl_ratio: float
+    revolutions: float
+    rotor_mass: float
+    reference_film_thickness: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stepping:
+    """The steps in time."""
+
+    tolerance: float
+    steps: int
+    rejected_steps: int
+    failed_steps: int
+
+
+@dataclass
+class Orbit:
+    """A motion that is followed step by step, and recorded at any of them.
+
+    Attributes
+    ----------
+    case : Case
+        A bearing with its rotor.
+    request : OrbitRequest
+        How it moves.
+    system : System
+        Both in the units of the problem.
+    start : Instant
+        Where it begins.
+    end : float
+        Where it ends [s].
+    work : RunLog
+        Counts of the start and of all steps.
+    """
+
+    case: Case
+    request: OrbitRequest
+    system: System
+    start: Instant
+    end: float
+    work: RunLog
+    clock: Clock = field(default_factory=Clock)
+    trace: Trace = field(init=False)
+    taken: int = 0
+    residual: float = 0.0
+    is_series: bool = False
+
+    def __post_init__(self) -> None:
+        """Keep the start."""
+        self.trace = Trace(self.case, self.system)
+        self.trace.add(self.start)
+
+    @classmethod
+    def begin(cls, case: Case, request: OrbitRequest, restart: xr.Dataset | None = None) -> Orbit:
+        """Find the start: an equilibrium, or the end of an earlier motion of the same bearing.
+
+        Raises
+        ------
+        UsageError
+            The case has no rotor, or the result is that of another bearing.
+        ConvergenceError
+            No equilibrium was found to start from.
+        """
+        newton_only(case)
+        clock, work, schedule = Clock(), RunLog(), request.schedule(case)
+        if restart is None:
+            placed = at(case, eccentricity=first_position(case, request, work))
+            system, time = system_of(placed, schedule, request.load), 0.0
+            start = at_rest(placed, system, request, work)
+        else:
+            placed, time = case, continued(case, schedule, restart)
+            system = system_of(placed, schedule, request.load)
+            start = instant_of(restart, system, time * system.rotor.clock.rate)
+        return cls(placed, request, system, start, time + request.lasts(schedule, time), work, clock)
+
+    def advance(self) -> Iterator[tuple[float, str]]:
+        """Take the steps; give the part of the motion that is done.
+
+        Raises
+        ------
+        ConvergenceError
+            No step, however short, leads on.
+        """
+        options = MarchOptions(tolerance=self.request.tolerance, longest=self.request.longest)
+        begin, end = self.start.tau, self.end * self.system.rotor.clock.rate
+        for stepped in march(self.system, self.start, end, self.work, options):
+            self.trace.add(stepped.end)
+            self.taken += 1
+            self.residual = max(self.residual, stepped.residual)
+            turns = self.trace.rows[-1]["shaft_angle"] / TURN
+            yield (stepped.end.tau - begin) / (end - begin), f"{turns:.1f} turns"
+
+    def records(self, ended: str = "") -> tuple[Record, ...]:
+        """The motion so far."""
+        return (self.record(f"{ended} after {self._turns:.4g} turns" if ended else "converged"),)
+
+    def finished(self) -> str:
+        """How many turns are done."""
+        return f"{self._turns:.4g} turns are finished" if self.taken else ""
+
+    @property
+    def _turns(self) -> float:
+        """Turns of the shaft so far."""
+        return float(self.trace.rows[-1]["shaft_angle"] - self.trace.rows[0]["shaft_angle"]) / TURN
+
+    def record(self, status: str = "converged") -> Record:
+        """Everything so far as a record."""
+        time, over = self.trace.histories()
+        coords, pictures = self.trace.pictures()
+        last = self.trace.last or self.start
+        return record_of(
+            "orbit",
+            self.case,
+            *geometry(self.case),
+            self._summary(time, over),
+            self.trace.audits(over),
+            self._stepping(),
+            effort(self.work, self.clock.seconds),
+            Outcome(status=status, residual=float(self.residual)),
+            work=RunLog(),
+            fields={**over, **pictures, **end_state(last, self.system)},
+            coords={"time": time, **coords, **end_coordinates(last)},
+        )
+
+    def _summary(self, time: Array, over: dict[str, Array]) -> MotionSummary:
+        return MotionSummary(
+            speed=self.case.operation.speed,
+            **figures_of(time, over),
+            revolutions=float(over["shaft_angle"][-1] - over["shaft_angle"][0]) / TURN,
+            rotor_mass=0.0 if self.case.rotor is None else self.case.rotor.mass,
+            reference_film_thickness=self.system.problem.layout.scales.length,
+        )
+
+    def _stepping(self) -> Stepping:
+        refused = [row.get("outcome") for row in self.work.history if row["phase"] == "motion"]
+        return Stepping(
+            tolerance=self.request.tolerance,
+            steps=self.taken,
+            rejected_steps=refused.count("error"),
+            failed_steps=refused.count("no answer"),
+        )
+
+
+def follow(case: Case, request: OrbitRequest, restart: xr.Dataset | None = None) -> Record:
+    """The record of a whole motion."""
+    orbit = Orbit.begin(case, request, restart)
+    for _ in orbit.advance():
+        pass
+    return orbit.record()

@@ -1,0 +1,196 @@
+"""The equilibrium that an analysis is about: at a position of the journal, or under a load.
+
+Where several equilibria exist, the answer is the one that the assembled package reaches from rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from petalfoil.analysis.classic_method import by_classic, newton_only
+from petalfoil.analysis.records import branch
+from petalfoil.analysis.speeds import SpeedLine
+from petalfoil.case import Case, ModelKind
+from petalfoil.dynamics.film_stability import leading_eigenvalue
+from petalfoil.equilibrium.ascent import ascend
+from petalfoil.equilibrium.branches import distinct, probe
+from petalfoil.equilibrium.cold_start import nothing_found, solve_cold
+from petalfoil.equilibrium.loaded import Balance
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.equilibrium.under_load import balance_cold
+from petalfoil.equilibrium.warm_start import settle
+from petalfoil.errors import ConvergenceError, UsageError
+from petalfoil.results.parts import AppliedLoad, Branch
+from petalfoil.system.build import build_problem
+from petalfoil.system.coupled import CoupledProblem
+from petalfoil.walls import Capability, wall_kind
+
+Vector = tuple[float, float]
+
+PROBE_CELLS, PROBE_AXIAL = 24, 6
+"""Grid on which other equilibria are looked for."""
+
+
+@dataclass(frozen=True)
+class ForceResidual:
+    """What is left of the balance of film, contacts and load."""
+
+    force_residual: float
+
+
+@dataclass(frozen=True)
+class OperatingPoint:
+    """An equilibrium and what is known of it.
+
+    Attributes
+    ----------
+    answer : Solution
+        Film, petals and contacts.
+    branch : Branch
+        How it was reached, and whether it is stable.
+    loaded : tuple
+        Load and force residual; empty where the position was given.
+    """
+
+    answer: Solution
+    branch: Branch
+    loaded: tuple[object, ...] = ()
+
+
+def operating_point(case: Case, load: Vector | None, work: RunLog) -> OperatingPoint:
+    """The equilibrium under a load [N] where one is given, else at the case's eccentricity.
+
+    Raises
+    ------
+    ConvergenceError
+        None was found.
+    """
+    if load is None and case.operation.load is None:
+        return at_position(case, work)
+    wanted = applied_load(case, load)
+    found, known = under_load(at(case, eccentricity=(0.0, 0.0)), wanted, work)
+    return OperatingPoint(found.answer, known, (AppliedLoad.of(wanted), ForceResidual(found.force_residual)))
+
+
+def at(case: Case, speed: float | None = None, eccentricity: Vector | None = None) -> Case:
+    """The case at another speed [rad/s] and eccentricity [m], where they are given; checked anew."""
+    given = {"operation.speed": speed, "operation.eccentricity": eccentricity}
+    changes = {name: value for name, value in given.items() if value is not None}
+    return case.replace(**changes) if changes else case
+
+
+def applied_load(case: Case, load: Vector | None) -> Vector:
+    """The load to balance [N]: the one given, else the case's."""
+    newton_only(case)
+    wanted = case.operation.load if load is None else load
+    if wanted is None:
+        raise UsageError("no load to balance: give one, or set operation.load in the case")
+    if not np.hypot(*wanted) > 0.0:
+        raise UsageError("a load of zero leaves the journal where it is: give one that is not zero")
+    return wanted
+
+
+def under_load(case: Case, load: Vector, work: RunLog) -> tuple[Balance, Branch]:
+    """The balance to report: if the first one found is unstable, the one that is followed from rest under the load.
+
+    Raises
+    ------
+    ConvergenceError
+        No position was found.
+    """
+    problem = build_problem(case)
+    found = balance_cold(problem, np.array(load) / problem.layout.scales.force, work)
+    rate = leading_eigenvalue(found.answer, work)
+    alone = branch(rate, case, 1, found.answer.way)
+    if not rate.real > 0.0:
+        return found, alone
+    try:
+        risen = SpeedLine(case, load, work).climb(case.operation.speed)
+    except ConvergenceError as failure:
+        work.note("climb", outcome=str(failure))
+        return found, alone
+    other = leading_eigenvalue(risen.answer, work)
+    if other.real > 0.0:
+        return found, alone
+    return risen, branch(other, case, 2, "followed from rest under the load; another balance is unstable")
+
+
+def at_position(case: Case, work: RunLog) -> OperatingPoint:
+    """The equilibrium to report at the case's eccentricity.
+
+    Raises
+    ------
+    ConvergenceError
+        Neither a cold start nor the way up from rest found one.
+    """
+    problem = build_problem(case)
+    found = from_nothing(problem, work)
+    rates = [leading_eigenvalue(answer, work) for answer in found]
+    several = wall_kind(case).can(Capability.SEVERAL_EQUILIBRIA)
+    known = probe(build_problem(coarse(case)), work) if several else 1
+    path = ""
+    if known > 1 or not found or rates[0].real > 0.0:
+        risen, jumps = ascend(problem, work)
+        if risen is not None:
+            found, rates = [risen, *found], [leading_eigenvalue(risen, work), *rates]
+            path = ascent_text(jumps)
+    if not found:
+        raise nothing_found(work)
+    if rates[0].real > 0.0:
+        found, rates, path = settled(found, rates, path, work)
+    return OperatingPoint(found[0], branch(rates[0], case, max(known, distinct(found)), path or found[0].way))
+
+
+def relaxed(case: Case, problem: CoupledProblem, work: RunLog, neighbour: Solution | None = None) -> OperatingPoint:
+    """The equilibrium that the paper's method comes to rest at, from nothing or from a neighbouring point.
+
+    Raises
+    ------
+    ConvergenceError
+        A number of steps was used up.
+    """
+    answer = by_classic(problem, work, neighbour)
+    return OperatingPoint(answer, branch(leading_eigenvalue(answer, work), case, 1, answer.way))
+
+
+def from_nothing(problem: CoupledProblem, work: RunLog) -> list[Solution]:
+    """The answer of a cold start, if there is one."""
+    try:
+        return [solve_cold(problem, work)]
+    except ConvergenceError as failure:
+        work.note("film", outcome=str(failure))
+        return []
+
+
+def settled(
+    found: list[Solution], rates: list[complex], path: str, work: RunLog
+) -> tuple[list[Solution], list[complex], str]:
+    """Put first where the unstable equilibrium at the head of `found` goes, if that is stable."""
+    stable = [k for k, rate in enumerate(rates) if not rate.real > 0.0]
+    rested = None if stable else settle(found[0], work)
+    if rested is not None:
+        found, rates = [*found, rested], [*rates, leading_eigenvalue(rested, work)]
+        stable = [] if rates[-1].real > 0.0 else [len(found) - 1]
+    if not stable:
+        return found, rates, path
+    first = stable[0]
+    order = [first, *(k for k in range(len(found)) if k != first)]
+    text = f"{found[first].way}; the branch from rest has lost its stability below this speed"
+    return [found[k] for k in order], [rates[k] for k in order], text
+
+
+def coarse(case: Case) -> Case:
+    """The same bearing on the grid of the probe."""
+    changes: dict[str, object] = {"model.cells_per_pitch": min(case.cells_per_pitch, PROBE_CELLS)}
+    if case.model.kind is ModelKind.THREE_D:
+        changes["model.axial_cells"] = min(case.axial_cells, PROBE_AXIAL)
+    return case.replace(**changes)
+
+
+def ascent_text(jumps: int) -> str:
+    """How the followed branch was reached."""
+    text = "followed from the assembled package at rest up to speed"
+    return text if jumps == 0 else f"{text}; the branch ended {jumps} time(s) on the way and the bearing settled anew"

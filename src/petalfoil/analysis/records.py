@@ -1,0 +1,106 @@
+"""Records from typed parts: of a solution, of a point without one, and the parts they share."""
+
+from __future__ import annotations
+
+import math
+
+from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.analysis.fields import all_fields, coordinates
+from petalfoil.case import Case
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.results.parts import Branch, Effort, Geometry, Outcome, Position, scalars_of
+from petalfoil.results.record import Array, Record
+from petalfoil.walls import wall_kind
+
+
+def solution_record(analysis: str, found: Evaluation, *parts: object, work: RunLog) -> Record:
+    """The record of an equilibrium: its film, forces, balances and fields, and what its analysis adds."""
+    case, answer = found.case, found.answer
+    fields = all_fields(found)
+    film = (found.forces(), found.film(), found.balances(), wall_kind(case).scalars(fields))
+    return record_of(
+        analysis,
+        case,
+        *geometry(case),
+        *film,
+        *parts,
+        Outcome(),
+        work=work,
+        fields=dict(fields),
+        coords=coordinates(case, answer),
+    )
+
+
+def failed_record(analysis: str, case: Case, reason: object, *parts: object, work: RunLog) -> Record:
+    """The record of a point without a solution: what was asked, what it cost, and why there is none."""
+    ended = Outcome(converged=False, status=f"not converged: {reason}", residual=math.nan)
+    return record_of(analysis, case, *geometry(case), asked_position(case), *parts, effort(work), ended, work=work)
+
+
+def record_of(
+    analysis: str,
+    case: Case,
+    *parts: object,
+    work: RunLog,
+    fields: dict[str, Array] | None = None,
+    coords: dict[str, Array] | None = None,
+) -> Record:
+    """A record from its parts."""
+    return Record(
+        analysis=analysis,
+        scalars=scalars_of(*parts),
+        fields=fields or {},
+        coords=coords or {},
+        case_toml=case.to_toml(),
+        title=case.title,
+        history=list(work.history),
+    )
+
+
+def geometry(case: Case) -> tuple[object, ...]:
+    """Sizes of the bearing and of its wall."""
+    bearing = Geometry(
+        journal_radius=case.bearing.journal_radius,
+        bushing_radius=case.bearing.bushing_radius,
+        length=case.bearing.length,
+        ambient_pressure=case.gas.ambient_pressure,
+        contact_film_thickness=case.surface.contact_film_thickness,
+    )
+    return bearing, wall_kind(case).geometry(case)
+
+
+def asked_position(case: Case) -> Position:
+    """Speed and displacement that the case asks for."""
+    e_x, e_y = case.operation.eccentricity
+    return Position(speed=case.operation.speed, eccentricity_x=e_x, eccentricity_y=e_y)
+
+
+def position(case: Case, answer: Solution) -> Position:
+    """Speed of the case and displacement of a solution."""
+    e = answer.problem.displacement * answer.problem.layout.scales.length
+    return Position(speed=case.operation.speed, eccentricity_x=float(e[0]), eccentricity_y=float(e[1]))
+
+
+def effort(work: RunLog, wall_time: float | None = None) -> Effort:
+    """What a run cost."""
+    return Effort(
+        iterations=sum("residual" in row or row["phase"] in ("contacts", "classic") for row in work.history),
+        factorizations=work.film.factorizations,
+        pack_iterations=work.package.factorizations,
+        probe_factorizations=work.probes.factorizations,
+        wall_time=wall_time,
+    )
+
+
+def branch(rate: complex, case: Case, known: int, path: str, jump: bool | None = None) -> Branch:
+    """Branch and stability, from the leading eigenvalue; a shaft at rest has no film that could grow."""
+    omega = case.operation.speed
+    return Branch(
+        stable=not rate.real > 0.0,
+        growth_rate=rate.real * omega if not math.isnan(rate.real) else math.nan,
+        growth_frequency=abs(rate.imag) * omega if not math.isnan(rate.imag) else math.nan,
+        known_equilibria=known,
+        solution_path=path,
+        jump=jump,
+    )

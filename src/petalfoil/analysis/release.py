@@ -1,0 +1,155 @@
+"""Where a motion begins: the request, the system, and the journal released from an equilibrium."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.analysis.operating_point import Vector, at, at_position, under_load
+from petalfoil.case import Case
+from petalfoil.dynamics.adaptive_steps import MarchOptions
+from petalfoil.dynamics.rotor import RotorMotion, constant_load
+from petalfoil.dynamics.speed_schedule import Schedule
+from petalfoil.dynamics.time_state import Instant, TimeState
+from petalfoil.dynamics.tr_bdf2 import System
+from petalfoil.equilibrium.cold_start import solve_cold
+from petalfoil.equilibrium.loaded import journal_force
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.errors import UsageError
+from petalfoil.system.build import build_pair, build_problem
+from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.film_rows import FilmState
+from petalfoil.system.friction import FrictionState, friction_of
+from petalfoil.system.loaded import FilmForce
+from petalfoil.system.time_step import StepProblem
+
+Array = NDArray[np.float64]
+
+TOLERANCE = 1e-3
+"""Local error of a step in reference films and ambient pressures."""
+
+
+@dataclass(frozen=True)
+class OrbitRequest:
+    """What a motion is asked for.
+
+    Attributes
+    ----------
+    revolutions : float or None
+        Turns of the shaft; by default what `duration` or the schedule lasts, else 20.
+    duration : float or None
+        Time [s], instead of turns.
+    initial : (2,), "balance" or None
+        Displacement that the journal is released from [m], or where the constant load balances; by default the case's.
+    speeds : list of (time, speed) or None
+        Speed of the shaft [s, rad/s]; by default the case's.
+    load : (2,) or None
+        Constant load [N]; by default the case's, without one the weight.
+    slope : (2,)
+        Slopes that a shaft in two bearings is released with [rad].
+    tolerance : float
+        Local error of a step in reference films and ambient pressures.
+    longest : float
+        Longest step, as an angle of the shaft at its highest speed [rad].
+    """
+
+    revolutions: float | None = None
+    duration: float | None = None
+    initial: Vector | Literal["balance"] | None = None
+    speeds: tuple[tuple[float, float], ...] | None = None
+    load: Vector | None = None
+    tolerance: float = TOLERANCE
+    longest: float = MarchOptions.longest
+    slope: tuple[float, float] = (0.0, 0.0)
+
+    def schedule(self, case: Case) -> Schedule:
+        """Speed over time."""
+        return Schedule.through(list(self.speeds or ((0.0, case.operation.speed),)))
+
+    def lasts(self, schedule: Schedule, start: float) -> float:
+        """Time from `start` to the end [s].
+
+        Raises
+        ------
+        UsageError
+            The shaft never turns that often.
+        """
+        if self.duration is not None:
+            return self.duration
+        if self.revolutions is None and len(schedule.times) > 1 and schedule.times[-1] > start:
+            return float(schedule.times[-1]) - start
+        turns = self.revolutions or 20.0
+        end = schedule.instant(schedule.angle(start) + 2.0 * np.pi * turns)
+        if not np.isfinite(end):
+            raise UsageError(f"the shaft never turns {turns:g} times at these speeds: give a duration instead")
+        return end - start
+
+
+def first_position(case: Case, request: OrbitRequest, work: RunLog) -> Vector | None:
+    """Where the journal is released [m]; None where the case says so.
+
+    Raises
+    ------
+    ConvergenceError
+        No position balances the load.
+    """
+    if request.initial != "balance":
+        return request.initial
+    load = constant_load(case, request.load)
+    if case.rotor is not None and case.rotor.span:
+        load = (0.5 * load[0], 0.5 * load[1])  # the bearings share it
+    there = at(case, request.schedule(case).speed(0.0), (0.0, 0.0))
+    found, _ = under_load(there, load, work)
+    x, y = found.answer.problem.displacement * found.answer.problem.layout.scales.length
+    return float(x) - (0.0 if case.rotor is None else case.rotor.unbalance), float(y)
+
+
+def system_of(case: Case, schedule: Schedule, load: Vector | None) -> System:
+    """The bearing of `case` and its rotor in the units of the problem."""
+    problem = build_pair(case) if case.rotor is not None and case.rotor.span else build_problem(case)
+    if problem.layout.film_rows.content is not None and len(problem.displacement) > 2:
+        raise UsageError("two 2-D films without ends hold no gas of their own: take the 3-D model or ambient edges")
+    rotor = RotorMotion.of(case, problem.layout.scales, schedule, load)
+    still = StepProblem(problem.layout, 0.0, problem.displacement, rotor.clock.bearing_number)
+    return System(still, rotor, FilmForce.of(problem), friction_of(case, problem.layout))
+
+
+def at_rest(case: Case, system: System, request: OrbitRequest, work: RunLog) -> Instant:
+    """The journal held where it is, film and petals in equilibrium, and released at time zero.
+
+    From a balance its mass centre rests, and the shaft turns about that: a start without a blow.
+    """
+    rotor, scales = case.rotor, system.problem.layout.scales
+    speed, place = system.rotor.schedule.speed(0.0), system.problem.displacement
+    off = np.zeros_like(place)  # of the axis from the mass centre, over the reference length
+    if rotor is not None and request.initial == "balance":
+        off[:2] = [-rotor.unbalance / scales.length, 0.0]
+    if rotor is None or len(place) == 2:
+        answer = at_position(at(case, speed), work).answer
+    else:
+        place = place + rotor.lever / scales.length * np.array([0.0, 0.0, *request.slope])
+        both = system.problem.at(bearing_number=system.rotor.bearing_number(0.0), displacement=place)
+        answer = solve_cold(CoupledProblem(both.layout, both.bearing_number, both.displacement), work)
+    turning = np.zeros_like(place)
+    turning[:2] = np.array([-off[1], off[0]]) * speed / system.rotor.clock.rate
+    return released(system, 0.0, (answer.x, answer.lam, answer.in_contact), (place, turning))
+
+
+def released(
+    system: System, tau: float, state: tuple[Array, Array, NDArray[np.bool_]], moving: tuple[Array, Array]
+) -> Instant:
+    """An instant from unknowns, reactions and closed gaps, position and velocity: its rates by the equations."""
+    (x, lam, closed), (e, v), rotor = state, moving, system.rotor
+    problem = system.problem.at(displacement=e, bearing_number=rotor.bearing_number(tau))
+    film = FilmState(problem.layout.film_rows, problem.pressure(x), problem.film(x), problem.bearing_number)
+    outflow = film.residual.copy()
+    if problem.layout.film_rows.content is not None:
+        outflow[0] = 0.0  # the content stands in place of this balance
+    force = journal_force(problem, x[problem.positive], lam) + rotor.outside(tau) - rotor.gyroscopic(tau) @ v
+    speeding = np.asarray(np.linalg.solve(rotor.inertia, force), dtype=np.float64)
+    change = TimeState(-outflow, v, speeding)
+    rubbed = None if system.friction is None else FrictionState.fresh(system.friction, x, lam)
+    return Instant(tau, x, lam, closed, TimeState(problem.stored(x), e, v), change, rubbed)

@@ -1,0 +1,94 @@
+"""An analysis under way: what is computed step by step, and can be kept when it is stopped."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from petalfoil.results.record import Record
+
+
+class Run(Protocol):
+    """An analysis that has begun.
+
+    Attributes
+    ----------
+    is_series : bool
+        Whether its records are points of a series rather than one answer.
+    """
+
+    is_series: bool
+
+    def advance(self) -> Iterator[tuple[float, str]]:
+        """Compute on; after each piece that can be kept, give the part done (0 to 1) and how far that is."""
+
+    def records(self, ended: str = "") -> tuple[Record, ...]:
+        """What is computed so far; `ended` says why it is not all, empty where it is."""
+
+    def finished(self) -> str:
+        """What is computed so far in words; empty where there is nothing to keep."""
+
+
+@dataclass
+class Single:
+    """One answer, which is there at once."""
+
+    record: Record
+    is_series: bool = False
+
+    def advance(self) -> Iterator[tuple[float, str]]:
+        """Nothing is left to compute."""
+        yield from ()
+
+    def records(self, ended: str = "") -> tuple[Record, ...]:
+        """The answer."""
+        return (self.record,)
+
+    def finished(self) -> str:
+        """Nothing that could be kept of a part."""
+        return ""
+
+
+@dataclass
+class Points:
+    """Points, computed one after another.
+
+    Attributes
+    ----------
+    source : iterator of Record
+        Computes a point whenever the next is asked for.
+    count : int
+        How many there will be.
+    noun : str
+        What they are called.
+    least : int
+        Number of converged points below which nothing is worth keeping; 0 keeps failed ones too.
+    parts : sequence of float or None
+        Part of the whole that is done after each point; by default all cost the same.
+    """
+
+    source: Iterator[Record]
+    count: int
+    noun: str = "points"
+    least: int = 0
+    parts: Sequence[float] | None = None
+    done: list[Record] = field(default_factory=list)
+    is_series: bool = True
+
+    def advance(self) -> Iterator[tuple[float, str]]:
+        """Compute point after point."""
+        for record in self.source:
+            self.done.append(record)
+            number = len(self.done)
+            part = number / self.count if self.parts is None else self.parts[number - 1]
+            yield part, f"{number} of {self.count} {self.noun}"
+
+    def records(self, ended: str = "") -> tuple[Record, ...]:
+        """The finished points."""
+        return tuple(self.done)
+
+    def finished(self) -> str:
+        """How many are finished."""
+        enough = sum(record.converged for record in self.done) >= self.least
+        return f"{len(self.done)} of {self.count} {self.noun} are finished" if self.done and enough else ""

@@ -1,0 +1,97 @@
+"""The speed at which a rigid rotor on the bearing becomes unstable."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize import brentq
+
+from petalfoil.analysis.impedance import elastic
+from petalfoil.analysis.operating_point import Vector, applied_load, at, operating_point
+from petalfoil.analysis.speeds import SpeedLine
+from petalfoil.case import Case
+from petalfoil.dynamics.critical_mass import Whirl, neutral_whirl
+from petalfoil.dynamics.rotor import GRAVITY
+from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.errors import ConvergenceError
+
+RANGE, FACTOR = 16.0, 1.3
+"""Speeds between which the threshold is looked for, over the case's, and the factor between looks."""
+
+PRECISION = 1e-3
+"""Relative precision of the threshold speed."""
+
+Threshold = tuple[float, str]
+"""Threshold speed [rad/s], nan where there is none, and how the search ended."""
+
+
+def rotor_mass(case: Case, load: Vector | None, mass: float | None) -> float:
+    """The mass on this bearing [kg]: as asked, else the case's, else the load's; nan where nothing tells it."""
+    if mass is not None:
+        return mass
+    if case.rotor is not None:
+        return case.rotor.mass_on_bearing
+    if load is None and case.operation.load is None:
+        return math.nan
+    return float(np.hypot(*applied_load(case, load))) / GRAVITY  # a load without a mass is taken for a weight
+
+
+def margin(whirl: Whirl, mass: float) -> float:
+    """Logarithm of the critical mass over `mass`: positive where the rotor is stable."""
+    return math.log(whirl.mass / mass) if math.isfinite(whirl.mass) else NEVER
+
+
+NEVER = 50.0
+"""Margin of a bearing on which a rotor of any mass is stable."""
+
+
+def threshold_speed(case: Case, load: Vector | None, start: tuple[float, Whirl], work: RunLog) -> Threshold:
+    """Speed at which a rotor of the mass becomes unstable, within the range.
+
+    Upward from a stable bearing, downward from an unstable one. A speed without an equilibrium ends the search.
+    """
+    mass, whirl = start
+    if math.isnan(mass):
+        return math.nan, "no threshold speed: give a mass or a load"
+    margin_at = margins(case, load, mass, work)
+    known, here = case.operation.speed, margin(whirl, mass)
+    factor = FACTOR if here > 0.0 else 1.0 / FACTOR
+    first, last = sorted((known, known * RANGE if here > 0.0 else known / RANGE))
+    try:
+        while first <= known * factor <= last:
+            ahead = known * factor
+            there = margin_at(ahead)
+            if (there > 0.0) != (here > 0.0):
+                return float(brentq(margin_at, min(known, ahead), max(known, ahead), rtol=PRECISION)), ""
+            known, here = ahead, there
+    except ConvergenceError as failure:
+        work.note("threshold", outcome=str(failure))
+        return math.nan, f"no threshold speed: no operating point beyond {in_rpm(known)}"
+    if here > 0.0:
+        return math.nan, f"no threshold speed: the rotor is stable up to {in_rpm(known)}"
+    return math.nan, f"no threshold speed: the rotor is unstable down to {in_rpm(known)}"
+
+
+def margins(case: Case, load: Vector | None, mass: float, work: RunLog) -> Callable[[float], float]:
+    """The margin over speed [rad/s], under the load or at the case's position."""
+    if load is None and case.operation.load is None:
+
+        def in_place(speed: float) -> float:
+            answer = operating_point(at(case, speed), None, work).answer
+            return margin(neutral_whirl(elastic(case, answer, work), speed, work), mass)
+
+        return in_place
+    line = SpeedLine(case, applied_load(case, load), work)
+
+    def under_load(speed: float) -> float:
+        answer = line.at(speed).answer
+        return margin(neutral_whirl(elastic(case, answer, work), speed, work), mass)
+
+    return under_load
+
+
+def in_rpm(speed: float) -> str:
+    """A speed as people read it."""
+    return f"{speed * 30.0 / math.pi:.0f} rpm"

@@ -1,0 +1,131 @@
+"""The declaration of an analysis as a command: its options, and what a call of it does."""
+
+from __future__ import annotations
+
+import inspect
+from importlib import import_module
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from petalfoil.analysis import registry
+from petalfoil.analysis.arguments import Argument, Flag, StoredResult
+from petalfoil.analysis.declaration import Analysis
+from petalfoil.case import Case
+from petalfoil.cli.failures import handled
+from petalfoil.cli.keeping import Autosave, follow
+from petalfoil.cli.outputs import Export, Outputs, Writer
+from petalfoil.cli.progress import bar
+from petalfoil.errors import UsageError
+
+KEYWORD = inspect.Parameter.KEYWORD_ONLY
+REQUIRED = inspect.Parameter.empty
+
+CASE_FILE = Annotated[Path, typer.Argument(metavar="CASE", help="Case to run, a TOML file.")]
+JSON = Annotated[bool, typer.Option("--json", help="Print one JSON object in SI units instead of the table.")]
+OUT = Annotated[Path | None, typer.Option("--out", metavar="FILE.nc", help="Write the whole result to a NetCDF file.")]
+PLOT = Annotated[Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw a figure: .png, .svg or .pdf.")]
+OUTPUTS = {"as_json": (JSON, False), "out": (OUT, None), "plot": (PLOT, None)}
+"""Options that every command has, with their defaults."""
+
+
+def command_of(verb: str) -> Any:
+    """The command of an analysis."""
+    analysis = registry.find(verb)
+    if analysis is None:
+        raise ValueError(f"no analysis is called {verb!r}")
+
+    def ask(**given: Any) -> None:
+        call(analysis, given)
+
+    options = [inspect.Parameter("case", KEYWORD, annotation=CASE_FILE), *_options(analysis)]
+    for name, (annotation, default) in OUTPUTS.items():
+        options.append(inspect.Parameter(name, KEYWORD, annotation=annotation, default=default))
+    for export in analysis.exports:
+        wanted = typer.Option(f"--{export.option}", metavar=export.metavar, help=export.help)
+        options.append(
+            inspect.Parameter(export.option, KEYWORD, annotation=Annotated[Path | None, wanted], default=None)
+        )
+    ask.__signature__ = inspect.Signature(sorted(options, key=lambda o: o.default is not REQUIRED))  # type: ignore[attr-defined]
+    ask.__annotations__ = {option.name: option.annotation for option in options}
+    ask.__doc__ = analysis.help
+    alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode="rich")
+    alone.command(verb)(ask)
+    return typer.main.get_command(alone)
+
+
+def call(analysis: Analysis, given: dict[str, Any]) -> None:
+    """Run an analysis with the options of a call, and give its answer out."""
+    path, as_json, out, plot = (given.pop(name) for name in ("case", *OUTPUTS))
+    with handled(as_json):
+        exports = tuple(
+            Export(option=f"--{e.option}", path=given[e.option], suffixes=e.suffixes, write=_writer(e.writer))
+            for e in analysis.exports
+            if given[e.option] is not None
+        )
+        outputs = Outputs.checked(as_json=as_json, out=out, plot=plot, exports=exports)
+        known_as = {name: option_of(name, argument) for name, argument in analysis.arguments.items()}
+        _refuse_overwriting(analysis, given, out)
+        values = analysis.read({name: given[name] for name in known_as}, known_as)
+        _check_exports(analysis, given, values, known_as)
+        case = Case.load(path)
+        with bar(analysis.verb) as report:
+            run = analysis.start(case, values, report)
+            answer = follow(analysis, run, Autosave(out), report)
+        outputs.deliver(answer)
+
+
+def option_of(name: str, argument: Argument) -> str:
+    """The option of an argument."""
+    return f"--{argument.option or name.replace('_', '-')}"
+
+
+def _options(analysis: Analysis) -> list[inspect.Parameter]:
+    """The options of the arguments, in their order: texts and flags, absent where nothing is given."""
+    options = []
+    for name, argument in analysis.arguments.items():
+        default, is_flag = analysis.default(name), isinstance(argument, Flag)
+        shown = argument.text(default) if default not in (REQUIRED, None) and not is_flag else False
+        option = typer.Option(
+            option_of(name, argument),
+            metavar=None if is_flag else argument.metavar,
+            help=argument.help,
+            show_default=shown,
+        )
+        kind = bool if is_flag else Path | None if isinstance(argument, StoredResult) else str | None
+        absent = REQUIRED if default is REQUIRED else False if is_flag else None
+        options.append(inspect.Parameter(name, KEYWORD, annotation=Annotated[kind, option], default=absent))
+    return options
+
+
+def _refuse_overwriting(analysis: Analysis, given: dict[str, Any], out: Path | None) -> None:
+    """Refuse to write where a result is read from."""
+    for name, argument in analysis.arguments.items():
+        source = given[name]
+        if isinstance(argument, StoredResult) and out is not None and source is not None:
+            if out.resolve() == source.resolve():
+                raise UsageError(
+                    f"--out: {out} is what {option_of(name, argument)} reads; give another name, or it would be lost"
+                )
+
+
+def _check_exports(analysis: Analysis, given: dict[str, Any], values: dict[str, Any], known_as: dict[str, str]) -> None:
+    """Refuse arguments whose results an export could not write."""
+    for export in analysis.exports:
+        if export.check is None or given[export.option] is None:
+            continue
+        try:
+            export.check(values, known_as)
+        except UsageError as refusal:
+            raise UsageError(f"--{export.option}: {refusal}") from refusal
+
+
+def _writer(name: str) -> Writer:
+    """The function that `name` names, loaded when it is called."""
+    module, _, function = name.partition(":")
+
+    def write(ds: Any, path: Path) -> None:
+        getattr(import_module(module), function)(ds, path)
+
+    return write
