@@ -17,7 +17,8 @@ In the order data flows:
 - ``seal``     proof that a file is what was written
 - ``store``    datasets to NetCDF and back
 
-Conventions: SI units inside; a result of a state that did not converge is NaN; ``dataset`` and ``store`` load xarray and are therefore imported by whoever needs them, never from here.
+Conventions: SI units inside; a result of a state that did not converge is NaN; ``dataset`` and
+``store`` load xarray and are therefore imported by whoever needs them, never from here.
 """
 
 from petalfoil.results.record import Record, Scalar
