@@ -51,7 +51,7 @@ def row(package: str, module: str, repeats: int, measure: Callable[[ModuleType, 
 
 
 def own(case: Case) -> Callable[[], object]:
-    """petalfoil's solution of a plain bearing, mesh included."""
+    """The package's solution of a plain bearing, mesh included."""
     return lambda: solve_cold(build_problem(case), RunLog())
 
 

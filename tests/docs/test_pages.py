@@ -6,11 +6,7 @@ import ast
 import re
 from pathlib import Path
 
-import pytest
-
 from tests.docs.texts import DOCS, ROOT, labels_in, modules, name_of, pages, text, theory_labels, tree
-
-PAGES = pytest.mark.parametrize("path", pages(), ids=name_of)
 
 
 def slug(heading: str) -> str:
@@ -23,35 +19,55 @@ def anchors(path: Path) -> set[str]:
     return {slug(heading) for heading in re.findall(r"^#+ (.*)$", text(path), re.MULTILINE)}
 
 
-@PAGES
-def test_links_lead_somewhere(path: Path) -> None:
-    links = [link for link in re.findall(r"\]\(([^)\s]+)\)", text(path)) if "://" not in link]
-    for link in links:
-        file, _, anchor = link.partition("#")
-        target = (path.parent / file).resolve() if file else path
-        assert target.exists(), link
-        assert not anchor or anchor in anchors(target), link
+def links(path: Path) -> list[str]:
+    """Links of a page to files and headings of the repository."""
+    return [link for link in re.findall(r"\]\(([^)\s]+)\)", text(path)) if "://" not in link]
 
 
-@PAGES
-def test_equations_that_a_page_quotes_are_in_the_theory(path: Path) -> None:
-    assert labels_in(text(path)) - set(theory_labels()) == set()
+def leads_somewhere(path: Path, link: str) -> bool:
+    """Whether a link on the page `path` has a target."""
+    file, _, anchor = link.partition("#")
+    target = (path.parent / file).resolve() if file else path
+    return target.exists() and (not anchor or anchor in anchors(target))
 
 
-@PAGES
-def test_the_targets_of_make_exist(path: Path) -> None:
-    known = set(re.findall(r"^([a-z-]+):", text(ROOT / "Makefile"), re.MULTILINE))
-    named = {word for call in re.findall(r"`make ([a-z -]+)`", text(path)) for word in call.split()}
-    assert named - known == set()
-
-
-@PAGES
-def test_mathematics_is_closed(path: Path) -> None:
+def open_mathematics(path: Path) -> list[str]:
+    """Formulas of a page that do not end, and lines with a single `$`."""
     blocks = text(path).split("$$")
-    assert len(blocks) % 2 == 1
-    assert all("\n\n" not in block.strip("\n") for block in blocks[1::2]), "a blank line ends a formula"
+    if len(blocks) % 2 == 0:
+        return ["an odd number of $$"]
+    broken = [block for block in blocks[1::2] if "\n\n" in block.strip("\n")]  # a blank line ends a formula
     outside = [line for block in blocks[::2] for line in re.sub(r"`[^`\n]*`", "", block).splitlines()]
-    assert [line for line in outside if line.count("$") % 2] == []
+    return broken + [line for line in outside if line.count("$") % 2]
+
+
+def test_links_lead_somewhere() -> None:
+    every = [(path, link) for path in pages() for link in links(path)]
+    assert len(every) > 20
+    assert [(name_of(path), link) for path, link in every if not leads_somewhere(path, link)] == []
+
+
+def test_equations_that_a_page_quotes_are_in_the_theory() -> None:
+    known = set(theory_labels())
+    quoted = {name_of(path): labels_in(text(path)) for path in pages()}
+    assert {name: labels - known for name, labels in quoted.items() if labels - known} == {}
+
+
+def test_the_targets_of_make_exist() -> None:
+    known = set(re.findall(r"^([a-z-]+):", text(ROOT / "Makefile"), re.MULTILINE))
+    calls = [(path, call) for path in pages() for call in re.findall(r"`make ([a-z -]+)`", text(path))]
+    assert calls
+    assert [(name_of(path), word) for path, call in calls for word in call.split() if word not in known] == []
+
+
+def test_mathematics_is_closed() -> None:
+    assert {name_of(path): found for path in pages() if (found := open_mathematics(path))} == {}
+
+
+def test_the_reader_of_mathematics_reads(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("A $x$ and `$`.\n\n$$\na\n\nb\n$$\nOne $ alone.\n", encoding="utf-8")
+    assert open_mathematics(page) == ["\na\n\nb\n", "One $ alone."]
 
 
 def spoken() -> set[str]:

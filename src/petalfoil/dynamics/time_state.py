@@ -30,7 +30,7 @@ class TimeState:
     v: Array
 
     def plus(self, step: float, *rates: tuple[float, TimeState]) -> TimeState:
-        """This plus `step` times the weighted `rates`."""
+        """The state plus `step` times the weighted `rates`."""
         mass, e, v = self.mass, self.e, self.v
         for weight, rate in rates:
             mass = mass + step * weight * rate.mass

@@ -138,7 +138,7 @@ def verdict(evidence: Evidence, limits: tuple[float, float]) -> tuple[Verdict, s
 
 
 def twofold(evidence: Evidence) -> Claim:
-    """ "Almost a two-fold increase"."""
+    """The claim of "almost a two-fold increase"."""
     few, many = evidence.flat.curves[0].count, evidence.flat.curves[-1].count
     how, where = verdict(evidence, ALMOST_TWOFOLD)
     ours = (
@@ -154,7 +154,7 @@ def twofold(evidence: Evidence) -> Claim:
 
 
 def two_to_four(evidence: Evidence) -> Claim:
-    """ "By 2-4 times"."""
+    """The claim of an increase "by 2–4 times"."""
     how, where = verdict(evidence, TWO_TO_FOUR)
     step = "; ".join(
         f"{few.count} to {many.count} petals: times {ratios(grown(few, many))}"
