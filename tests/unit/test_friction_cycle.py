@@ -7,7 +7,7 @@ import scipy.sparse as sp
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from petalfoil.physics.friction import Friction, equivalent_stiffness
+from petalfoil.physics.dry_friction import Friction, equivalent_stiffness
 
 Array = NDArray[np.float64]
 

@@ -55,7 +55,7 @@ def slider(cells: int, axial: AxialGrid | None = None) -> FilmBalance:
     phi = np.linspace(0.0, 1.0, cells + 1)
     inside = np.ones((1, len(phi), len(axis.z)), dtype=bool)
     inside[:, [0, -1]] = False
-    if not axis.flat:
+    if not axis.is_2d:
         inside[..., 0] = False
         inside[..., -1] &= axis.half
     unknown = np.full(inside.shape, -1)

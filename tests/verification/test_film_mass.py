@@ -82,9 +82,9 @@ def outflow(balance: FilmBalance, P: Array, H: Array, Lam: float) -> float:
     """Mass that leaves through the edges and ends of the film, told from its shape alone."""
     along, across = balance.fluxes(P, H, Lam)
     closed, axial = bool(np.any(balance.mesh.unknown[:, -1] >= 0)), balance.mesh.axial
-    inner = slice(None) if axial.flat else slice(1, None) if axial.half else slice(1, -1)
+    inner = slice(None) if axial.is_2d else slice(1, None) if axial.half else slice(1, -1)
     total = 0.0 if closed else float(np.sum(along.value[:, -1, inner]) - np.sum(along.value[:, 0, inner]))
-    if axial.flat:
+    if axial.is_2d:
         return total
     nodes = slice(None) if closed else slice(1, -1)
     total -= float(np.sum(across.value[:, nodes, 0]))
@@ -97,7 +97,7 @@ def test_what_the_cells_lose_leaves_through_the_boundary(film: str, seed: int, L
     balance = film_of(film)
     P, H = random_film(balance, seed, spread)
     fluxes = balance.fluxes(P, H, Lam)
-    lost, size = np.sum(balance.residual(fluxes)), np.sum(balance.size(fluxes))
+    lost, size = np.sum(balance.residual(fluxes)), np.sum(balance.row_scale(fluxes))
     assert abs(lost - outflow(balance, P, H, Lam)) <= ROUNDING * size
 
 
@@ -106,7 +106,7 @@ def test_what_the_cells_lose_leaves_through_the_boundary(film: str, seed: int, L
 def test_a_closed_film_loses_nothing(film: str, seed: int, Lam: float, spread: float) -> None:
     balance = film_of(film)
     fluxes = balance.fluxes(*random_film(balance, seed, spread), Lam)
-    assert abs(np.sum(balance.residual(fluxes))) <= ROUNDING * np.sum(balance.size(fluxes))
+    assert abs(np.sum(balance.residual(fluxes))) <= ROUNDING * np.sum(balance.row_scale(fluxes))
 
 
 @given(seed=st.integers(0, 2**32 - 1), Lam=st.floats(0.0, 1e4), spread=st.floats(0.01, 2.0))
@@ -115,7 +115,7 @@ def test_nothing_is_lost_over_a_step(seed: int, Lam: float, spread: float) -> No
     balance, end = stepped_slider(0.7, 20), 6
     P, H = random_film(balance, seed, spread)
     fluxes = balance.fluxes(P, H, Lam)
-    lost, size = np.sum(balance.residual(fluxes)), np.sum(balance.size(fluxes))
+    lost, size = np.sum(balance.residual(fluxes)), np.sum(balance.row_scale(fluxes))
     along = fluxes[0].value[..., 0]
     assert abs(lost - (along[1, end - 1] - along[0, 0])) <= ROUNDING * size
 

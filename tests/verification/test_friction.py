@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from petalfoil.analysis.static import static
 from petalfoil.equilibrium.friction_path import FrictionResult, slide
 from petalfoil.errors import UsageError
-from petalfoil.physics.friction import Friction, halves, slopes
+from petalfoil.physics.dry_friction import Friction, halves, slopes
 from petalfoil.solvers.contact_newton import ActiveOptions, active_set
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.friction import FrictionState

@@ -9,7 +9,7 @@ from petalfoil.analysis.solve import solve
 from petalfoil.case import Case, Edges, Mount
 from petalfoil.errors import ConvergenceError
 from petalfoil.mesh.axial import axis_2d
-from petalfoil.mesh.package import package_mesh
+from petalfoil.mesh.pack import pack_mesh
 from petalfoil.mesh.quadrature import trapezoid
 from petalfoil.physics.shell import PetalShell
 from petalfoil.results.record import Record
@@ -28,7 +28,7 @@ def kkt_residual(case: Case, record: Record) -> float:
     petals, package, p_a = case.petals, case.package, case.gas.ambient_pressure
     assert petals is not None
     assert package is not None
-    mesh = package_mesh(
+    mesh = pack_mesh(
         petals.count, package.overlap, petals.first_root, case.cells_per_pitch, axis_2d(case.bearing.length)
     )
     f = {name: values[..., 0] if values.ndim == 3 else values for name, values in record.fields.items()}

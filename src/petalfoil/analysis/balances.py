@@ -23,7 +23,7 @@ def mass_balance(answer: Solution, fluxes: Fluxes) -> float:
     inside = balance.mesh.unknown >= 0
     inside[:, [0, -1]] = False  # a shared edge belongs to two strips
     stored = np.where(inside, gained, 0.0).sum(axis=(1, 2))
-    passing = np.abs(fluxes[0].size[:, [0, -1]]).sum(axis=(1, 2)) + np.abs(fluxes[1].size[..., :1]).sum(axis=(1, 2))
+    passing = np.abs(fluxes[0].scale[:, [0, -1]]).sum(axis=(1, 2)) + np.abs(fluxes[1].scale[..., :1]).sum(axis=(1, 2))
     return float(np.max(np.abs(stored) / passing))
 
 
@@ -47,7 +47,7 @@ def side_leakage(answer: Solution, fluxes: Fluxes) -> float:
     """
     balance = answer.problem.layout.balance
     axial, unknown = balance.mesh.axial, balance.mesh.unknown
-    if axial.flat:
+    if axial.is_2d:
         return 0.0
     leaving = -balance.outflow(fluxes)
     ends = leaving[..., [0] if axial.half else [0, -1]]

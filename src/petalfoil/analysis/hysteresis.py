@@ -14,7 +14,7 @@ from petalfoil.equilibrium.friction_path import FrictionResult, slide
 from petalfoil.equilibrium.package_at_rest import at_rest, unloaded
 from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.equilibrium.solution import RefinedState, Solution
-from petalfoil.physics.friction import Friction
+from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.contact_newton import ActiveOptions, active_set
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem

@@ -166,7 +166,7 @@ class Trace:
         moved, bent = instant.e - before.e, instant.x[:n] - before.x[:n]
         unit, friction, worn = force * length, system.friction, 0.0
         if friction is not None and before.rubbed is not None and instant.rubbed is not None:
-            worn = energy_lost(friction.sticking(before.lam), before.rubbed, instant.rubbed)
+            worn = energy_lost(friction.in_step(before.lam), before.rubbed, instant.rubbed)
         done = float(by_film @ moved + pushed @ bent)
         return {"film_step": done * unit, "load_step": float(loads @ moved) * unit, "petals_step": worn * unit}
 

@@ -22,7 +22,7 @@ from petalfoil.equilibrium.linear_response import Response
 from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
-from petalfoil.physics.friction import Friction, equivalent_stiffness
+from petalfoil.physics.dry_friction import Friction, equivalent_stiffness
 from petalfoil.system.friction import held_together
 
 Array = NDArray[np.float64]
@@ -68,8 +68,8 @@ class Sliding:
         """Those of an equilibrium."""
         normal = friction.normal(answer.lam)
         kept = np.flatnonzero(normal > 0.0)
-        slip, share = friction.slip[kept], friction.share[kept]
-        stick = friction.sticking(answer.lam).stiffness[kept]
+        slip, share = friction.slip[kept], friction.reaction_share[kept]
+        stick = friction.in_step(answer.lam).stiffness[kept]
         law = Friction(friction.coefficient, stick, slip, share, friction.width)
         return cls(law, law.coefficient * normal[kept])
 

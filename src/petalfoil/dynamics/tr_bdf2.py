@@ -17,7 +17,7 @@ from petalfoil.dynamics.rotor import RotorMotion
 from petalfoil.dynamics.stage import Solved, Stage, StageOptions, freely, solve_stage
 from petalfoil.dynamics.stage_tangent import Tangent
 from petalfoil.dynamics.time_state import Instant, TimeState
-from petalfoil.physics.friction import Friction
+from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.friction import FrictionStep
 from petalfoil.system.loaded import FilmForce
@@ -48,7 +48,7 @@ class System:
         """The implicit stage at `tau` from `base` in a step from `begin`; friction goes on from there."""
         rubbing = None
         if self.friction is not None and begin.rubbed is not None:
-            rubbing = FrictionStep(self.friction.sticking(begin.lam), begin.rubbed, self.friction.normal(begin.lam))
+            rubbing = FrictionStep(self.friction.in_step(begin.lam), begin.rubbed, self.friction.normal(begin.lam))
         problem = StepProblem(
             self.problem.layout,
             self.rotor.bearing_number(tau),

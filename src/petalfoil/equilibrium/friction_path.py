@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.physics.friction import Friction
+from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.cone import ConeProblem, Linearized
 from petalfoil.solvers.contact_newton import ActiveOptions, ContactState, Outcome, evaluate, revise, searched
 from petalfoil.solvers.sparse_lu import LinearSolver, SingularMatrixError
@@ -142,7 +142,7 @@ def slide(
 ) -> FrictionResult | None:
     """Equilibrium from the state `before` (unknowns, reactions, closed gaps, friction); None if not found."""
     x, lam, closed, rubbed = before
-    friction = friction.sticking(lam)
+    friction = friction.in_step(lam)
     rubbing, doubt = FrictionStep(friction, rubbed, friction.normal(lam)), np.zeros(len(closed), dtype=bool)
     for count in range(SETS):
         found = settled(problem, rubbing, (x, closed), solver)

@@ -1,18 +1,18 @@
-"""WHERE the equations live: one pitch of the package, repeated.
+"""The grids: nodes of the petals and of the film, around the circle and along the shaft.
 
-===============  ==========================================================================
-`pitch.py`       one pitch divided at the fraction `f`; the nodes of a petal
-`quadrature.py`  weights that turn values at nodes into integrals
-`axial.py`       nodes and integration lengths along the shaft (one station, half, whole)
-`package.py`     petals and exposed strips on those nodes; who touches whom
-`strips.py`      the film's own view: strips, their control volumes, their pressure unknowns
-===============  ==========================================================================
+===============  ======================================================================================
+`pitch.py`       division of one pitch, and the nodes of a petal
+`quadrature.py`  weights that turn nodal values into integrals
+`axial.py`       axial nodes: one station (2-D), half the length or the whole length (3-D)
+`pack.py`        nodes of all petals; which nodes face the film, the bushing and the neighbouring petal
+`strips.py`      film strips and their pressure unknowns
+===============  ======================================================================================
 
-Axis order everywhere: ``(petal, node, axial)``; a strip holds the last pitch of its petal's nodes.
+The axes of every nodal array are ``(petal, node, axial)``. A film strip holds the nodes of the last pitch of its petal.
 """
 
 from petalfoil.mesh.axial import AxialGrid
-from petalfoil.mesh.package import PackageMesh
+from petalfoil.mesh.pack import PackMesh
 from petalfoil.mesh.strips import FilmMesh
 
-__all__ = ["AxialGrid", "FilmMesh", "PackageMesh"]
+__all__ = ["AxialGrid", "FilmMesh", "PackMesh"]

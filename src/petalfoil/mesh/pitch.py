@@ -1,8 +1,9 @@
-"""One pitch, divided where a petal's free edge falls, and repeated along a petal.
+"""The division of one pitch into cells, and the nodes of a petal.
 
-With `phi1 / phi0 = k + f` the pitch is cut at `f`; each part is divided uniformly. A petal is `k` whole
-pitches and the first part once more. Then the nodes of all layers share their angles: contact is node to
-node, film nodes are petal nodes, and nothing is interpolated, whatever the overlap.
+A petal is `phi1 / phi0 = k + f` pitches long, with a whole number `k` and `0 <= f < 1`. Its free edge lies at the
+fraction `f` of a pitch. The pitch is divided at `f`, and each part has cells of equal length. A petal has `k` whole
+pitches and the first part of one more. The nodes of all layers then have the same angles for any overlap: contact is
+node to node, film nodes are petal nodes, and no value is interpolated.
 """
 
 from __future__ import annotations
@@ -13,10 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 FLUSH = 1e-9
-"""A fraction of a pitch closer to 0 or 1 than this is rounding of a whole number of pitches."""
+"""An overlap that differs from a whole number of pitches by less than this is taken as whole: rounding of the input."""
 
 COARSEST_FAMILY = 16
-"""Cell counts `c * 2**s`, `c >= 16`, share the division of `c` cells, so that such grids are nested."""
+"""Smallest number of cells whose division is repeated on finer grids.
+
+A grid of `c * 2**s` cells, `c >= 16`, halves the cells of the grid of `c` cells `s` times. Such grids are nested, which
+the extrapolation to vanishing cell size needs.
+"""
 
 
 def split_overlap(overlap: float) -> tuple[int, float]:
@@ -28,7 +33,7 @@ def split_overlap(overlap: float) -> tuple[int, float]:
 def divide_pitch(fraction: float, cells: int) -> tuple[int, int]:
     """Cells in `[0, f]` and `[f, 1]`, in proportion to their lengths and at least one in each.
 
-    Equal numbers would put half of the cells into a sliver (numerics: 64 cells in 6 % of a pitch).
+    Equal numbers would put half of the cells into a very short part (`docs/numerics.md`: 64 cells in 6 % of a pitch).
     """
     if fraction == 0.0:
         return 0, cells

@@ -1,4 +1,4 @@
-"""Weights that turn values at nodes into integrals over them."""
+"""Quadrature weights on arbitrary nodes."""
 
 from __future__ import annotations
 
@@ -16,12 +16,16 @@ def trapezoid(nodes: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def cubic_weights(nodes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Weights that integrate, cell by cell, the polynomial through the nearest four of `nodes` (or all, if fewer)."""
+    """Weights that integrate, in each cell, the cubic through the nearest four `nodes`; shape (n,).
+
+    With fewer than four nodes the polynomial goes through all of them.
+    """
     count, cell = min(4, len(nodes)), np.diff(nodes)
     order = np.arange(count)
     near = np.clip(np.arange(len(cell)) - 1, 0, len(nodes) - count)[:, None] + order
-    share = (nodes[near] - nodes[:-1, None]) / cell[:, None]
-    moments, exact = share[:, None, :] ** order[:, None], np.broadcast_to(1.0 / (1.0 + order), share.shape)
+    # in the coordinate s of a cell, 0 <= s <= 1: the weights integrate 1, s, s^2, s^3 exactly
+    s = (nodes[near] - nodes[:-1, None]) / cell[:, None]
+    moments, exact = s[:, None, :] ** order[:, None], np.broadcast_to(1.0 / (1.0 + order), s.shape)
     weight = np.zeros(len(nodes))
     np.add.at(weight, near, cell[:, None] * np.linalg.solve(moments, exact[..., None])[..., 0])
     return weight

@@ -1,12 +1,14 @@
-"""THE LAWS, each residual beside its derivative. Arrays only; nothing here solves.
+"""The equations. Each residual stands next to its derivative; nothing here solves.
 
-==============  ===================================================================
-`shell.py`      bending energy of a petal (33)-(39): stiffness, curvatures, stress
-`film.py`       Reynolds' equation (51)-(57): face fluxes and their derivatives
-`balance.py`    the control volumes that add the fluxes up, and their sparse tangent
-`contact.py`    one-sided gaps (18)-(22), linear in the deflections
-`forces.py`     forces on the journal, friction, leakage (62)-(64)
-==============  ===================================================================
+===================  ========================================================================================
+`reynolds.py`        Reynolds' equation (51)-(57): mass flux through the faces of control volumes
+`mass_balance.py`    mass balance of the control volumes of the film, and its sparse derivative
+`gas_inventory.py`   the gas inventory of a 2-D film without ambient boundary (F6)
+`shell.py`           bending of a petal (33)-(39): stiffness matrix, curvatures, stress
+`contact.py`         gaps of the solid contacts (18)-(22), linear in the deflections
+`dry_friction.py`    Coulomb friction between petals and on the bushing (D1)-(D3)
+`forces.py`          force and friction torque on the journal (62)-(64)
+===================  ========================================================================================
 
-Film quantities are dimensionless here: `P = p / p_a`, `H = h / h_ref`, angles, `Z = z / R_j`.
+Film quantities are dimensionless: `P = p / p_a`, `H = h / h_ref`, angles in radians, `Z = z / R_j`.
 """

@@ -1,11 +1,12 @@
-"""One-sided constraints of the package (18)-(22): gaps, linear in deflections and journal displacement.
+"""Solid contacts of the petal pack (18)-(22): gaps, linear in the deflections and the journal displacement.
 
-    journal   g_J = r0 + W - delta/2 - R_j - (e_x cos theta + e_y sin theta) - h_min     exposed strips         (K1)
+    journal   g_J = r0 + W - delta/2 - R_j - (e_x cos theta + e_y sin theta) - h_c       exposed strips         (K1)
     bushing   g_B = r_m - r0 - W                                                         phi < phi0             (K2)
     petals    g_P = (r0 + W)^{l+1} - (r0 + W)^l - delta                                  phi0 <= phi <= phi1    (K3)
 
-Every gap is `g = rest + by_e e + G W >= 0`; its nodal reaction `lam >= 0` pushes with `G^T lam` and is complementary
-to it (K4). The same `G` serves both, so the reactions do no work but through the gaps.
+`h_c` is the contact film thickness. Every gap is `g = rest + by_e e + G W >= 0`. Its nodal reaction `lam >= 0` is zero
+where the gap is open, `lam g = 0` (K4). The reactions load the deflection unknowns with `G^T lam`: the virtual work of
+a reaction is its product with the variation of its gap.
 """
 
 from __future__ import annotations
@@ -16,27 +17,27 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.mesh.package import PackageMesh
+from petalfoil.mesh.pack import PackMesh
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Contacts:
-    """Gaps of a wall.
+    """Gaps between journal, petals and bushing: `m` gaps, `n` deflection unknowns.
 
     Attributes
     ----------
     G : (m, n) sparse
-        Derivative of the gaps by the deflection unknowns [1].
+        Derivative of the gaps with respect to the deflection unknowns [1].
     rest : (m,) array
-        Gaps of the free shape with a centred journal [m].
+        Gaps of the free petals with a centred journal [m].
     by_e : (m, 2) array
-        Derivative of the gaps by the journal's displacement [1].
+        Derivative of the gaps with respect to the journal displacement [1].
     area : (m,) array
-        Area that each gap's node stands for: reaction over area is contact pressure [m^2].
+        Area of the node of each gap [m^2]. Contact pressure is reaction over area.
     journal, bushing, petals : slice
-        The rows of each kind.
+        Rows of the gaps on the journal, on the bushing and between petals.
     """
 
     G: sp.csr_array
@@ -53,19 +54,19 @@ class Contacts:
         return gaps
 
 
-def package_contacts(mesh: PackageMesh, free_radius: Array, sizes: dict[str, float]) -> Contacts:
-    """Gaps of a package of petals.
+def pack_contacts(mesh: PackMesh, free_radius: Array, sizes: dict[str, float]) -> Contacts:
+    """Gaps of a petal pack.
 
     Parameters
     ----------
-    mesh : PackageMesh
-        Grid of the package.
+    mesh : PackMesh
+        Grid of the pack.
     free_radius : (n_node,) array
-        `r0` of the free petal at its nodes [m].
+        Radius `r0` of the middle surface of the free petal at its nodes [m].
     sizes : dict
         `journal_radius`, `metric_radius`, `thickness` (with coating), `contact_film_thickness` [m].
     """
-    R_j, r_m, delta, h_min = (
+    R_j, r_m, delta, h_c = (
         sizes[k] for k in ("journal_radius", "metric_radius", "thickness", "contact_film_thickness")
     )
     number, n, N = mesh.free_numbers(), mesh.count, mesh.cells
@@ -75,7 +76,7 @@ def package_contacts(mesh: PackageMesh, free_radius: Array, sizes: dict[str, flo
     above, below = number[:, mesh.on_neighbour], number[np.arange(1, n + 1) % n, : mesh.n_node - N]
 
     film, wall, lap = mesh.exposed, mesh.on_bushing, mesh.on_neighbour
-    journal_gap = r0[:, film] - 0.5 * delta - R_j - h_min
+    journal_gap = r0[:, film] - 0.5 * delta - R_j - h_c
     bushing_gap = r_m - r0[:, wall]
     petal_gap = r0[:, : mesh.n_node - N] - r0[:, lap] - delta
 
@@ -84,9 +85,9 @@ def package_contacts(mesh: PackageMesh, free_radius: Array, sizes: dict[str, flo
     rows = np.concatenate([np.arange(m), n_J + n_B + np.arange(n_P)])
     cols = np.concatenate([number[:, film].ravel(), number[:, wall].ravel(), above.ravel(), below.ravel()])
     signs = np.concatenate([np.ones(n_J), -np.ones(n_B), -np.ones(n_P), np.ones(n_P)])
-    held = cols < 0  # a root does not move
+    at_root = cols < 0  # a root does not move
     shape = (m, n * (mesh.n_node - 1) * mesh.n_z)
-    G = sp.coo_array((signs[~held], (rows[~held], cols[~held])), shape=shape).tocsr()
+    G = sp.coo_array((signs[~at_root], (rows[~at_root], cols[~at_root])), shape=shape).tocsr()
     by_e = np.zeros((m, 2))
     by_e[:n_J] = -np.stack([np.cos(theta[:, film]).ravel(), np.sin(theta[:, film]).ravel()], axis=1)
     return Contacts(
@@ -100,18 +101,18 @@ def package_contacts(mesh: PackageMesh, free_radius: Array, sizes: dict[str, flo
     )
 
 
-def bore_contacts(theta: Array, room: float, area: Array) -> Contacts:
-    """Gaps between the journal and a bore that does not move: only the journal's displacement closes them.
+def bore_contacts(theta: Array, clearance: float, area: Array) -> Contacts:
+    """Gaps between the journal and a rigid bore.
 
     Parameters
     ----------
     theta : (m,) array
         Angles of the film nodes [rad].
-    room : float
-        Clearance less the film floor [m].
+    clearance : float
+        Radial clearance minus the contact film thickness [m].
     area : (m,) array
         Area of each node [m^2].
     """
     m, none = len(theta), slice(0, 0)
     by_e = -np.stack([np.cos(theta), np.sin(theta)], axis=1)
-    return Contacts(sp.csr_array((m, 0)), np.full(m, room), by_e, area, slice(0, m), none, none)
+    return Contacts(sp.csr_array((m, 0)), np.full(m, clearance), by_e, area, slice(0, m), none, none)

@@ -1,9 +1,9 @@
-"""How much gas a film holds that has no ends: the limit of a long bearing.
+"""The gas inventory of a film without ambient boundary: the limit of a long bearing.
 
-A flat film that closes on itself exchanges no gas with its surroundings, and its cells' balances leave its content
-free: they add up to nothing. In a bearing of finite length `d_z^2 sum (H^3 P^2 + 12 Kn H^2 P) dphi = 0` with ambient
-ends, so that the sum is that of `P = 1` at every station, however long it is (F6). The flat film takes that for one
-balance.
+A 2-D film that closes on itself exchanges no gas with its surroundings. Its mass balances add up to zero, so that one
+of them follows from the others and the gas inventory is undetermined. In a bearing of finite length with ambient ends,
+`d_z^2 sum (H^3 P^2 + 12 Kn H^2 P) dphi = 0`. The sum therefore has the value of `P = 1` at every station, for any
+length (F6). The 2-D film takes this condition in place of its first mass balance.
 """
 
 from __future__ import annotations
@@ -22,8 +22,18 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class GasContent:
-    """The condition on a film without ambient nodes: `area` (node, axial) of its cells, Knudsen number (F7) [1]."""
+class GasInventory:
+    """The condition (F6) on a film without ambient nodes.
+
+    Parameters
+    ----------
+    mesh : FilmMesh
+        Strips and pressure unknowns.
+    area : (node, axial) array
+        Cell areas over the journal radius squared [1].
+    knudsen : float
+        Knudsen number on the reference film at ambient pressure (F7); zero without slip [1].
+    """
 
     mesh: FilmMesh
     area: Array
@@ -31,34 +41,34 @@ class GasContent:
 
     @property
     def needed(self) -> bool:
-        """No node of the film is ambient."""
+        """Whether no node of the film is ambient."""
         return bool(np.all(self.mesh.unknown >= 0))
 
     def value(self, P: Array, H: Array) -> float:
-        """`sum H^3 (P^2 - 1) + 12 Kn H^2 (P - 1)` over the film (F6) [1]."""
+        """Residual `sum H^3 (P^2 - 1) + 12 Kn H^2 (P - 1)` over the film (F6) [1]."""
         return float(np.sum(self.area * H**3 * (P**2 - 1.0) + self._slip(H) * (P - 1.0)))
 
-    def size(self, P: Array, H: Array) -> float:
-        """Sum of the magnitudes of its terms [1]."""
+    def row_scale(self, P: Array, H: Array) -> float:
+        """Sum of the magnitudes of the terms of the residual [1]."""
         return float(np.sum(self.area * H**3 * (P**2 + 1.0) + self._slip(H) * (P + 1.0)))
 
     def _slip(self, H: Array) -> Array:
         return 12.0 * self.knudsen * self.area * H**2
 
     def tangent(self, P: Array, H: Array) -> tuple[Array, Array]:
-        """Derivatives by the pressure unknowns (n_unknown,) and by the film at every node (flat)."""
+        """Derivatives with respect to the pressure unknowns (n_unknown,) and to the film at every node (flattened)."""
         by_P = 2.0 * self.area * H**3 * P + self._slip(H)
         by_H = 3.0 * self.area * H**2 * (P**2 - 1.0) + 2.0 * self._slip(H) / H * (P - 1.0)
         return add_up(self.mesh.unknown.ravel(), by_P.ravel(), self.mesh.n_unknown), by_H.ravel()
 
     @cached_property
     def by_pressure(self) -> Entries:
-        """Places of the derivatives by pressure: the first balance gives way."""
+        """Positions of the derivatives with respect to pressure: the row of the first mass balance."""
         n = self.mesh.n_unknown
         return Entries(np.zeros(n, dtype=np.intp), np.arange(n))
 
     @cached_property
     def by_film(self) -> Entries:
-        """Places of the derivatives by film thickness."""
+        """Positions of the derivatives with respect to film thickness."""
         n = self.mesh.unknown.size
         return Entries(np.zeros(n, dtype=np.intp), np.arange(n))

@@ -1,8 +1,8 @@
-"""Control volumes of the film: mass balance at every pressure unknown, with its sparse tangent.
+"""Mass balance of the control volumes of the film, one for each pressure unknown, and its sparse derivative.
 
-Each node owns the cell around it. Flux through a face leaves one node's cell and enters its neighbour's, so mass
-is conserved to rounding whatever the fluxes are. Written once for every film: strips with ambient edges, strips
-that run on over a step, a closed circle.
+A control volume (cell) surrounds each node. The flux through a face leaves one cell and enters the next. Mass is
+therefore conserved to rounding for any fluxes. The same code serves strips with ambient edges, strips with continuous
+edges and a closed circle.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Index = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Entries:
-    """Entries of a sparse matrix in a fixed order; the same entry may stand several times and adds up."""
+    """Positions of the entries of a sparse matrix in a fixed order. Entries at the same position are added."""
 
     rows: Index
     cols: Index
@@ -31,14 +31,14 @@ class Entries:
 
 @dataclass(frozen=True)
 class FilmBalance:
-    """Mass balance of the film on one mesh.
+    """Mass balance of the film on one grid.
 
     Parameters
     ----------
     mesh : FilmMesh
         Strips and pressure unknowns.
     radius : float
-        Journal radius, the unit of axial length [m].
+        Journal radius, the reference of axial lengths [m].
     knudsen : float
         Knudsen number on the reference film at ambient pressure (F7); zero without slip [1].
     """
@@ -49,7 +49,7 @@ class FilmBalance:
 
     @cached_property
     def dphi(self) -> Array:
-        """Angles between neighbours, shape (node - 1, 1) [rad]."""
+        """Angles between neighbouring nodes, shape (node - 1, 1) [rad]."""
         return np.diff(self.mesh.phi)[:, None]
 
     @cached_property
@@ -59,26 +59,26 @@ class FilmBalance:
 
     @cached_property
     def width_Z(self) -> Array:
-        """Axial width of each station's cells over the journal radius, shape (axial,) [1]."""
+        """Axial width of the cells over the journal radius, shape (axial,) [1]."""
         return self.mesh.axial.weight / self.radius
 
     @cached_property
     def area(self) -> Array:
-        """Area of each node's cell over the journal radius squared, shape (node, axial) [1]."""
+        """Area of the cells over the journal radius squared, shape (node, axial) [1]."""
         return self.mesh.arc_weight[:, None] * self.width_Z[None, :]
 
     @cached_property
     def _faces(self) -> list[tuple[Index, Index]]:
-        """Film nodes (flat numbers) on both sides of every face: along the rotation, then along the shaft."""
+        """Film nodes (flattened indices) on both sides of every face: circumferential, then axial."""
         nodes = np.arange(self.mesh.unknown.size).reshape(self.mesh.shape)
         along = (nodes[:, :-1].ravel(), nodes[:, 1:].ravel())
         across = (nodes[..., :-1].ravel(), nodes[..., 1:].ravel())
         return [along, across]
 
     def fluxes(self, P: Array, H: Array, Lam: float) -> tuple[Flux, Flux]:
-        """Mass flows through all faces, flux times face width, along the rotation and along the shaft.
+        """Circumferential and axial mass flows through all faces: flux times face width.
 
-        On a half model the axial flow counts both halves (`axial.copies`), as the cells' widths do.
+        On a half model the axial flow is that of both halves (`axial.copies`), like the widths of the cells.
         """
         along = circumferential_flux(P, H, Lam, self.dphi, self.knudsen)
         across = axial_flux(P, H, self.dZ, self.knudsen)
@@ -86,19 +86,19 @@ class FilmBalance:
         return Flux(*(part * self.width_Z for part in along)), Flux(*(part * width_phi for part in across))
 
     def residual(self, fluxes: tuple[Flux, Flux]) -> Array:
-        """Net outflow of the cell of each pressure unknown (F4), shape (n_unknown,) [1]."""
+        """Residual of the mass balance (F4): net outflow of the cell of each pressure unknown, (n_unknown,) [1]."""
         return self._collect(self.outflow(fluxes))
 
     def outflow(self, fluxes: tuple[Flux, Flux]) -> Array:
-        """Net outflow of every film node's own cell, shape of the mesh [1].
+        """Net outflow of the cell of every film node, (strip, node, axial) [1].
 
-        At an ambient node it is what the surroundings feed into the film there: minus the leakage.
+        At an ambient node it is the inflow from the surroundings into the film, that is, minus the leakage.
         """
         return self._add_up([(flux.value, -flux.value) for flux in fluxes])
 
-    def size(self, fluxes: tuple[Flux, Flux]) -> Array:
-        """Sum of the magnitudes of the flows that each balance adds up, shape (n_unknown,) [1]."""
-        return self._collect(self._add_up([(flux.size, flux.size) for flux in fluxes]))
+    def row_scale(self, fluxes: tuple[Flux, Flux]) -> Array:
+        """Sum of the magnitudes of the flows in each balance, (n_unknown,) [1]: the scale of its residual."""
+        return self._collect(self._add_up([(flux.scale, flux.scale) for flux in fluxes]))
 
     def _add_up(self, sides: list[tuple[Array, Array]]) -> Array:
         total = np.zeros(self.mesh.unknown.size)
@@ -109,7 +109,7 @@ class FilmBalance:
 
     @cached_property
     def _stencil(self) -> tuple[Index, Index]:
-        """Row (pressure unknown, -1 if none) and column (film node) of every derivative of a flow."""
+        """Row (pressure unknown, -1 if ambient) and column (film node) of every derivative of a flow."""
         numbers = self.mesh.unknown.ravel()
         rows, cols = [], []
         for node0, node1 in self._faces:
@@ -121,7 +121,7 @@ class FilmBalance:
 
     @cached_property
     def by_pressure(self) -> Entries:
-        """Places of the derivatives by the pressure unknowns."""
+        """Positions of the derivatives with respect to the pressure unknowns."""
         rows, cols = self._stencil
         return Entries(rows[self._pressure_mask], self.mesh.unknown.ravel()[cols][self._pressure_mask])
 
@@ -132,18 +132,18 @@ class FilmBalance:
 
     @cached_property
     def by_film(self) -> Entries:
-        """Places of the derivatives by the film thickness at every film node (flat number)."""
+        """Positions of the derivatives with respect to the film thickness at every film node (flattened index)."""
         rows, cols = self._stencil
         return Entries(rows[rows >= 0], cols[rows >= 0])
 
     def tangent(self, fluxes: tuple[Flux, Flux]) -> tuple[Array, Array]:
-        """Derivatives of `residual` in the order of `by_pressure` and of `by_film`."""
+        """Derivatives of `residual`, in the order of `by_pressure` and of `by_film`."""
         by_P = np.concatenate([d.ravel() for f in fluxes for d in (f.by_P0, f.by_P1, -f.by_P0, -f.by_P1)])
         by_H = np.concatenate([d.ravel() for f in fluxes for d in (f.by_H0, f.by_H1, -f.by_H0, -f.by_H1)])
         return by_P[self._pressure_mask], by_H[self._stencil[0] >= 0]
 
     def storage(self, P: Array, H: Array, Lam: float) -> Array:
-        """Mass held in each unknown's cell (F5): `2 Lam P H` times its area; `d_tau` of it joins the residual."""
+        """Gas stored in the cell of each unknown (F5), `2 Lam P H` times its area; its rate adds to `residual`."""
         return self._collect(2.0 * Lam * P * H * self.area)
 
     def _collect(self, nodal: Array) -> Array:
@@ -152,17 +152,17 @@ class FilmBalance:
 
     @cached_property
     def storage_entries(self) -> Entries:
-        """Places of the derivatives of `storage`: pressure unknown, film node."""
+        """Positions of the derivatives of `storage`: pressure unknown, film node."""
         numbers = self.mesh.unknown.ravel()
         inside = np.flatnonzero(numbers >= 0)
         return Entries(numbers[inside], inside)
 
     def storage_tangent(self, P: Array, H: Array, Lam: float) -> tuple[Array, Array]:
-        """Derivatives of `storage` by pressure and by film, each in the order of `storage_entries`."""
+        """Derivatives of `storage` with respect to pressure and film, in the order of `storage_entries`."""
         factor = 2.0 * Lam * self.area
         inside = self.storage_entries.cols
         return (factor * H).ravel()[inside], (factor * P).ravel()[inside]
 
     def nodal_pressure(self, unknowns: Array) -> Array:
-        """Pressure at every film node from the unknowns, ambient (1) elsewhere, shape of the mesh [1]."""
+        """Pressure at every film node, (strip, node, axial) [1]: the unknowns, and 1 at ambient nodes."""
         return np.append(unknowns, 1.0)[self.mesh.unknown]

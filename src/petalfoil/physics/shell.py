@@ -1,13 +1,15 @@
 """Bending of one petal: Kirchhoff-Love shell, inextensible along the arc (33)-(39).
 
-Energy by finite differences (`docs/theory.md`, S1-S3), with `W > 0` outward:
+The bending energy by finite differences (`docs/theory.md`, S1-S3), with `W > 0` outward:
 
     E_b = D/2 sum [ chi_phi^2 + chi_z^2 + 2 nu chi_phi chi_z + 2 (1 - nu) chi_phiz^2 ] r_m dphi dz
     chi_phi = W_phiphi / r_m^2 + W / R_p^2,   chi_z = W_zz,   chi_phiz = W_phiz / r_m
 
-Curvatures stand at nodes (three points), twist at cell centres. At a free edge the curvature across it is
-condensed: `chi_across = -nu chi_along` leaves `(1 - nu^2) chi_along^2`; at a free corner nothing is left. A rigid
-root and a plane of symmetry mirror the first node. Natural conditions (25)-(32) then come out by themselves.
+Curvatures are evaluated at nodes (three points), the twist at cell centres. At a free edge the bending moment across
+the edge is zero. The curvature across it is then `chi_across = -nu chi_along`, and the energy there is `(1 - nu^2)
+chi_along^2`. At a free corner the bending energy is zero. At a clamped root and at a plane of symmetry the node outside
+the grid is the mirror image of the first node inside. The natural boundary conditions (25)-(32) follow from the minimum
+of this energy and need no equations of their own.
 """
 
 from __future__ import annotations
@@ -28,7 +30,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class PetalShell:
-    """One petal on its grid; unknown `W` at all nodes, (node, axial) flattened, the root row included.
+    """One petal on its grid. The unknown `W` has all nodes, (node, axial) flattened, the root row included.
 
     Parameters
     ----------
@@ -43,7 +45,7 @@ class PetalShell:
     poisson_ratio : float
         `nu` [1].
     clamped : bool
-        Rigid mount (24): `W_phi = 0` at the root. Otherwise hinged (25): no moment there.
+        Clamped root (24): `W_phi = 0` at the root. Otherwise hinged (25): no bending moment at the root.
     """
 
     phi: Array
@@ -56,13 +58,13 @@ class PetalShell:
 
     @cached_property
     def stiffness(self) -> sp.csr_array:
-        """`K` with `E_b = W K W / 2`, shape (n_node n_z, n_node n_z) [N/m]."""
+        """Stiffness matrix `K` with `E_b = W K W / 2`, shape (n_node n_z, n_node n_z) [N/m]."""
         S = self.strain @ self.difference
         return sp.csr_array(S.T @ self.rigidity_matrix @ S)
 
     @cached_property
     def rigidity_matrix(self) -> sp.csr_array:
-        """`C`: curvatures and twist to their conjugate moments, weights included [N m^3]."""
+        """Moments from curvatures and twist, quadrature weights included [N m^3]."""
         D, nu, r_m = self.rigidity, self.poisson_ratio, self.metric_radius
         full, along_phi, along_z = self._weights
         bending_phi = sp.diags_array(full + (1.0 - nu**2) * along_phi)
@@ -74,21 +76,21 @@ class PetalShell:
 
     @cached_property
     def difference(self) -> sp.csr_array:
-        """`W` -> (differences along the arc, along the shaft, across cells; `W` itself).
+        """Matrix from `W` to (circumferential, axial and mixed differences of neighbours; `W` itself).
 
-        Entries are +-1: differences of neighbours, which lie close together, are then free of rounding, and curvatures
-        do not lose the digits that second differences of `W` would.
+        Its entries are +-1. Neighbouring deflections differ little, and their difference is exact in floating point.
+        Curvatures from these differences keep digits that second differences of `W` would lose.
         """
         n, n_z = len(self.phi), len(self.axial.z)
-        d_phi, d_z = _jumps(n), _jumps(n_z)
+        d_phi, d_z = _neighbour_differences(n), _neighbour_differences(n_z)
         along, across = sp.kron(d_phi, sp.eye_array(n_z)), sp.kron(sp.eye_array(n), d_z)
         return sp.csr_array(sp.vstack([along, across, sp.kron(d_phi, d_z), sp.eye_array(n * n_z)], format="csr"))
 
     @cached_property
     def strain(self) -> sp.csr_array:
-        """Differences -> (`chi_phi`, `chi_z` at the nodes, `chi_phiz` at the cells).
+        """Matrix from `difference @ W` to (`chi_phi`, `chi_z` at the nodes, `chi_phiz` at the cell centres).
 
-        Rows are empty where a curvature is condensed (free edges) or known to vanish (hinged root).
+        Rows are empty where a curvature follows from another one (free edges) or is zero (hinged root).
         """
         n, n_z = len(self.phi), len(self.axial.z)
         in_place = sp.kron(sp.diags_array(self._bent / self.bend_radius**2), sp.eye_array(n_z))
@@ -100,7 +102,7 @@ class PetalShell:
 
     @property
     def _bent(self) -> Array:
-        """1 where `chi_phi` is part of the energy along the arc."""
+        """1 at the nodes along the arc where `chi_phi` has its own row, 0 at the free edge and at a hinged root."""
         keep = np.ones(len(self.phi))
         keep[-1] = 0.0
         keep[0] = float(self.clamped)
@@ -108,40 +110,40 @@ class PetalShell:
 
     @property
     def _second_phi(self) -> sp.csr_array:
-        """Differences along the arc -> second derivative at the nodes [1]."""
+        """Matrix from circumferential differences to the second derivative at the nodes [1]."""
         second = _second_derivative(self.phi)
-        if self.clamped:  # the node before the root mirrors the first one
+        if self.clamped:  # the node before the root is the mirror image of the first one
             second[0, 0] = 2.0 / (self.phi[1] - self.phi[0]) ** 2
         return second.tocsr()
 
     @property
     def _second_z(self) -> sp.csr_array:
-        """Differences along the shaft -> second derivative; none on free sides nor in the flat model [1/m^2]."""
+        """Matrix from axial differences to the second derivative [1/m^2]. Rows of free sides and of 2-D are empty."""
         z = self.axial.z
         second = _second_derivative(z)
-        if self.axial.half:  # the node past the plane of symmetry mirrors the one before it
+        if self.axial.half:  # the node beyond the plane of symmetry is the mirror image of the one before it
             second[-1, -1] = -2.0 / (z[-1] - z[-2]) ** 2
         return second.tocsr()
 
     @property
     def _twist_scale(self) -> Array:
-        """Jump across a cell -> `chi_phiz` at its centre [1/m^2]."""
+        """Factors from mixed differences to `chi_phiz` at the cell centres [1/m^2]."""
         area = np.diff(self.phi)[:, None] * np.diff(self.axial.z)[None, :]
         return (1.0 / (self.metric_radius * area)).ravel()
 
     @cached_property
     def _weights(self) -> tuple[Array, Array, Array]:
-        """Nodal weights (angle times length) of the full energy, of `chi_phi` alone, of `chi_z` alone."""
+        """Nodal weights (angle times length): of the full energy, of `chi_phi` alone, of `chi_z` alone [rad m]."""
         weight = trapezoid(self.phi)[:, None] * self.axial.weight[None, :]
         tip = np.zeros(weight.shape, dtype=bool)
         tip[-1] = True
         root = np.zeros_like(tip)
         root[0] = True
         side = np.zeros_like(tip)
-        if not self.axial.flat:
+        if not self.axial.is_2d:
             side[:, 0] = True
             side[:, -1] |= not self.axial.half
-        # W = 0 along the root: chi_z vanishes there, and chi_phi too where the root is hinged (its row is empty)
+        # W = 0 along the root: chi_z is zero there, and chi_phi too where the root is hinged (its row is empty)
         full = np.where(side | tip, 0.0, weight)
         along_phi = np.where(side & ~tip, weight, 0.0)
         along_z = np.where(tip & ~side & ~root, weight, 0.0)
@@ -149,16 +151,19 @@ class PetalShell:
 
     @cached_property
     def _cell_weight(self) -> Array:
-        """Angle times length of each cell; both halves of a half model."""
+        """Angle times length of each cell, of both halves on a half model [rad m]."""
         cells = np.diff(self.phi)[:, None] * np.diff(self.axial.z)[None, :]
         return (self.axial.copies * cells).ravel()
 
     def curvatures(self, W: Array) -> tuple[Array, Array]:
-        """`chi_phi`, `chi_z` at all nodes, the condensed ones filled in, each of W's shape (..., node, axial) [1/m]."""
+        """`chi_phi` and `chi_z` at all nodes, each of the shape of `W` (..., node, axial) [1/m].
+
+        At free edges the curvature across the edge follows from the one along it.
+        """
         nu, bent = self.poisson_ratio, self._bent[:, None] / self.bend_radius**2
         chi_phi = _along(self._second_phi / self.metric_radius**2, np.diff(W, axis=-2), -2) + bent * W
         chi_z = _along(self._second_z, np.diff(W, axis=-1), -1)
-        if not self.axial.flat:
+        if not self.axial.is_2d:
             sides = [0] if self.axial.half else [0, -1]
             for side in sides:
                 chi_z[..., side] = -nu * chi_phi[..., side]
@@ -167,18 +172,18 @@ class PetalShell:
         return chi_phi, chi_z
 
     def free_motions(self) -> tuple[Array, Array]:
-        """Motions uniform along the shaft that bend nothing, once the root is released, and its force in them (S4).
+        """Axially uniform motions without bending energy when the root is released, and the root force (S4).
 
         Returns
         -------
         motions : (n_node n_z, k) array
-            Discrete `cos(k s)` with the root moved by 1 and, for a hinged root, `sin(k s)` about it.
+            Discrete `cos(k s)` with the root moved by 1 and, for a hinged root, `sin(k s)` with the root at rest.
         support : (k, n_node n_z) array
-            Force of the root in each motion from the deflections [N/m]: an equilibrium under nodal loads `f` has
+            Force of the root in each motion from the deflections [N/m]. In equilibrium under nodal loads `f`,
             `motions^T f + support W = 0`.
         """
         n_z = len(self.axial.z)
-        along = (self._second_phi @ _jumps(len(self.phi))).toarray() / self.metric_radius**2
+        along = (self._second_phi @ _neighbour_differences(len(self.phi))).toarray() / self.metric_radius**2
         along += np.diag(self._bent / self.bend_radius**2)
         seeds = [(1.0, -along[0, 0] / along[0, 1])] if self.clamped else [(1.0, 1.0), (0.0, 1.0)]
         motions = np.array(seeds).T
@@ -192,18 +197,18 @@ class PetalShell:
 def _along(matrix: sp.csr_array, values: Array, axis: int) -> Array:
     """Apply `matrix` along an axis of `values`."""
     first = np.moveaxis(values, axis, 0)
-    flat = matrix @ first.reshape(len(first), math.prod(first.shape[1:]))
-    return np.moveaxis(flat.reshape(matrix.shape[0], *first.shape[1:]), 0, axis)
+    applied = matrix @ first.reshape(len(first), math.prod(first.shape[1:]))
+    return np.moveaxis(applied.reshape(matrix.shape[0], *first.shape[1:]), 0, axis)
 
 
-def _jumps(n: int) -> sp.csr_array:
-    """Differences of neighbours among `n` values, shape (n - 1, n)."""
+def _neighbour_differences(n: int) -> sp.csr_array:
+    """Matrix of differences of neighbours among `n` values, shape (n - 1, n)."""
     one = np.ones(max(n - 1, 0))
     return sp.csr_array(sp.diags_array([-one, one], offsets=[0, 1], shape=(n - 1, n)))
 
 
 def _second_derivative(nodes: Array) -> sp.lil_array:
-    """Differences of neighbours -> second derivative at the inner ones of `nodes`, three points on any spacing."""
+    """Matrix from differences of neighbours to the second derivative at the inner `nodes`, three points each."""
     n, cell = len(nodes), np.diff(nodes)
     second = sp.lil_array((n, n - 1))
     for i in range(1, n - 1):
@@ -213,9 +218,9 @@ def _second_derivative(nodes: Array) -> sp.lil_array:
 
 
 def bending_stress(shell: PetalShell, W: Array, youngs_modulus: float, thickness: float) -> Array:
-    """Bending stress along the arc at the surface of the metal (J6), shape of `W` [Pa].
+    """Circumferential bending stress at the surface of the metal (J6), shape of `W` [Pa].
 
-    `sigma = E / (1 - nu^2) delta0 / 2 (chi_phi + nu chi_z)`: the assembly strain is part of it.
+    `sigma = E / (1 - nu^2) delta0 / 2 (chi_phi + nu chi_z)`. It contains the stress from assembly.
     """
     chi_phi, chi_z = shell.curvatures(W)
     nu = shell.poisson_ratio

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.physics.gas_inventory import GasContent
+from petalfoil.physics.gas_inventory import GasInventory
 from petalfoil.physics.mass_balance import Entries, FilmBalance
 from petalfoil.physics.reynolds import Flux
 from petalfoil.sparsity import add_up
@@ -23,9 +23,9 @@ class FilmRows:
     balance: FilmBalance
 
     @cached_property
-    def content(self) -> GasContent | None:
+    def content(self) -> GasInventory | None:
         """The condition that stands in place of the first balance; None where the film has ends."""
-        content = GasContent(self.balance.mesh, self.balance.area, self.balance.knudsen)
+        content = GasInventory(self.balance.mesh, self.balance.area, self.balance.knudsen)
         return content if content.needed else None
 
     @cached_property
@@ -72,9 +72,9 @@ class FilmState:
     @cached_property
     def size(self) -> Array:
         """What each row's residual is measured by, (n_unknown,) [1]."""
-        size = self.rows.balance.size(self.fluxes)
+        size = self.rows.balance.row_scale(self.fluxes)
         if self.rows.content is not None:
-            size[0] = self.rows.content.size(self.P, self.H)
+            size[0] = self.rows.content.row_scale(self.P, self.H)
         return size
 
     @cached_property

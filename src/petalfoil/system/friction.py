@@ -13,7 +13,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
-from petalfoil.physics.friction import Friction
+from petalfoil.physics.dry_friction import Friction
 from petalfoil.system.coupled import Layout
 
 Array = NDArray[np.float64]

@@ -10,11 +10,11 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.case import Case, Edges, Mount, Package, Petals
-from petalfoil.mesh.package import PackageMesh, package_mesh
+from petalfoil.mesh.pack import PackMesh, pack_mesh
 from petalfoil.mesh.strips import exposed_strips
-from petalfoil.physics.contact import package_contacts
+from petalfoil.physics.contact import pack_contacts
+from petalfoil.physics.dry_friction import petal_slip
 from petalfoil.physics.forces import node_area
-from petalfoil.physics.friction import petal_slip
 from petalfoil.physics.shell import PetalShell, bending_stress
 from petalfoil.walls.base import Wall, WallState, axial_grid
 from petalfoil.walls.elasticity import Elasticity
@@ -36,13 +36,13 @@ def petals_of(case: Case) -> tuple[Petals, Package]:
     return case.petals, case.package
 
 
-def build_mesh(case: Case) -> PackageMesh:
+def build_mesh(case: Case) -> PackMesh:
     """Grid of the package of `case`."""
     petals, package = petals_of(case)
-    return package_mesh(petals.count, package.overlap, petals.first_root, case.cells_per_pitch, axial_grid(case))
+    return pack_mesh(petals.count, package.overlap, petals.first_root, case.cells_per_pitch, axial_grid(case))
 
 
-def build_shell(case: Case, mesh: PackageMesh) -> PetalShell:
+def build_shell(case: Case, mesh: PackMesh) -> PetalShell:
     """One petal of `case` on `mesh`."""
     petals, package = petals_of(case)
     return PetalShell(
@@ -56,7 +56,7 @@ def build_shell(case: Case, mesh: PackageMesh) -> PetalShell:
     )
 
 
-def package_elasticity(shell: PetalShell, mesh: PackageMesh) -> Elasticity:
+def package_elasticity(shell: PetalShell, mesh: PackMesh) -> Elasticity:
     """Elastic energy of all petals, their roots held."""
     every, free = sp.eye_array(mesh.count), slice(mesh.n_z, None)
     parts = (shell.difference[:, free], shell.strain, shell.rigidity_matrix)
@@ -92,7 +92,7 @@ class PetalWall(WallKind):
             film_unknown=mesh.free_numbers()[:, mesh.exposed],
             load_area=np.broadcast_to(node_area(film, r_m), film.shape),
             rest_film=np.broadcast_to(rest[None, :, None], film.shape),
-            contacts=package_contacts(mesh, r0, sizes),
+            contacts=pack_contacts(mesh, r0, sizes),
             node_area=r_m * 2.0 * np.pi / mesh.count / mesh.cells * float(mesh.axial.weight.max()),
             reference_film=REFERENCE_FILM,
             free_motions=sp.csr_array(sp.kron(every, motions[free], format="csr")),
@@ -157,7 +157,7 @@ class PetalWall(WallKind):
         }
 
 
-def nodal(mesh: PackageMesh, deflection: Array) -> Array:
+def nodal(mesh: PackMesh, deflection: Array) -> Array:
     """Deflections (n,) at all nodes of the petals, zero at the roots; (petal, node, axial) [m]."""
     W = np.zeros(mesh.shape)
     W[:, 1:] = deflection.reshape(mesh.count, -1, mesh.n_z)

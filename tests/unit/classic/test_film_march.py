@@ -98,4 +98,4 @@ def test_a_film_without_ends_comes_to_rest_with_the_content_of_a_long_bearing() 
     assert FilmMarch(problem, ClassicOptions()).advance(P, H, 1e-8, 2_000_000)
     content = problem.layout.film_rows.content
     assert content is not None
-    assert abs(content.value(P, H)) < 1e-7 * content.size(P, H)
+    assert abs(content.value(P, H)) < 1e-7 * content.row_scale(P, H)

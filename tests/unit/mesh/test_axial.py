@@ -60,7 +60,7 @@ def test_no_pressure_pulls_on_few_cells_that_shrink_fast() -> None:
             assert_allclose(grid.load_weight.sum(), 1.0, rtol=1e-14)
 
 
-def test_the_flat_model_is_one_station() -> None:
-    flat = axis_2d(0.05)
-    assert flat.flat
-    assert_allclose([flat.weight, flat.load_weight], 0.05)
+def test_the_2d_model_has_one_station() -> None:
+    station = axis_2d(0.05)
+    assert station.is_2d
+    assert_allclose([station.weight, station.load_weight], 0.05)

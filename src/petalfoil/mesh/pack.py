@@ -1,4 +1,4 @@
-"""The package of petals on its grid: nodes, exposed strips, neighbours."""
+"""The grid of the petal pack: nodes of all petals, and which of them face film, bushing and neighbour."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from petalfoil.mesh.quadrature import trapezoid
 
 
 @dataclass(frozen=True, slots=True)
-class PackageMesh:
-    """Nodes of `n` equal petals; local angle from the root to the free edge, axial stations.
+class PackMesh:
+    """Nodes of `n` equal petals. The local angle of a node is measured from the root of its petal.
 
     Attributes
     ----------
     count : int
-        Petals, `n`.
+        Number of petals, `n`.
     cells : int
-        Cells a pitch, `N`: node `i` of petal `l` lies over node `i - N` of petal `l + 1`.
+        Cells per pitch, `N`. Node `i` of petal `l` lies over node `i - N` of petal `l + 1`.
     phi : (n_node,) array
         Local angles of the nodes [rad].
     roots : (count,) array
@@ -38,22 +38,22 @@ class PackageMesh:
 
     @property
     def n_node(self) -> int:
-        """Nodes along a petal, root and free edge included."""
+        """Number of nodes along a petal, root and free edge included."""
         return len(self.phi)
 
     @property
     def n_z(self) -> int:
-        """Stations along the shaft."""
+        """Number of axial stations."""
         return len(self.axial.z)
 
     @property
     def shape(self) -> tuple[int, int, int]:
-        """(petal, node, axial)."""
+        """Shape of nodal arrays, (petal, node, axial)."""
         return self.count, self.n_node, self.n_z
 
     @property
     def exposed(self) -> slice:
-        """Nodes of a petal that face the film, `phi3 <= phi <= phi1`."""
+        """Nodes of a petal that bound the film, `phi3 <= phi <= phi1`."""
         return slice(self.n_node - self.cells - 1, self.n_node)
 
     @property
@@ -73,18 +73,18 @@ class PackageMesh:
 
     @property
     def arc_weight(self) -> NDArray[np.float64]:
-        """Angle that each node of a petal stands for (trapezoidal rule), shape (n_node,) [rad]."""
+        """Weights of the trapezoidal rule along a petal, shape (n_node,) [rad]."""
         return trapezoid(self.phi)
 
     def free_numbers(self) -> NDArray[np.intp]:
-        """Number of each node's deflection among the unknowns, -1 at the roots, shape (petal, node, axial)."""
+        """Index of the deflection unknown at every node, -1 at the roots, shape (petal, node, axial)."""
         numbers = np.arange(self.count * (self.n_node - 1) * self.n_z).reshape(self.count, -1, self.n_z)
         roots = np.full((self.count, 1, self.n_z), -1)
         return np.concatenate([roots, numbers], axis=1)
 
 
-def package_mesh(count: int, overlap: float, first_root: float, cells: int, axial: AxialGrid) -> PackageMesh:
-    """Grid of a package: `cells` a pitch, petals `overlap` pitches long [1], first root at `first_root` [rad]."""
+def pack_mesh(count: int, overlap: float, first_root: float, cells: int, axial: AxialGrid) -> PackMesh:
+    """Grid of a pack with `cells` cells per pitch. Petals are `overlap` pitches long [1]; `first_root` in [rad]."""
     pitch = 2.0 * np.pi / count
     roots = first_root + pitch * np.arange(count, dtype=np.float64)
-    return PackageMesh(count, cells, petal_angles(pitch, overlap, cells), roots, axial)
+    return PackMesh(count, cells, petal_angles(pitch, overlap, cells), roots, axial)
