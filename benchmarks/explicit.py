@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from petalfoil.analysis.motion import Orbit
 from petalfoil.classic.columns import columns
-from petalfoil.classic.descent import PackageDescent
+from petalfoil.classic.descent import PackDescent
 from petalfoil.classic.film_cells import FilmCells, film_cells
-from petalfoil.classic.kernels import Descent, Engine, March, kernels
+from petalfoil.classic.kernels import DescentSettings, Engine, MarchSettings, kernels
+from petalfoil.classic.method_options import ClassicOptions
 from petalfoil.classic.numpy_kernels import exponential_fit, inflow, largest_rate
-from petalfoil.classic.options import ClassicOptions
 from petalfoil.classic.relaxation import pressure_unknowns
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.system.coupled import CoupledProblem
@@ -53,7 +53,7 @@ def turn(orbit: Orbit) -> float:
     start = orbit.start
     problem = placed(orbit, start)
     cells = cells_at(problem, *np.split(start.x, [problem.layout.n_wall]))
-    step = NUMBERS.time_share / largest_rate(problem.pressure(start.x).reshape(-1), cells)
+    step = NUMBERS.time_step_fraction / largest_rate(problem.pressure(start.x).reshape(-1), cells)
     return 2.0 * math.pi / (2.0 * orbit.system.problem.clock * step)
 
 
@@ -61,7 +61,7 @@ def costs(orbit: Orbit, engine: Engine, steps: int) -> tuple[float, float]:
     """Time of a film step and of a descent step in the bare loops, of `steps` together, after a first call [s]."""
     start, inner = orbit.start, kernels(engine)
     problem = placed(orbit, start)
-    package = PackageDescent(problem, NUMBERS, engine)
+    package = PackDescent(problem, NUMBERS, engine)
     w, unknowns = np.split(start.x, [problem.layout.n_wall])
     P, cells, load = (
         problem.pressure(start.x).reshape(-1).copy(),
@@ -69,7 +69,10 @@ def costs(orbit: Orbit, engine: Engine, steps: int) -> tuple[float, float]:
         package.load(unknowns),
     )
     shell, held, w = package.shell, package.columns, w.copy()
-    march, descent = March(NUMBERS.time_share, 1.0, ENDLESS, 32), Descent(package.step, False, ENDLESS, 20)
+    march, descent = (
+        MarchSettings(NUMBERS.time_step_fraction, 1.0, ENDLESS, 32),
+        DescentSettings(package.step, False, ENDLESS, 20),
+    )
     inner.march(P, cells, march)  # compiles, where something compiles
     inner.descend(w, load, shell, held, descent)
     steps = 160 * max(1, steps // 160)  # whole rounds of both
@@ -94,13 +97,13 @@ def settlings(orbit: Orbit, pair: tuple[Instant, Instant], tolerance: float, sec
     begin, end = pair
     steps, start = math.ceil(turn(orbit) * (end.tau - begin.tau) / (2.0 * math.pi)), time.process_time()
     problem = placed(orbit, begin)
-    package, w, total = PackageDescent(problem, NUMBERS), begin.x[: problem.layout.n_wall].copy(), 0
-    drive = Descent(package.step, False, tolerance, NUMBERS.max_package_steps)
+    package, w, total = PackDescent(problem, NUMBERS), begin.x[: problem.layout.n_wall].copy(), 0
+    settings = DescentSettings(package.step, False, tolerance, NUMBERS.max_pack_steps)
     for step in range(1, steps + 1):
         share = step / steps
         x, e = begin.x + share * (end.x - begin.x), begin.e + share * (end.e - begin.e)
         held = columns(placed(orbit, begin, e))
-        total += kernels().descend(w, package.load(x[problem.layout.n_wall :]), package.shell, held, drive)[0]
+        total += kernels().descend(w, package.load(x[problem.layout.n_wall :]), package.shell, held, settings)[0]
         if time.process_time() - start > seconds:
             return step, total
     return steps, total
@@ -130,12 +133,12 @@ class ExplicitMotion:
     def __post_init__(self) -> None:
         start = self.start
         self.problem = placed(self.orbit, start)
-        self.package = PackageDescent(self.problem, NUMBERS)
+        self.package = PackDescent(self.problem, NUMBERS)
         self.w = start.x[: self.problem.layout.n_wall].copy()
         self.e, self.v, self.tau = start.e.copy(), start.moving.v.copy(), start.tau
         self.P = self.problem.pressure(start.x).reshape(-1).copy()
-        self.hold = cells_at(self.problem, self.w, self.unknowns).hold
-        self.film_steps = self.package_steps = 0
+        self.capacity = cells_at(self.problem, self.w, self.unknowns).capacity
+        self.film_steps = self.pack_steps = 0
 
     @property
     def unknowns(self) -> Array:
@@ -156,10 +159,11 @@ class ExplicitMotion:
     def film_and_rotor(self) -> None:
         """An explicit step of the gas in the cells, as long as (59) allows, then one of the rotor."""
         cells, rotor = cells_at(self.problem, self.w, self.unknowns), self.orbit.system.rotor
-        self.P *= np.where(cells.moves > 0.0, self.hold / cells.hold, 1.0)  # the gas stays while its room changes
-        self.hold, fit = cells.hold, exponential_fit(self.P, cells)
-        dt = NUMBERS.time_share / largest_rate(self.P, cells)
-        self.P += dt * inflow(self.P, cells, fit) / cells.hold
+        # the mass of gas in a cell does not change while its volume does
+        self.P *= np.where(cells.is_unknown > 0.0, self.capacity / cells.capacity, 1.0)
+        self.capacity, fit = cells.capacity, exponential_fit(self.P, cells)
+        dt = NUMBERS.time_step_fraction / largest_rate(self.P, cells)
+        self.P += dt * inflow(self.P, cells, fit) / cells.capacity
         step = 2.0 * self.orbit.system.problem.clock * dt
         self.tau += step
         force = self.orbit.system.film.at(self.unknowns) + rotor.outside(self.tau)
@@ -171,10 +175,10 @@ class ExplicitMotion:
     def settle(self, until: float) -> None:
         """Bring the package to rest under the pressures, unless it gets lost or time is up."""
         load, shell, held = self.package.load(self.unknowns), self.package.shell, columns(self.problem)
-        drive, left = Descent(self.package.step, False, self.tolerance, CHUNK), math.inf
+        settings, left = DescentSettings(self.package.step, False, self.tolerance, CHUNK), math.inf
         while not left <= self.tolerance and not self.lost and time.process_time() < until:
-            steps, left = kernels().descend(self.w, load, shell, held, drive)
-            self.package_steps += steps
+            steps, left = kernels().descend(self.w, load, shell, held, settings)
+            self.pack_steps += steps
 
     @property
     def lost(self) -> bool:

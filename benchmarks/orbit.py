@@ -236,7 +236,7 @@ def marched(motion: Followed) -> Row:
     how = march.follow(end.tau, motion.lane.sample)
     details: dict[str, Value] = {
         "film_steps": march.film_steps,
-        "package_steps": march.package_steps,
+        "pack_steps": march.pack_steps,
         "share_of_a_step": (march.tau - begin.tau) / (end.tau - begin.tau),
         "petals_moved": march.moved,
     }

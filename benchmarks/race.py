@@ -175,12 +175,12 @@ def by_steps(row: Row, lines: list[dict[str, Any]], twin: list[dict[str, Any]], 
     done = [line for line in lines if "change" in line]
     if len(done) < 3 or not twin or twin[-1].get("apart", math.inf) > EPSILON:
         return replace(row, remark="stopped before its steps could be timed, or its compiled twin was")
-    steps = np.array([[line["film_steps"], line["package_steps"]] for line in done], dtype=float)
+    steps = np.array([[line["film_steps"], line["pack_steps"]] for line in done], dtype=float)
     cost = np.linalg.lstsq(steps, np.array([line["seconds"] for line in done]), rcond=None)[0]
     last = [line for line in twin if "change" in line][-1]
-    needed = float(cost @ [last["film_steps"], last["package_steps"]])
+    needed = float(cost @ [last["film_steps"], last["pack_steps"]])
     remark = f"estimated: a step takes {1e6 * cost[0]:.0f} µs in the film, {1e6 * cost[1]:.0f} µs in the package; its "
-    remark += f"compiled twin took {last['film_steps']:.3g} and {last['package_steps']:.3g}"
+    remark += f"compiled twin took {last['film_steps']:.3g} and {last['pack_steps']:.3g}"
     details = row.details | {"seconds_measured": done[-1]["seconds"], "seconds_estimated": needed}
     return replace(row, ratio=needed / newton, met=needed / newton >= WANTED, remark=remark, details=details)
 
@@ -228,30 +228,30 @@ def alone(lane: Lane, limit: float) -> tuple[list[dict[str, Any]], bool]:
 def run_classic(lane: Lane) -> None:
     """Print a line for each outer iteration and for each stop, until the answer is that of Newton."""
     from petalfoil.classic.kernels import Engine
-    from petalfoil.classic.options import ClassicOptions
-    from petalfoil.classic.relaxation import Run, relax
+    from petalfoil.classic.method_options import ClassicOptions
+    from petalfoil.classic.relaxation import ClassicRun, relax
 
     problem = build_problem(lane.case())
     found = solve_cold(problem, RunLog())
     wanted = figures(problem, found.x, found.lam)
     engine = Engine(lane.engine)
     with contextlib.suppress(ConvergenceError):  # compiles, where something compiles
-        relax(Run(build_problem(Lane(6, 9, 0, 0).case()), ClassicOptions(max_outer=1), engine))
+        relax(ClassicRun(build_problem(Lane(6, 9, 0, 0).case()), ClassicOptions(max_outer=1), engine))
     start = time.process_time()
 
     def tell(row: dict[str, Any]) -> None:
         change = max(row["pressure_change"], row["film_change"])
-        steps = {name: row[name] for name in ("film_steps", "package_steps")}
+        steps = {name: row[name] for name in ("film_steps", "pack_steps")}
         say({"seconds": time.process_time() - start, "change": change, **steps})
 
     def options(epsilon: float) -> ClassicOptions:
         plain = ClassicOptions(epsilon=epsilon)
-        return plain if lane.turns == "loose" else replace(plain, loosest=epsilon)
+        return plain if lane.turns == "loose" else replace(plain, loosest_inner_tolerance=epsilon)
 
     state, epsilon, apart = None, EPSILON, math.inf
     while apart > EPSILON and epsilon > LEAST:
         try:
-            state = relax(Run(problem, options(epsilon), engine, tell), state)
+            state = relax(ClassicRun(problem, options(epsilon), engine, tell), state)
         except ConvergenceError as failure:
             say({"error": str(failure)})
             return

@@ -92,10 +92,10 @@ def test_a_method_that_runs_out_of_steps_says_so_with_advice(monkeypatch: pytest
 
 
 def test_a_package_that_runs_out_of_steps_is_a_failed_point(monkeypatch: pytest.MonkeyPatch) -> None:
-    limited(monkeypatch, max_package_steps=200)
+    limited(monkeypatch, max_pack_steps=200)
     (record,) = static.records(bearing(Method.CLASSIC))
     assert not record.converged
-    assert "used up its package steps" in str(record.history[-1]["outcome"])
+    assert "used up its pack steps" in str(record.history[-1]["outcome"])
 
 
 ASKS_FOR_NEWTON: dict[str, Callable[[Case], object]] = {

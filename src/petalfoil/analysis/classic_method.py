@@ -6,8 +6,8 @@ import numpy as np
 
 from petalfoil.analysis.session import TYPICAL_STEPS
 from petalfoil.case import Case, Method
-from petalfoil.classic import ClassicState, Run, assembled, relax
-from petalfoil.classic.relaxation import Row
+from petalfoil.classic import ClassicRun, ClassicState, assembled, relax
+from petalfoil.classic.relaxation import HistoryRow
 from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.equilibrium.solution import RefinedState, Solution, total_residual
 from petalfoil.errors import UsageError
@@ -65,21 +65,21 @@ def rest_by_classic(problem: CoupledProblem, work: RunLog) -> Solution:
     """
     still = problem.at(bearing_number=0.0)
     reached = assembled(telling_run(still, work))
-    work.note("classic", package_steps=reached.package_steps)
+    work.note("classic", pack_steps=reached.pack_steps)
     return answer_of(still, reached, "assembled package at rest, by gradient descent")
 
 
-def telling_run(problem: CoupledProblem, work: RunLog) -> Run:
+def telling_run(problem: CoupledProblem, work: RunLog) -> ClassicRun:
     """A run that writes the history of `work`."""
 
-    def tell(row: Row) -> None:
+    def tell(row: HistoryRow) -> None:
         work.note("classic", **row)
 
     def pulse() -> None:
         if work.tell is not None:
             work.tell("classic")
 
-    return Run(problem, tell=tell, pulse=pulse)
+    return ClassicRun(problem, tell=tell, pulse=pulse)
 
 
 def start_from(known: Solution) -> ClassicState:

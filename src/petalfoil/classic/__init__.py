@@ -1,22 +1,23 @@
-"""THE PAPER'S OWN METHOD on the same mesh and physics: the baseline that everything is measured against.
+"""The method of the paper on the same grid and equations. The benchmarks compare against it.
 
-===================  =========================================================================
-`relaxation.py`      the algorithm of its Figure 5: film and package in turn, relaxed (60), (61)
-`film_march.py`      the film marched explicitly in time to steadiness (51)-(59)
-`film_cells.py`      what a march needs to know of the film's cells, deflections frozen
-`descent.py`         the package by gradient descent, projected onto its restrictions (45)-(50)
-`columns.py`         the restrictions (18)-(22), layer upon layer at each angle
-`kernels.py`         the inner loops: compiled where numba is installed, else in NumPy
-`numpy_kernels.py`   their readable form
-`numba_kernels.py`   their fast form, tested equal
-`options.py`         every number of the method
-===================  =========================================================================
+=====================  ================================================================================
+`relaxation.py`        the algorithm of Figure 5: film and pack in turn, with under-relaxation (60), (61)
+`film_march.py`        explicit time steps of the film to its steady state (51)-(59)
+`film_cells.py`        the coefficients of the film's cells at given deflections
+`descent.py`           projected gradient descent of the pack (45)-(50)
+`columns.py`           the constraints (18)-(22): the petals in order between journal and bushing
+`kernels.py`           choice of the inner loops: numba where it is installed, otherwise NumPy
+`numpy_kernels.py`     the inner loops in NumPy, to be read
+`compiled_kernels.py`  the same loops for numba; a test compares both
+`method_options.py`    all parameters of the method
+=====================  ================================================================================
 
-It reads as the paper does and shares no solver with the rest. Equations of the film are its (51)-(59) with the face
-flow (F2), so that both methods answer alike; steps are counted, and running out of them is an error with a history.
+The code follows the paper and shares no solver with the rest of the package. The film equations are (51)-(59) with the
+face flux (F2), so that both methods have the same solution. A run that reaches a limit of steps raises an error with
+its history.
 """
 
-from petalfoil.classic.options import ClassicOptions
-from petalfoil.classic.relaxation import ClassicState, Run, assembled, relax
+from petalfoil.classic.method_options import ClassicOptions
+from petalfoil.classic.relaxation import ClassicRun, ClassicState, assembled, relax
 
-__all__ = ["ClassicOptions", "ClassicState", "Run", "assembled", "relax"]
+__all__ = ["ClassicOptions", "ClassicRun", "ClassicState", "assembled", "relax"]

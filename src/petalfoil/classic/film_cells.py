@@ -1,7 +1,7 @@
-"""The film's cells as a march sees them: deflections frozen, what depends on the film thickness computed once.
+"""Coefficients of the film's cells at given film thickness, computed once for all time steps of a march.
 
-All arrays are nodal and flat, in the order (strip, node, axial). A node keeps the coefficients of the face ahead of it
-along the rotation and of the one ahead of it along the shaft; where there is none they are zero.
+All arrays are nodal and flattened from (strip, node, axial). A node has the coefficients of the face after it in the
+circumferential direction and of the face after it in the axial direction. They are zero where there is no such face.
 """
 
 from __future__ import annotations
@@ -24,23 +24,23 @@ class FilmCells(NamedTuple):
     Attributes
     ----------
     n_z : int
-        Stations along the shaft: the step from a node to the next one along the rotation.
+        Number of axial stations, which is the index step to the next node in the circumferential direction.
     along, across : arrays
-        `mean(h^3)` over the distance of the nodes, times the face's width.
+        `mean(h^3)` over the distance of the nodes, times the width of the face: circumferential, axial.
     slip, slip_across : arrays
-        Pressure that would let as much pass as slip does (F7), on the same faces.
-    carried, carried_on : arrays
-        `Lam h / 2` times the width, at the node behind the face and at the node ahead of it.
+        Pressure with the same effect on the flow as slip (F7), on the same faces.
+    advection, advection_ahead : arrays
+        `Lam h / 2` times the width, at the node before the face and at the node after it.
     peclet : array
-        Half the cell's Peclet number times `mean(p)` (F2).
-    hold : array
-        `h` times the cell's area; what a pressure unknown holds where two nodes share it.
-    moves : array
+        Half the cell Peclet number times `mean(p)` (F2).
+    capacity : array
+        `h` times the area of the cell: gas in the cell over its pressure. Nodes that share a pressure have their sum.
+    is_unknown : array
         1 where the pressure is unknown, 0 where it is ambient.
     first, last : int arrays
-        Pairs of nodes that share one pressure: the first of a strip, the last of the strip before it.
-    spread, spread_slip : arrays
-        `h^3` and `12 Kn h^2` times the area (F6) of a film without ends; empty where it has any.
+        Pairs of nodes that share one pressure: the first of a strip, the last of the previous strip.
+    inventory, inventory_slip : arrays
+        `h^3` and `12 Kn h^2` times the area (F6) of a film without ambient nodes; otherwise empty.
     """
 
     n_z: int
@@ -48,47 +48,47 @@ class FilmCells(NamedTuple):
     across: Array
     slip: Array
     slip_across: Array
-    carried: Array
-    carried_on: Array
+    advection: Array
+    advection_ahead: Array
     peclet: Array
-    hold: Array
-    moves: Array
+    capacity: Array
+    is_unknown: Array
     first: Index
     last: Index
-    spread: Array
-    spread_slip: Array
+    inventory: Array
+    inventory_slip: Array
 
 
 def film_cells(balance: FilmBalance, H: Array, Lam: float) -> FilmCells:
-    """Coefficients for a march at film thickness `H` (strip, node, axial) and bearing number `Lam` [1]."""
+    """Coefficients at film thickness `H` (strip, node, axial) and bearing number `Lam` [1]."""
     mesh, Kn = balance.mesh, balance.knudsen
     ahead, beside = (H[:, :-1], H[:, 1:]), (H[..., :-1], H[..., 1:])
     cube, cube_across = (mean_cube(*sides)[0] for sides in (ahead, beside))
     width, width_across = balance.width_Z, mesh.arc_weight[:, None] * mesh.axial.copies
     first, last = shared(mesh.unknown)
-    hold = (H * balance.area).ravel()
-    hold[first] = hold[last] = hold[first] + hold[last]
-    endless = bool(np.all(mesh.unknown >= 0))
+    capacity = (H * balance.area).ravel()
+    capacity[first] = capacity[last] = capacity[first] + capacity[last]
+    closed = bool(np.all(mesh.unknown >= 0))
     return FilmCells(
         n_z=mesh.shape[2],
         along=_at_nodes(cube / balance.dphi * width, H.shape),
         across=_at_nodes(cube_across / balance.dZ * width_across, H.shape),
         slip=_at_nodes(slip_pressure(*ahead, Kn)[0], H.shape),
         slip_across=_at_nodes(slip_pressure(*beside, Kn)[0], H.shape),
-        carried=_at_nodes(0.5 * Lam * ahead[0] * width, H.shape),
-        carried_on=_at_nodes(0.5 * Lam * ahead[1] * width, H.shape),
+        advection=_at_nodes(0.5 * Lam * ahead[0] * width, H.shape),
+        advection_ahead=_at_nodes(0.5 * Lam * ahead[1] * width, H.shape),
         peclet=_at_nodes(0.25 * Lam * (ahead[0] + ahead[1]) * balance.dphi / cube, H.shape),
-        hold=hold,
-        moves=(mesh.unknown >= 0).ravel().astype(np.float64),
+        capacity=capacity,
+        is_unknown=(mesh.unknown >= 0).ravel().astype(np.float64),
         first=first,
         last=last,
-        spread=(H**3 * balance.area).ravel() if endless else np.zeros(0),
-        spread_slip=(12.0 * Kn * H**2 * balance.area).ravel() if endless else np.zeros(0),
+        inventory=(H**3 * balance.area).ravel() if closed else np.zeros(0),
+        inventory_slip=(12.0 * Kn * H**2 * balance.area).ravel() if closed else np.zeros(0),
     )
 
 
 def shared(unknown: NDArray[np.intp]) -> tuple[Index, Index]:
-    """Flat numbers of the nodes that share one pressure unknown: first of a strip, last of the strip before it."""
+    """Flattened indices of nodes that share one pressure: first of a strip, last of the previous strip."""
     nodes = np.arange(unknown.size).reshape(unknown.shape)
     first, last = nodes[:, 0], np.roll(nodes[:, -1], 1, axis=0)
     both = unknown[:, 0] >= 0
@@ -96,7 +96,7 @@ def shared(unknown: NDArray[np.intp]) -> tuple[Index, Index]:
 
 
 def _at_nodes(faces: Array, shape: tuple[int, ...]) -> Array:
-    """Values of faces at the nodes behind them, zero where nothing is ahead; flat."""
+    """Values of faces at the nodes before them, flattened; zero where there is no face."""
     out = np.zeros(shape)
     out[tuple(slice(0, count) for count in faces.shape)] = faces
     return out.ravel()

@@ -1,4 +1,4 @@
-"""Which inner loops run: the compiled ones where numba is installed, else their NumPy twins."""
+"""Choice of the inner loops: compiled by numba where it is installed, otherwise NumPy."""
 
 from __future__ import annotations
 
@@ -18,38 +18,38 @@ Array = NDArray[np.float64]
 
 
 class Engine(StrEnum):
-    """How the inner loops are run."""
+    """Implementation of the inner loops."""
 
     NUMBA = "numba"
     NUMPY = "numpy"
 
 
 class Bands(NamedTuple):
-    """Stiffness of one petal by diagonals; all petals are alike.
+    """Stiffness matrix of one petal by diagonals. All petals have the same.
 
     Attributes
     ----------
     values : (n_band, n) array
-        Entry `values[d, i]` multiplies unknown `i + offset[d]` in row `i` [1].
+        `values[d, i]` multiplies unknown `i + offset[d]` in row `i` [1].
     offset : (n_band,) int array
-        Diagonals that are not empty.
+        Offsets of the diagonals that are not empty.
     """
 
     values: Array
     offset: NDArray[np.int64]
 
 
-class March(NamedTuple):
-    """How a march is driven: share of the stable step, time over which a rate counts, tolerance, most steps."""
+class MarchSettings(NamedTuple):
+    """Settings of a march: fraction of the stable step, time that multiplies a rate, tolerance, limit of steps."""
 
-    share: float
+    fraction: float
     time: float
     tolerance: float
     max_steps: int
 
 
-class Descent(NamedTuple):
-    """How a descent is driven: step, momentum, tolerance, most steps."""
+class DescentSettings(NamedTuple):
+    """Settings of a descent: step length, momentum, tolerance, limit of steps."""
 
     step: float
     momentum: bool
@@ -58,26 +58,26 @@ class Descent(NamedTuple):
 
 
 class Kernels(NamedTuple):
-    """The inner loops; they change their first argument in place and return steps taken and what is left."""
+    """The inner loops. They change their first argument in place and return (steps, remaining change or force)."""
 
-    march: Callable[[Array, FilmCells, March], tuple[int, float]]
-    descend: Callable[[Array, Array, Bands, Columns, Descent], tuple[int, float]]
+    march: Callable[[Array, FilmCells, MarchSettings], tuple[int, float]]
+    descend: Callable[[Array, Array, Bands, Columns, DescentSettings], tuple[int, float]]
 
 
 REFRESH = 32
-"""Film steps between renewals of the time step (59) and of the exponential fit, which follows the pressure slowly."""
+"""Film steps between updates of the time step (59) and of the exponential fit. Both change slowly with the pressure."""
 
 CHECK = 20
-"""Descent steps between looks at what is left."""
+"""Descent steps between evaluations of the remaining force."""
 
 
 @cache
 def kernels(engine: Engine | None = None) -> Kernels:
-    """The inner loops of `engine`; of the fastest that is installed if None."""
+    """The inner loops of `engine`; None takes the fastest installed."""
     if engine is None:
         engine = Engine.NUMBA if numba_is_installed() else Engine.NUMPY
     if engine is Engine.NUMBA:
-        from petalfoil.classic import numba_kernels as compiled
+        from petalfoil.classic import compiled_kernels as compiled
 
         return Kernels(compiled.march, compiled.descend)
     from petalfoil.classic import numpy_kernels as plain
@@ -86,5 +86,5 @@ def kernels(engine: Engine | None = None) -> Kernels:
 
 
 def numba_is_installed() -> bool:
-    """Whether ``pip install petalfoil[classic]`` was done."""
+    """Whether numba is installed (``pip install petalfoil[classic]``)."""
     return find_spec("numba") is not None

@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from petalfoil.classic.descent import PackageDescent
+from petalfoil.classic.descent import PackDescent
+from petalfoil.classic.method_options import ClassicOptions
 from petalfoil.classic.numpy_kernels import elastic_force, project
-from petalfoil.classic.options import ClassicOptions
 from petalfoil.equilibrium.ascent import rest
 from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.system.coupled import CoupledProblem
@@ -28,7 +28,7 @@ def gaps(problem: CoupledProblem, W: Array) -> Array:
 @pytest.mark.parametrize("count", [6, 8, 10])  # overlaps 1.7, 2.2 and 2.8: two and three layers
 def test_every_deflection_stands_in_one_column_and_every_gap_is_kept(count: int) -> None:
     problem = package(10, 50e-6, **{"petals.count": count})
-    columns = PackageDescent(problem, ClassicOptions()).columns
+    columns = PackDescent(problem, ClassicOptions()).columns
     assert sorted(columns.node[columns.node >= 0]) == list(range(problem.layout.n_wall))
     W = np.random.default_rng(4).normal(size=problem.layout.n_wall) * 10.0
     assert np.min(gaps(problem, W)) < -10.0
@@ -37,7 +37,7 @@ def test_every_deflection_stands_in_one_column_and_every_gap_is_kept(count: int)
 
 def test_the_projection_is_the_nearest_point() -> None:
     problem = package(10, 50e-6)
-    columns = PackageDescent(problem, ClassicOptions()).columns
+    columns = PackDescent(problem, ClassicOptions()).columns
     rng = np.random.default_rng(5)
     W = rng.normal(size=problem.layout.n_wall) * 10.0
     nearest = project(W, columns)
@@ -56,7 +56,7 @@ def test_the_bands_are_the_stiffness(kind: str) -> None:
     W = np.random.default_rng(6).normal(size=problem.layout.n_wall)
     wanted = problem.layout.stiffness @ W
     assert_allclose(
-        elastic_force(W, PackageDescent(problem, ClassicOptions()).shell),
+        elastic_force(W, PackDescent(problem, ClassicOptions()).shell),
         wanted,
         rtol=0.0,
         atol=1e-12 * np.max(np.abs(wanted)),
@@ -70,7 +70,7 @@ def test_the_package_alone_descends_to_newton_s(mount: str, momentum: bool) -> N
     wanted = rest(problem, RunLog())
     assert wanted is not None
     W, load = np.zeros(problem.layout.n_wall), np.zeros(problem.layout.n_wall)
-    descent = PackageDescent(problem, ClassicOptions(momentum=momentum))
+    descent = PackDescent(problem, ClassicOptions(momentum=momentum))
     assert descent.advance(W, load, 1e-7, 1_000_000)
     size = np.max(np.abs(wanted.x[: len(W)]))
     assert_allclose(W, wanted.x[: len(W)], rtol=0.0, atol=1e-5 * size)
@@ -80,7 +80,7 @@ def test_the_package_alone_descends_to_newton_s(mount: str, momentum: bool) -> N
 def test_momentum_saves_steps() -> None:
     problem, taken = package(16), {}
     for momentum in (False, True):
-        descent = PackageDescent(problem, ClassicOptions(momentum=momentum))
+        descent = PackDescent(problem, ClassicOptions(momentum=momentum))
         W = np.zeros(problem.layout.n_wall)
         assert descent.advance(W, np.zeros_like(W), 1e-6, 10_000_000)
         taken[momentum] = descent.steps
@@ -90,7 +90,7 @@ def test_momentum_saves_steps() -> None:
 # ---------------------------------------------------------------------------------------------- petal by petal
 
 
-def petal_by_petal(problem: CoupledProblem, descent: PackageDescent, W: Array, sweeps: int) -> Array:
+def petal_by_petal(problem: CoupledProblem, descent: PackDescent, W: Array, sweeps: int) -> Array:
     """Descend one petal after the other inside bounds (21), (22) that its neighbours make where they are now."""
     columns, n = descent.columns, problem.layout.n_wall
     petals = len(problem.layout.wall.film.theta)
@@ -117,7 +117,7 @@ def petal_by_petal(problem: CoupledProblem, descent: PackageDescent, W: Array, s
 def test_petals_that_descend_one_by_one_stop_short_of_the_least_energy() -> None:
     """Why the package is projected as a whole: a petal that only meets its neighbour as a wall cannot push it."""
     problem = package(8, 100e-6)
-    descent = PackageDescent(problem, ClassicOptions())
+    descent = PackDescent(problem, ClassicOptions())
     W, none = np.zeros(problem.layout.n_wall), np.zeros(problem.layout.n_wall)
     stuck = petal_by_petal(problem, descent, project(W, descent.columns), 4000)
     later = petal_by_petal(problem, descent, stuck, 250)

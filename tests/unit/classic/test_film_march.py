@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from petalfoil.classic import numpy_kernels
 from petalfoil.classic.film_cells import FilmCells, film_cells
 from petalfoil.classic.film_march import FilmMarch
-from petalfoil.classic.kernels import March
-from petalfoil.classic.options import ClassicOptions
+from petalfoil.classic.kernels import MarchSettings
+from petalfoil.classic.method_options import ClassicOptions
 from petalfoil.classic.relaxation import pressure_unknowns
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.run_log import RunLog
@@ -50,11 +50,11 @@ def test_an_explicit_step_conserves_mass(kind: str, monkeypatch: pytest.MonkeyPa
     problem = bearing(kind)
     H, P = drawn(problem)
     cells, balance = cells_of(problem, H), problem.layout.balance
-    cells = cells._replace(spread=np.zeros(0), spread_slip=np.zeros(0))  # breathes at no ends: see the content
+    cells = cells._replace(inventory=np.zeros(0), inventory_slip=np.zeros(0))  # breathes at no ends: see the content
     held = [balance.storage(P, H, 0.5)]
     given = balance.outflow(balance.fluxes(P, H, problem.bearing_number))[balance.mesh.unknown < 0].sum()
     dt = 0.9 / numpy_kernels.largest_rate(P.ravel(), cells)
-    numpy_kernels.march(P.reshape(-1), cells, March(0.9, 1.0, -1.0, 1))
+    numpy_kernels.march(P.reshape(-1), cells, MarchSettings(0.9, 1.0, -1.0, 1))
     held.append(balance.storage(P, H, 0.5))
     gained = float(np.sum(held[1] - held[0]))
     assert_allclose(gained, dt * given, rtol=0.0, atol=1e-13 * float(np.sum(held[0])))
@@ -75,7 +75,7 @@ def test_the_time_step_is_within_a_factor_two_of_the_largest_that_is_stable() ->
     problem = bearing("2d")
     H = problem.film(solve_cold(problem, RunLog()).x)
     settles = {
-        share: FilmMarch(problem, ClassicOptions(time_share=share)).advance(np.ones(H.shape), H, 1e-6, 20_000)
+        share: FilmMarch(problem, ClassicOptions(time_step_fraction=share)).advance(np.ones(H.shape), H, 1e-6, 20_000)
         for share in (0.95, 2.2)
     }
     assert settles == {0.95: True, 2.2: False}

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from petalfoil.classic import numpy_kernels
 from petalfoil.classic.columns import Columns
-from petalfoil.classic.descent import PackageDescent
+from petalfoil.classic.descent import PackDescent
 from petalfoil.classic.film_cells import film_cells
-from petalfoil.classic.kernels import Descent, Engine, March, kernels
-from petalfoil.classic.options import ClassicOptions
+from petalfoil.classic.kernels import DescentSettings, Engine, MarchSettings, kernels
+from petalfoil.classic.method_options import ClassicOptions
 from tests.unit.classic.bearings import KINDS, bearing
 
 pytest.importorskip("numba")
@@ -34,11 +34,11 @@ def stacks(layers: int, count: int = 200) -> tuple[Columns, Array]:
 
 @pytest.mark.parametrize("layers", [1, 2, 3, 4, 6])
 def test_the_projections_are_equal(layers: int) -> None:
-    from petalfoil.classic import numba_kernels
+    from petalfoil.classic import compiled_kernels
 
     columns, W = stacks(layers)
     wanted = numpy_kernels.project(W, columns)
-    numba_kernels.project(W, columns)
+    compiled_kernels.project(W, columns)
     assert_allclose(W, wanted, rtol=0.0, atol=1e-13)
 
 
@@ -52,7 +52,7 @@ def test_the_marches_are_equal(kind: str) -> None:
     ends = []
     for engine in Engine:
         P = start.copy()
-        ends.append((P, kernels(engine).march(P, cells, March(0.95, 0.1, -1.0, 320))))
+        ends.append((P, kernels(engine).march(P, cells, MarchSettings(0.95, 0.1, -1.0, 320))))
     (P_numba, (steps_numba, left_numba)), (P_numpy, (steps_numpy, left_numpy)) = ends
     assert steps_numba == steps_numpy == 320
     assert_allclose(P_numba, P_numpy, rtol=1e-12)
@@ -64,13 +64,13 @@ def test_the_marches_are_equal(kind: str) -> None:
 @pytest.mark.parametrize("kind", ["2d", "half"])
 def test_the_descents_are_equal(kind: str, momentum: bool) -> None:
     problem = bearing(kind)
-    package = PackageDescent(problem, ClassicOptions(momentum=momentum))
+    package = PackDescent(problem, ClassicOptions(momentum=momentum))
     load = np.random.default_rng(3).normal(size=problem.layout.n_wall)
     ends = []
     for engine in Engine:
         W = np.zeros(problem.layout.n_wall)
-        drive = Descent(package.step, momentum, -1.0, 400)
-        ends.append((W, kernels(engine).descend(W, load, package.shell, package.columns, drive)))
+        settings = DescentSettings(package.step, momentum, -1.0, 400)
+        ends.append((W, kernels(engine).descend(W, load, package.shell, package.columns, settings)))
     (W_numba, (steps_numba, left_numba)), (W_numpy, (steps_numpy, left_numpy)) = ends
     assert steps_numba == steps_numpy == 400
     assert_allclose(W_numba, W_numpy, rtol=0.0, atol=1e-10 * np.max(np.abs(W_numpy)))

@@ -8,24 +8,24 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from petalfoil.classic import ClassicOptions, Run, numpy_kernels, relax
+from petalfoil.classic import ClassicOptions, ClassicRun, numpy_kernels, relax
 from petalfoil.classic import kernels as inner
-from petalfoil.classic.relaxation import Damping
+from petalfoil.classic.relaxation import Relaxation
 from petalfoil.errors import ConvergenceError
 from tests.unit.classic.bearings import bearing, package
 
 
 @pytest.mark.parametrize(
     ("limits", "what"),
-    [({"max_film_steps": 20_000}, "film"), ({"max_package_steps": 20_000}, "package"), ({"max_outer": 4}, "outer")],
+    [({"max_film_steps": 20_000}, "film"), ({"max_pack_steps": 20_000}, "pack"), ({"max_outer": 4}, "outer")],
 )
 def test_a_run_that_uses_up_its_steps_says_which_and_how_it_went(limits: dict[str, int], what: str) -> None:
     with pytest.raises(ConvergenceError, match=f"used up its {what} steps") as caught:
-        relax(Run(package(10), ClassicOptions(**limits)))
+        relax(ClassicRun(package(10), ClassicOptions(**limits)))
     rows = caught.value.history
     assert len(rows) > 1
     assert [row["outer"] for row in rows] == list(range(1, len(rows) + 1))
-    assert {"film_steps", "package_steps", "pressure_change", "film_change"} <= set(rows[0])
+    assert {"film_steps", "pack_steps", "pressure_change", "film_change"} <= set(rows[0])
     assert rows[-1]["film_steps"] <= limits.get("max_film_steps", np.inf) + 32
     assert "coarser grid" in caught.value.advice
 
@@ -34,60 +34,63 @@ def test_a_film_that_blows_up_is_told_apart() -> None:
     problem = package(8)
     closed = np.ones(problem.layout.balance.mesh.shape)
     closed[0, 3] = 0.0
-    with pytest.raises(ConvergenceError, match="film blew up"), np.errstate(all="ignore"):
-        Run(problem).settle_film(np.ones(closed.shape), closed, 1e-6)
+    with (
+        pytest.raises(ConvergenceError, match="film pressures of the classic method diverged"),
+        np.errstate(all="ignore"),
+    ):
+        ClassicRun(problem).march_film(np.ones(closed.shape), closed, 1e-6)
 
 
 def test_rows_are_told_as_they_come_and_the_run_can_be_watched() -> None:
     told, pulses = [], []
-    run = Run(package(8), ClassicOptions(), tell=told.append, pulse=lambda: pulses.append(1))
+    run = ClassicRun(package(8), ClassicOptions(), tell=told.append, pulse=lambda: pulses.append(1))
     state = relax(run)
     assert told == run.rows
     assert len(told) == state.outer
     assert len(pulses) > 2 * state.outer
-    assert (told[-1]["film_steps"], told[-1]["package_steps"]) == (state.film_steps, state.package_steps)
+    assert (told[-1]["film_steps"], told[-1]["pack_steps"]) == (state.film_steps, state.pack_steps)
     assert max(told[-1]["pressure_change"], told[-1]["film_change"]) <= 1e-5
 
 
 def test_an_answer_as_a_start_is_not_taken_for_a_better_one() -> None:
     problem = package(8, 100e-6)
-    rough = relax(Run(problem, ClassicOptions(epsilon=1e-3)))
-    fine = relax(Run(problem, ClassicOptions(epsilon=1e-6)))
-    again = relax(Run(problem, ClassicOptions(epsilon=1e-6)), rough)
+    rough = relax(ClassicRun(problem, ClassicOptions(epsilon=1e-3)))
+    fine = relax(ClassicRun(problem, ClassicOptions(epsilon=1e-6)))
+    again = relax(ClassicRun(problem, ClassicOptions(epsilon=1e-6)), rough)
     assert np.max(np.abs(rough.P - fine.P)) > 1e-5
     assert_allclose(again.P, fine.P, rtol=1e-5)
     assert 2 < again.outer < fine.outer
 
 
 def test_a_start_from_another_position_is_moved_out_of_the_journal() -> None:
-    beside = relax(Run(package(8)))
+    beside = relax(ClassicRun(package(8)))
     problem = package(8, 150e-6)
     assert np.min(problem.film(np.concatenate([beside.w, beside.P]))) < 0.0
-    assert_allclose(relax(Run(problem), beside).P, relax(Run(problem)).P, rtol=1e-4)
+    assert_allclose(relax(ClassicRun(problem), beside).P, relax(ClassicRun(problem)).P, rtol=1e-4)
 
 
 def test_a_plain_bearing_has_only_a_film() -> None:
-    state = relax(Run(bearing("plain")))
-    assert state.package_steps == 0
+    state = relax(ClassicRun(bearing("plain")))
+    assert state.pack_steps == 0
     assert len(state.w) == 0
     assert state.outer <= 6
 
 
 def test_relaxation_is_halved_where_film_and_package_take_turns() -> None:
-    damping = Damping(0.5, 10.0)
+    relaxation = Relaxation(0.5, 10.0)
     for change in (1.0, 0.5, *([0.6] * 19)):
-        damping.look(change)
-    assert damping.share == 0.5
-    damping.look(0.7)
-    assert damping.share == 0.25
-    damping.look(0.9)
-    assert (damping.least, damping.waited) == (0.9, 0)
+        relaxation.update(change)
+    assert relaxation.factor == 0.5
+    relaxation.update(0.7)
+    assert relaxation.factor == 0.25
+    relaxation.update(0.9)
+    assert (relaxation.smallest, relaxation.waited) == (0.9, 0)
 
 
 def test_without_relaxation_film_and_package_take_turns_which_is_found_out() -> None:
-    run = Run(package(10), ClassicOptions(deflection_share=1.0))
+    run = ClassicRun(package(10), ClassicOptions(deflection_relaxation=1.0))
     relax(run)
-    assert run.rows[-1]["deflection_share"] < 1.0
+    assert run.rows[-1]["deflection_relaxation"] < 1.0
 
 
 @pytest.fixture
@@ -103,6 +106,6 @@ def no_numba(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 @pytest.mark.usefixtures("no_numba")
 def test_without_numba_the_numpy_twins_run() -> None:
     assert inner.kernels() == (numpy_kernels.march, numpy_kernels.descend)
-    state = relax(Run(package(6), ClassicOptions(epsilon=3e-2)))
-    twin = relax(Run(package(6), ClassicOptions(epsilon=3e-2), inner.Engine.NUMPY))
-    assert (state.film_steps, state.package_steps) == (twin.film_steps, twin.package_steps)
+    state = relax(ClassicRun(package(6), ClassicOptions(epsilon=3e-2)))
+    twin = relax(ClassicRun(package(6), ClassicOptions(epsilon=3e-2), inner.Engine.NUMPY))
+    assert (state.film_steps, state.pack_steps) == (twin.film_steps, twin.pack_steps)

@@ -1,4 +1,4 @@
-"""The inner loops node by node, compiled by numba: the same numbers as `numpy_kernels.py`, many times faster."""
+"""The inner loops node by node, compiled by numba. They give the numbers of `numpy_kernels.py`, many times faster."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 
 from petalfoil.classic.columns import Columns
 from petalfoil.classic.film_cells import FilmCells
-from petalfoil.classic.kernels import CHECK, REFRESH, Bands, Descent, March
+from petalfoil.classic.kernels import CHECK, REFRESH, Bands, DescentSettings, MarchSettings
 
 Array = NDArray[np.float64]
 F = TypeVar("F", bound=Callable[..., Any])
 
 
 def compiled(function: F) -> F:
-    """Compile at the first call; kept on disk for the next session."""
+    """Compile at the first call and keep the result on disk."""
     return cast(F, numba.njit(cache=True, error_model="numpy")(function))
 
 
@@ -27,38 +27,40 @@ def compiled(function: F) -> F:
 
 
 @compiled
-def march(P: Array, cells: FilmCells, drive: March) -> tuple[int, float]:
+def march(P: Array, cells: FilmCells, settings: MarchSettings) -> tuple[int, float]:
     """As `numpy_kernels.march`."""
     n, n_z = len(P), cells.n_z
     fit, gained = np.zeros(n), np.zeros(n)
-    U_phi, U_z = np.zeros(n + n_z), np.zeros(n + 1)  # a node's face behind, then its face ahead
-    per_hold = cells.moves / cells.hold
-    steps, change, leak = 0, np.inf, 0.0
-    while steps < drive.max_steps and change > drive.tolerance:
-        dt = drive.share / largest_rate(P, cells, per_hold)  # (59)
+    # at index k the flow through the face before node k; at k + n_z (U_z: k + 1) that through the face after it
+    U_phi, U_z = np.zeros(n + n_z), np.zeros(n + 1)
+    per_capacity = cells.is_unknown / cells.capacity
+    steps, change, excess = 0, np.inf, 0.0
+    while steps < settings.max_steps and change > settings.tolerance:
+        dt = settings.fraction / largest_rate(P, cells, per_capacity)  # (59)
         renew_fit(P, cells, fit)
         for _ in range(REFRESH):
             flows(P, cells, fit, U_phi, U_z)
             gather(U_phi, U_z, cells, gained)
             for k in range(n):
-                P[k] += dt * per_hold[k] * gained[k]  # (58)
-            if len(cells.spread):
-                leak = content_defect(P, cells)
+                P[k] += dt * per_capacity[k] * gained[k]  # (58)
+            if len(cells.inventory):
+                excess = gas_inventory_error(P, cells)
                 for k in range(n):
-                    P[k] *= 1.0 - dt / drive.time * leak
+                    P[k] *= 1.0 - dt / settings.time * excess
         steps += REFRESH
-        change = max(np.max(np.abs(per_hold * gained)) * drive.time, abs(leak))
+        change = max(np.max(np.abs(per_capacity * gained)) * settings.time, abs(excess))
     return steps, change
 
 
 @compiled
 def flows(P: Array, cells: FilmCells, fit: Array, U_phi: Array, U_z: Array) -> None:
-    """Flows through the faces ahead of every node (56), (57), kept one place further on."""
+    """Flows through the faces after every node (56), (57), stored at the index of the next node."""
     n, n_z = len(P), cells.n_z
-    carried, carried_on, along, slip, onward = cells.carried, cells.carried_on, cells.along, cells.slip, U_phi[n_z:]
+    advection, advection_ahead, along, slip = cells.advection, cells.advection_ahead, cells.along, cells.slip
+    onward = U_phi[n_z:]
     P_ahead = P[n_z:]
     for k in range(n - n_z):
-        m0, m1 = carried[k] * P[k], carried_on[k] * P_ahead[k]
+        m0, m1 = advection[k] * P[k], advection_ahead[k] * P_ahead[k]
         poiseuille = -along[k] * (0.5 * (P[k] + P_ahead[k]) + slip[k]) * (P_ahead[k] - P[k])
         onward[k] = poiseuille + m0 + m1 - fit[k] * (m1 - m0)
     if n_z > 1:
@@ -69,7 +71,7 @@ def flows(P: Array, cells: FilmCells, fit: Array, U_phi: Array, U_z: Array) -> N
 
 @compiled
 def gather(U_phi: Array, U_z: Array, cells: FilmCells, gained: Array) -> None:
-    """Net flow into every cell (55); two nodes that share a pressure share it."""
+    """Net flow into every cell (55); nodes that share a pressure have the sum of theirs."""
     onward, beside = U_phi[cells.n_z :], U_z[1:]
     for k in range(len(gained)):
         gained[k] = U_phi[k] - onward[k] + U_z[k] - beside[k]
@@ -80,7 +82,7 @@ def gather(U_phi: Array, U_z: Array, cells: FilmCells, gained: Array) -> None:
 
 @compiled
 def renew_fit(P: Array, cells: FilmCells, fit: Array) -> None:
-    """`L(x)` of the faces ahead along the rotation (F2)."""
+    """`L(x)` of the circumferential faces after every node (F2)."""
     for k in range(len(P) - cells.n_z):
         x = cells.peclet[k] / (0.5 * (P[k] + P[k + cells.n_z]) + cells.slip[k])
         if x < 0.03:
@@ -92,13 +94,13 @@ def renew_fit(P: Array, cells: FilmCells, fit: Array) -> None:
 
 
 @compiled
-def largest_rate(P: Array, cells: FilmCells, per_hold: Array) -> float:
-    """Inverse of the largest stable time step (59)."""
+def largest_rate(P: Array, cells: FilmCells, per_capacity: Array) -> float:
+    """Inverse of the largest stable time step (59) [1]."""
     n, n_z = len(P), cells.n_z
     total = np.empty(n)
     for k in range(n):
         total[k] = cells.along[k] * (P[k] + cells.slip[k]) + cells.across[k] * (P[k] + cells.slip_across[k])
-        total[k] += 2.0 * cells.carried[k]
+        total[k] += 2.0 * cells.advection[k]
         if k >= n_z:
             total[k] += cells.along[k - n_z] * (P[k] + cells.slip[k - n_z])
         if k >= 1:
@@ -107,39 +109,39 @@ def largest_rate(P: Array, cells: FilmCells, per_hold: Array) -> float:
         a, b = cells.first[pair], cells.last[pair]
         total[a] += total[b]
         total[b] = total[a]
-    return float(np.max(total * per_hold))
+    return float(np.max(total * per_capacity))
 
 
 @compiled
-def content_defect(P: Array, cells: FilmCells) -> float:
-    """Share of its gas that a film without ends holds too much (F6), (Q5)."""
+def gas_inventory_error(P: Array, cells: FilmCells) -> float:
+    """Relative excess of the gas inventory of a film without ambient nodes (F6), (Q5) [1]."""
     excess, slope = 0.0, 0.0
-    for k in range(len(cells.spread)):
-        excess += cells.spread[k] * (P[k] * P[k] - 1.0) + cells.spread_slip[k] * (P[k] - 1.0)
-        slope += (2.0 * cells.spread[k] * P[k] + cells.spread_slip[k]) * P[k]
+    for k in range(len(cells.inventory)):
+        excess += cells.inventory[k] * (P[k] * P[k] - 1.0) + cells.inventory_slip[k] * (P[k] - 1.0)
+        slope += (2.0 * cells.inventory[k] * P[k] + cells.inventory_slip[k]) * P[k]
     return excess / slope
 
 
-# ---------------------------------------------------------------------------------------------- package
+# ---------------------------------------------------------------------------------------------- pack
 
 
 @compiled
-def descend(W: Array, load: Array, shell: Bands, columns: Columns, drive: Descent) -> tuple[int, float]:
+def descend(W: Array, load: Array, shell: Bands, columns: Columns, settings: DescentSettings) -> tuple[int, float]:
     """As `numpy_kernels.descend`."""
     n = len(W)
     ahead, last, force = W.copy(), W.copy(), np.empty(n)
     steps, left, theta = 0, np.inf, 1.0
-    while steps < drive.max_steps and left > drive.tolerance:
+    while steps < settings.max_steps and left > settings.tolerance:
         left = 0.0
         for turn in range(CHECK):
             last[:] = W
             elastic_force(ahead, shell, force)
             for i in range(n):
-                W[i] = ahead[i] - drive.step * (force[i] - load[i])  # (49), (50)
+                W[i] = ahead[i] - settings.step * (force[i] - load[i])  # (49), (50)
             project(W, columns)  # (20)
             if turn == CHECK - 1:
-                left = np.max(np.abs(W - ahead)) / drive.step
-            if drive.momentum:
+                left = np.max(np.abs(W - ahead)) / settings.step
+            if settings.momentum:
                 theta = go_ahead(ahead, W, last, theta)
             else:
                 ahead[:] = W
@@ -164,7 +166,7 @@ def elastic_force(W: Array, shell: Bands, force: Array) -> None:
 
 @compiled
 def project(W: Array, columns: Columns) -> None:
-    """The nearest deflections that keep the restrictions (18)-(20); up to three layers written out."""
+    """The nearest deflections that satisfy the constraints (18)-(20); up to three layers are written out."""
     node, shift = columns.node, columns.shift
     for c in range(len(columns.layers)):
         layers, low, high = columns.layers[c], columns.low[c], columns.high[c]
@@ -190,7 +192,7 @@ def project(W: Array, columns: Columns) -> None:
 
 @compiled
 def pool(W: Array, columns: Columns, c: int) -> None:
-    """One column of any number of layers: neighbours out of order are pooled into their mean."""
+    """Project one column of any number of layers: neighbours out of order take their mean (pool adjacent violators)."""
     layers = columns.layers[c]
     mean, count, blocks = np.empty(layers), np.empty(layers, dtype=np.int64), 0
     for q in range(layers):
@@ -216,14 +218,14 @@ def clip(z: float, low: float, high: float) -> float:
 
 @compiled
 def go_ahead(ahead: Array, W: Array, last: Array, theta: float) -> float:
-    """Put `ahead` of the deflections by momentum; next `theta`."""
+    """Extrapolate `ahead` from the deflections by momentum; the next `theta`."""
     against = 0.0
     for i in range(len(W)):
         against += (W[i] - ahead[i]) * (W[i] - last[i])
     if against < 0.0:
         theta = 1.0
     larger = 0.5 * (1.0 + math.sqrt(1.0 + 4.0 * theta * theta))
-    share = (theta - 1.0) / larger
+    factor = (theta - 1.0) / larger
     for i in range(len(W)):
-        ahead[i] = W[i] + share * (W[i] - last[i])
+        ahead[i] = W[i] + factor * (W[i] - last[i])
     return larger
