@@ -55,7 +55,7 @@ def _check(folder: Path) -> None:
 
 
 def _json(evidence: Evidence, page: Path) -> str:
-    from petalfoil.report.files import summary
+    from petalfoil.report.report_files import summary
 
     return json.dumps({"page": str(page), **summary(evidence)}, allow_nan=False) + "\n"
 
@@ -67,5 +67,5 @@ def _text(evidence: Evidence, page: Path) -> str:
     lines = []
     for claim in claims(evidence):
         lines += [f"{claim.verdict.upper()}: {claim.quote} ({claim.where})"]
-        lines += [textwrap.fill(claim.ours, 110, initial_indent="    ", subsequent_indent="    "), ""]
+        lines += [textwrap.fill(claim.computed, 110, initial_indent="    ", subsequent_indent="    "), ""]
     return "\n".join([*lines, f"Figures, the study of assumptions and data: {page}\n"])

@@ -1,21 +1,20 @@
-"""THE PAPER'S FIGURES AND CLAIMS, regenerated: runs, a study of its silent assumptions, one page (`reproduce`).
+"""The figures and claims of the paper, computed again: calculations, varied assumptions, one page (`reproduce`).
 
-================  =========================================================================================
-`paper.py`        the paper's packages as cases; what it claims, where it is silent, what was assumed
-`scope.py`        how much is run: grids and displacements
-`families.py`     the load characteristics of 6, 8 and 10 petals under one set of assumptions
-`variations.py`   the assumptions that are varied
-`study.py`        the loads under each of them, as ratios
-`bounds.py`       the paper's fixed bounds (21), (22) in place of contact between petals
-`meanings.py`     what "load characteristic" may mean
-`grids.py`        the paper's grids
-`claims.py`       claims beside numbers
-`figures.py`      figures of the page
-`tables.py`       results as rows of text
-`page.py`         the page: one file without references to anything outside it
-`files.py`        page, NetCDF, CSV and JSON to a folder
-`reproduce.py`    all of it in order
-================  =========================================================================================
+==========================  =================================================================================
+`paper_cases.py`            the bearings of the paper as cases; inputs that it does not state
+`load_characteristics.py`   load characteristics of packs with 6, 8 and 10 petals, and the extent of the report
+`assumptions.py`            loads under one changed assumption at a time
+`fixed_bounds.py`           the fixed bounds (21), (22) of the paper instead of contact between petals
+`interpretations.py`        other quantities that "load characteristic" may denote
+`paper_grids.py`            loads on the grids of the paper
+`claims.py`                 claims of the paper beside computed results
+`page_figures.py`           figures of the page that no other page has
+`page_tables.py`            results as tables of text
+`html.py`                   elements of a page without external references
+`page.py`                   the page
+`report_files.py`           page, NetCDF, CSV and JSON in a folder
+`reproduce.py`              the whole report
+==========================  =================================================================================
 
-Nothing here is needed by a run: the room stands above the analyses and beside the faces.
+No analysis needs this package. It uses the analyses, the figures and the result files.
 """

@@ -1,4 +1,4 @@
-"""Pieces of a page that stands alone: tables, pictures inside the file, one style for screen and paper."""
+"""Elements of a page without external references: tables, figures inside the file, a style for screen and print."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from html import escape
 
 from matplotlib.figure import Figure
 
-from petalfoil.report.tables import Table
+from petalfoil.report.page_tables import TextTable
 
 STYLE = """
 :root { color-scheme: light; }
@@ -40,7 +40,7 @@ tr.marked td { background: #eef7f2; }
 
 
 def page(title: str, body: Iterable[str]) -> str:
-    """A whole page."""
+    """The page as HTML."""
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(title)}</title>'
     return (
         f'<!DOCTYPE html>\n<html lang="en"><head>{head}<style>{STYLE}</style></head><body>\n'
@@ -50,7 +50,7 @@ def page(title: str, body: Iterable[str]) -> str:
 
 
 def prose(text: str) -> str:
-    """Plain text with its symbols' indices set low: `R_j`, `p_a`."""
+    """Plain text; indices of symbols such as `R_j` and `p_a` become subscripts."""
     return re.sub(r"\b([A-Za-zφδ])_([A-Za-z]+)\b", r"\1<sub>\2</sub>", escape(text))
 
 
@@ -65,12 +65,12 @@ def bullets(items: Iterable[str]) -> str:
 
 
 def section(name: str, heading: str) -> str:
-    """A heading that the navigation leads to."""
+    """A heading with an anchor for the navigation."""
     return f'<h2 id="{name}">{prose(heading)}</h2>'
 
 
-def table(content: Table, marked: Iterable[int] = ()) -> str:
-    """A table; columns of numbers are set to the right, some rows can stand out."""
+def table(content: TextTable, marked: Iterable[int] = ()) -> str:
+    """A table. Columns of numbers are aligned to the right; the rows `marked` are highlighted."""
     kinds = ["n" if all(_is_number(row[k]) for row in content.rows) else "" for k in range(len(content.head))]
     head = "".join(f"<th{_class(kind)}>{prose(text)}</th>" for kind, text in zip(kinds, content.head, strict=True))
     chosen, lines = set(marked), []
@@ -81,7 +81,7 @@ def table(content: Table, marked: Iterable[int] = ()) -> str:
 
 
 def picture(fig: Figure, caption: str, width: float | None = None) -> str:
-    """A figure inside the page, as SVG; drawn for another `width` [inch], its letters are larger beside it."""
+    """A figure inside the page, as SVG, drawn for a `width` [inch] of its own if given."""
     if width is not None:
         fig.set_size_inches(width, width * fig.get_figheight() / fig.get_figwidth())
     buffer = io.BytesIO()
@@ -92,7 +92,7 @@ def picture(fig: Figure, caption: str, width: float | None = None) -> str:
 
 
 def pair(first: str, second: str) -> str:
-    """Two pieces side by side."""
+    """Two elements side by side."""
     return f'<div class="pair">{first}{second}</div>'
 
 

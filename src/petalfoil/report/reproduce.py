@@ -1,4 +1,4 @@
-"""All of the report in order."""
+"""The whole report: calculations, then files."""
 
 from __future__ import annotations
 
@@ -6,43 +6,41 @@ import os
 from pathlib import Path
 
 from petalfoil.analysis.session import Clock
-from petalfoil.report import families, grids, study
+from petalfoil.report import assumptions, paper_grids
+from petalfoil.report.assumptions import CLAMPED, REFERENCE
 from petalfoil.report.claims import Evidence
-from petalfoil.report.families import TANGENT, Progress
-from petalfoil.report.files import write
-from petalfoil.report.meanings import meanings
-from petalfoil.report.scope import Scope
-from petalfoil.report.variations import CLAMPED, REFERENCE
+from petalfoil.report.interpretations import interpretations
+from petalfoil.report.load_characteristics import TANGENT, Progress, Scope, family_2d, family_3d
+from petalfoil.report.report_files import write
 
-WEIGHTS = (0.05, 0.3, 0.07, 0.3, 0.24, 0.04)
-"""Shares of the work: four families, the study, the grids."""
+WORK_FRACTIONS = (0.05, 0.3, 0.07, 0.3, 0.24, 0.04)
+"""Fractions of the computing time: four families, the assumptions, the grids."""
 
 
 def run(scope: Scope | None = None, progress: Progress | None = None) -> Evidence:
-    """Compute everything."""
+    """Compute all results of the report."""
     scope, clock = scope or Scope(), Clock()
-    parts = _parts(progress or _silent)
-    reference, tangent = ("reference", REFERENCE.says), ("tangent", CLAMPED.says)
-    flat = families.flat(*reference, {}, scope, parts[0])
-    spatial = families.spatial(*reference, {}, scope, parts[1])
-    clamped = families.flat(*tangent, TANGENT, scope, parts[2])
-    clamped_spatial = families.spatial(*tangent, TANGENT, scope, parts[3])
-    rows = study.run(scope, parts[4])
+    parts = _parts(progress or _no_progress)
+    reference, tangent = ("reference", REFERENCE.description), ("tangent", CLAMPED.description)
+    reference_2d = family_2d(*reference, {}, scope, parts[0])
+    reference_3d = family_3d(*reference, {}, scope, parts[1])
+    tangent_2d = family_2d(*tangent, TANGENT, scope, parts[2])
+    tangent_3d = family_3d(*tangent, TANGENT, scope, parts[3])
     return Evidence(
-        flat=flat,
-        spatial=spatial,
-        tangent=clamped,
-        tangent_spatial=clamped_spatial,
-        study=rows,
-        meanings=meanings(flat, {}, scope),
-        tangent_meanings=meanings(clamped, TANGENT, scope),
-        grids=grids.run(scope, parts[5]),
+        reference_2d=reference_2d,
+        reference_3d=reference_3d,
+        tangent_2d=tangent_2d,
+        tangent_3d=tangent_3d,
+        assumptions=assumptions.run(scope, parts[4]),
+        reference_interpretations=interpretations(reference_2d, {}, scope),
+        tangent_interpretations=interpretations(tangent_2d, TANGENT, scope),
+        grids=paper_grids.run(scope, parts[5]),
         seconds=clock.seconds,
     )
 
 
 def report(folder: Path, scope: Scope | None = None, progress: Progress | None = None) -> tuple[Evidence, Path]:
-    """Compute everything and write it into `folder`; gives the page too."""
+    """Compute all results and write them into `folder`; returns the results and the path of the page."""
     evidence = run(scope, progress)
     return evidence, write(evidence, folder)
 
@@ -71,20 +69,20 @@ def reproduce(folder: str | os.PathLike[str] = "report", *, progress: Progress |
 
 
 def _parts(progress: Progress) -> list[Progress]:
-    """Progress of each part as a share of the whole."""
+    """Progress functions of the parts of the report."""
     parts, start = [], 0.0
-    for weight in WEIGHTS:
-        parts.append(_share(progress, start, weight))
-        start += weight
+    for fraction in WORK_FRACTIONS:
+        parts.append(_part(progress, start, fraction))
+        start += fraction
     return parts
 
 
-def _share(progress: Progress, start: float, weight: float) -> Progress:
-    def tell(share: float, text: str) -> None:
-        progress(start + weight * share, text)
+def _part(progress: Progress, start: float, length: float) -> Progress:
+    def tell(fraction: float, text: str) -> None:
+        progress(start + length * fraction, text)
 
     return tell
 
 
-def _silent(share: float, text: str) -> None:
-    """Tell nobody."""
+def _no_progress(fraction: float, text: str) -> None:
+    """Report no progress."""

@@ -1,28 +1,28 @@
-"""A tiny report: three packages on coarse grids, a few points, four variations."""
+"""A small report: three packs on coarse grids, a few points, four assumptions."""
 
 from __future__ import annotations
 
 import pytest
 
 from petalfoil.report.claims import Evidence
+from petalfoil.report.load_characteristics import Scope
 from petalfoil.report.reproduce import run
-from petalfoil.report.scope import Scope
 
 PLACES = (0.0, 100e-6, 200e-6, 280e-6)
 
 TINY = Scope(
-    flat_cells=32,
-    flat=PLACES,
-    spatial_cells=10,
-    spatial_axial=4,
-    spatial=PLACES,
-    study_cells=24,
-    studied=("reference", "clamped_tangent", "hinged_30", "bounds"),
+    cells_2d=32,
+    displacements_2d=PLACES,
+    cells_3d=10,
+    axial_cells_3d=4,
+    displacements_3d=PLACES,
+    assumption_cells=24,
+    assumptions=("reference", "clamped_tangent", "hinged_30", "bounds"),
     grids=((17, 5),),
 )
 
 
 @pytest.fixture(scope="session")
 def evidence() -> Evidence:
-    """Everything, computed once."""
+    """All results, computed once."""
     return run(TINY)

@@ -1,4 +1,4 @@
-"""The packages of the report are those of the examples, and each variation changes what it says."""
+"""The cases of the report are those of the examples, and each assumption changes what it names."""
 
 from __future__ import annotations
 
@@ -9,46 +9,44 @@ import pytest
 from numpy.testing import assert_allclose
 
 from petalfoil.case import Mount
-from petalfoil.report.bounds import bounded
-from petalfoil.report.paper import package
-from petalfoil.report.scope import COMPARED, Scope
-from petalfoil.report.variations import DOWNWARD, VARIATIONS, Variation
+from petalfoil.report.assumptions import ASSUMPTIONS, DOWNWARD
+from petalfoil.report.fixed_bounds import bounded
+from petalfoil.report.load_characteristics import COMPARED, Scope
+from petalfoil.report.paper_cases import paper_case
 from petalfoil.system.build import build_problem
 from petalfoil.walls.petals import build_mesh
 from tests.cases import case
 
-NAMED = {variation.name: variation for variation in VARIATIONS}
+NAMED = {assumption.name: assumption for assumption in ASSUMPTIONS}
 
 
 @pytest.mark.parametrize("count", [6, 8, 10])
-def test_a_package_is_that_of_the_example(count: int) -> None:
+def test_a_case_is_that_of_the_example(count: int) -> None:
     example = case(f"paper_n{count}", **{"operation.eccentricity": (0.0, 0.0)})
-    assert package(count) == example
+    assert paper_case(count) == example
 
 
 def test_every_curve_has_the_compared_displacements() -> None:
     scope = Scope()
-    for places in (scope.flat, scope.spatial):
+    for places in (scope.displacements_2d, scope.displacements_3d):
         assert places[0] == 0.0
         assert {round(e * 1e6) for e in COMPARED} <= {round(e * 1e6) for e in places}
 
 
-def test_variations_have_names_of_their_own() -> None:
-    assert len(NAMED) == len(VARIATIONS)
-    assert len({variation.says for variation in VARIATIONS}) == len(VARIATIONS)
+def test_assumptions_have_unique_names() -> None:
+    assert len(NAMED) == len(ASSUMPTIONS)
+    assert len({assumption.description for assumption in ASSUMPTIONS}) == len(ASSUMPTIONS)
 
 
 @pytest.mark.parametrize("count", [6, 8, 10])
-@pytest.mark.parametrize("variation", VARIATIONS, ids=lambda variation: variation.name)
-def test_a_variation_is_a_case(variation: Variation, count: int) -> None:
-    changed = variation.case(count, 16)
-    assert changed.petals is not None
-    assert changed.petals.count == count
-    differs = changed != package(count, **{"model.cells_per_pitch": 16})
-    assert differs == (variation.name not in ("reference", "bounds"))
+def test_every_assumption_but_the_reference_and_the_bounds_changes_the_case(count: int) -> None:
+    reference = paper_case(count, **{"model.cells_per_pitch": 16})
+    cases = {assumption.name: assumption.case(count, 16) for assumption in ASSUMPTIONS}
+    assert {case.petals.count for case in cases.values() if case.petals is not None} == {count}
+    assert {name for name, case in cases.items() if case == reference} == {"reference", "bounds"}
 
 
-def test_a_clamped_variation_is_clamped_at_its_tilt() -> None:
+def test_a_clamped_assumption_is_clamped_at_its_tilt() -> None:
     petals = NAMED["clamped_5"].case(6, 16).petals
     assert petals is not None
     assert petals.mount is Mount.CLAMPED

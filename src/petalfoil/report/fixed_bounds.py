@@ -1,10 +1,11 @@
-"""The paper's restrictions as it prints them: fixed bounds (21), (22) in place of contact between petals.
+"""The constraints as the paper prints them: fixed bounds (21), (22) instead of contact between petals.
 
-    W >= R_j + e.n + h_min + 3/2 delta - r0     where a petal is covered,   0 < phi < phi3    (21)
+    W >= R_j + e.n + h_c + 3/2 delta - r0     where a petal is covered,   0 < phi < phi3    (21)
     W <= R_B - 3/2 delta - r0                   where it lies on another,   phi0 <= phi       (22)
 
-One layer is left free for the neighbour, wherever it is; petals then know nothing of each other but through the film.
-The other restrictions are those of the package. (The text prints `R_j` for `R_B` in (22), and `delta0` for `delta`.)
+The bounds leave the space of one layer for the neighbouring petal, wherever that petal is. Petals then interact through
+the film only. The other constraints do not change. (The paper prints `R_j` for `R_B` in (22), and `delta0` for
+`delta`.)
 """
 
 from __future__ import annotations
@@ -33,58 +34,58 @@ Array = NDArray[np.float64]
 
 
 def bounded_loads(case: Case, displacements: tuple[float, ...]) -> tuple[tuple[float, ...], float, float]:
-    """`|F|` at downward displacements [N], the film's push at the centre [N], largest contact share [1].
+    """`|F|` at downward displacements [N], normal film force on the centred journal [N], largest contact fraction [1].
 
-    A point that is not found, and those after it, are nan.
+    A point that did not converge, and those after it, are nan.
     """
     problem = bounded(case)
-    places = [
+    problems = [
         problem.at(displacement=np.array([0.0, -e]) / problem.layout.scales.length) for e in (0.0, *displacements)
     ]
     with one_thread():
-        found = _followed(places)
-    figures = [_figures(place, answer, case) for place, answer in zip(places, found, strict=True)]
-    loads, pushes, shares = zip(*figures, strict=True)
-    return tuple(loads[1:]), pushes[0], float(np.max(shares))
+        solutions = _curve(problems)
+    forces = [_forces(place, solution, case) for place, solution in zip(problems, solutions, strict=True)]
+    loads, normal_forces, fractions = zip(*forces, strict=True)
+    return tuple(loads[1:]), normal_forces[0], float(np.max(fractions))
 
 
-def _followed(places: list[CoupledProblem]) -> list[Solution | None]:
-    """The answers along a curve."""
-    found: list[Solution | None] = []
+def _curve(problems: list[CoupledProblem]) -> list[Solution | None]:
+    """The solutions along a curve; None from the first point that does not converge."""
+    solutions: list[Solution | None] = []
     try:
-        known = solve_cold(places[0], RunLog())
-        found.append(known)
-        for place in places[1:]:
-            known, _ = advance(known, place, RunLog())
-            found.append(known)
-    except ConvergenceError:  # the points that are missing say so
+        previous = solve_cold(problems[0], RunLog())
+        solutions.append(previous)
+        for problem in problems[1:]:
+            previous, _ = advance(previous, problem, RunLog())
+            solutions.append(previous)
+    except ConvergenceError:  # reported as nan by `bounded_loads`
         pass
-    return found + [None] * (len(places) - len(found))
+    return solutions + [None] * (len(problems) - len(solutions))
 
 
-def _figures(problem: CoupledProblem, answer: Solution | None, case: Case) -> tuple[float, float, float]:
-    """Load [N], the film's push [N], contact share [1]."""
-    if answer is None:
+def _forces(problem: CoupledProblem, solution: Solution | None, case: Case) -> tuple[float, float, float]:
+    """Load [N], normal force of the film [N], contact fraction [1]."""
+    if solution is None:
         return math.nan, math.nan, math.nan
     film, scales, radius = problem.layout.wall.film, problem.layout.scales, case.bearing.journal_radius
-    excess = (problem.pressure(answer.x) - 1.0) * scales.pressure
-    touching = (
-        answer.lam[problem.layout.wall.contacts.journal].reshape(*film.theta.shape, -1).sum(axis=2) * scales.force
+    excess = (problem.pressure(solution.x) - 1.0) * scales.pressure
+    reactions = (
+        solution.lam[problem.layout.wall.contacts.journal].reshape(*film.theta.shape, -1).sum(axis=2) * scales.force
     )
-    force = film_force(film, radius, excess) + contact_force(film.theta, touching)
-    push, held = float(np.sum(excess * node_area(film, radius))), float(touching.sum())
-    return float(np.hypot(*force)), push, held / (held + push) if held > 0.0 else 0.0
+    force = film_force(film, radius, excess) + contact_force(film.theta, reactions)
+    normal, contact = float(np.sum(excess * node_area(film, radius))), float(reactions.sum())
+    return float(np.hypot(*force)), normal, contact / (contact + normal) if contact > 0.0 else 0.0
 
 
 def bounded(case: Case) -> CoupledProblem:
-    """The coupled problem of `case` with fixed bounds between its petals."""
+    """The coupled problem of `case` with fixed bounds instead of contact between its petals."""
     problem = build_problem(case)
     wall = replace(problem.layout.wall, contacts=bounds(case, problem.layout.wall.contacts))
     return replace(problem, layout=replace(problem.layout, wall=wall))
 
 
 def bounds(case: Case, contacts: Contacts) -> Contacts:
-    """Gaps of the package with the bounds in place of those between petals."""
+    """Gaps of the pack, with the fixed bounds instead of the gaps between petals."""
     (petals, package), mesh = petals_of(case), build_mesh(case)
     delta, least = petals.total_thickness, case.bearing.journal_radius + case.surface.contact_film_thickness
     r0 = np.broadcast_to(package.free_radius(mesh.phi)[None, :, None], mesh.shape)
@@ -97,7 +98,7 @@ def bounds(case: Case, contacts: Contacts) -> Contacts:
         (r0[:, covered] - least - 1.5 * delta).ravel(),
         (case.bearing.bushing_radius - 1.5 * delta - r0[:, lap]),
     )
-    rows = (contacts.G[kept], _picked(number[:, covered], 1.0, n), _picked(number[:, lap], -1.0, n))
+    rows = (contacts.G[kept], _selected(number[:, covered], 1.0, n), _selected(number[:, lap], -1.0, n))
     rest = np.concatenate([contacts.rest[kept], inner, outer.ravel()])
     return Contacts(
         G=sp.csr_array(sp.vstack(rows, format="csr")),
@@ -110,7 +111,7 @@ def bounds(case: Case, contacts: Contacts) -> Contacts:
     )
 
 
-def _picked(numbers: NDArray[np.intp], sign: float, n: int) -> sp.csr_array:
-    """Rows that pick one deflection each."""
+def _selected(numbers: NDArray[np.intp], sign: float, n: int) -> sp.csr_array:
+    """Rows that select one deflection each, with a sign."""
     cols = numbers.ravel()
     return sp.coo_array((np.full(len(cols), sign), (np.arange(len(cols)), cols)), shape=(len(cols), n)).tocsr()

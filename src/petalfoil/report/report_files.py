@@ -1,4 +1,4 @@
-"""The report on disk: page, labelled data, tables, one JSON object."""
+"""The files of the report: page, NetCDF, CSV and JSON."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import TypeAlias
 
 from petalfoil.errors import StoreError
-from petalfoil.report import page, tables
+from petalfoil.report import page, page_tables
+from petalfoil.report.assumptions import AssumptionResult
 from petalfoil.report.claims import Evidence, claims
-from petalfoil.report.meanings import Meaning
-from petalfoil.report.study import Row
-from petalfoil.report.tables import Table
+from petalfoil.report.interpretations import Interpretation
+from petalfoil.report.page_tables import TextTable
 from petalfoil.results.atomic import replacing
 from petalfoil.results.store import save
 from petalfoil.results.summary import as_json
@@ -25,18 +25,18 @@ PAGE, SUMMARY = "index.html", "report.json"
 
 
 def write(evidence: Evidence, folder: Path) -> Path:
-    """Write everything into `folder`; gives the page.
+    """Write all files into `folder`; returns the path of the page.
 
     Raises
     ------
     StoreError
-        Something cannot be written.
+        A file cannot be written.
     """
     sheets = {
-        "figure6_7_flat.csv": tables.profiles(evidence.flat),
-        "figure6_7_spatial.csv": tables.profiles(evidence.spatial),
-        "figure8.csv": tables.characteristics(evidence),
-        "study.csv": tables.absolute(evidence.study),
+        "figure6_7_2d.csv": page_tables.profiles(evidence.reference_2d),
+        "figure6_7_3d.csv": page_tables.profiles(evidence.reference_3d),
+        "figure8.csv": page_tables.characteristics(evidence),
+        "assumptions.csv": page_tables.assumption_loads(evidence.assumptions),
     }
     curves = {f"{f.name}_n{c.count}.nc": c.dataset for f in evidence.families for c in f.curves}
     try:
@@ -52,7 +52,7 @@ def write(evidence: Evidence, folder: Path) -> Path:
     return folder / PAGE
 
 
-def csv_text(sheet: Table) -> str:
+def csv_text(sheet: TextTable) -> str:
     """A table as comma-separated values."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
@@ -62,10 +62,11 @@ def csv_text(sheet: Table) -> str:
 
 
 def summary(evidence: Evidence) -> dict[str, Plain]:
-    """The whole report but its fields: SI units, null for what is not there."""
+    """The scalar results of the report in SI units; null for missing values."""
     return {
         "claims": [
-            {"claim": c.quote, "where": c.where, "ours": c.ours, "verdict": str(c.verdict)} for c in claims(evidence)
+            {"claim": c.quote, "where": c.where, "computed": c.computed, "verdict": str(c.verdict)}
+            for c in claims(evidence)
         ],
         "curves": {
             family.name: {
@@ -73,17 +74,17 @@ def summary(evidence: Evidence) -> dict[str, Plain]:
             }
             for family in evidence.families
         },
-        "study": [_study(row) for row in evidence.study],
-        "meanings": {
-            "reference": [_meaning(m) for m in evidence.meanings],
-            "tangent": [_meaning(m) for m in evidence.tangent_meanings],
+        "assumptions": [_assumption(row) for row in evidence.assumptions],
+        "interpretations": {
+            "reference": [_interpretation(one) for one in evidence.reference_interpretations],
+            "tangent": [_interpretation(one) for one in evidence.tangent_interpretations],
         },
         "grids": [
             {
                 "nodes": list(grid.nodes),
                 "cells": list(grid.cells),
                 "bearing_force": _number(grid.load),
-                "factorizations": grid.factorisations,
+                "factorizations": grid.factorizations,
                 "residual": _number(grid.residual),
             }
             for grid in evidence.grids
@@ -92,29 +93,29 @@ def summary(evidence: Evidence) -> dict[str, Plain]:
     }
 
 
-def _study(row: Row) -> dict[str, Plain]:
-    packages: list[Plain] = [
+def _assumption(row: AssumptionResult) -> dict[str, Plain]:
+    packs: list[Plain] = [
         {
-            "count": package.count,
-            "bearing_force": [_number(load) for load in package.loads],
-            "film_push": _number(package.push),
-            "contact_fraction": _number(package.share),
+            "count": pack.count,
+            "bearing_force": [_number(load) for load in pack.loads],
+            "film_normal_force": _number(pack.film_normal_force),
+            "contact_fraction": _number(pack.contact_fraction),
         }
-        for package in row.packages
+        for pack in row.packs
     ]
     return {
-        "name": row.variation.name,
-        "assumption": row.variation.says,
-        "packages": packages,
+        "name": row.assumption.name,
+        "assumption": row.assumption.description,
+        "packs": packs,
         "ratios": [_number(ratio) for ratio in row.ratios],
         "twofold": row.twofold,
         "two_to_four": row.two_to_four,
     }
 
 
-def _meaning(meaning: Meaning) -> dict[str, Plain]:
-    values: list[Plain] = [_number(value) for value in meaning.values]
-    return {"name": meaning.name, "unit": meaning.unit, "values": values, "ratio": _number(meaning.ratio)}
+def _interpretation(one: Interpretation) -> dict[str, Plain]:
+    values: list[Plain] = [_number(value) for value in one.values]
+    return {"name": one.name, "unit": one.unit, "values": values, "ratio": _number(one.ratio)}
 
 
 def _number(value: float) -> float | None:

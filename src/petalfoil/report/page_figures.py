@@ -1,4 +1,4 @@
-"""Figures of the page that the plots of single results do not have."""
+"""Figures of the page: ratios of loads under every assumption, and maps of a petal."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from matplotlib.figure import Figure
 from petalfoil.plot import style
 from petalfoil.plot.film_fields import refined
 from petalfoil.plot.views import array, number, one_point
-from petalfoil.report.scope import COMPARED
-from petalfoil.report.study import ALMOST_TWOFOLD, TWO_TO_FOUR, Row
+from petalfoil.report.assumptions import ALMOST_TWOFOLD, TWO_TO_FOUR, AssumptionResult
+from petalfoil.report.load_characteristics import COMPARED
 
 ROW_HEIGHT = 0.24
-"""Height of a line of the study [inch]."""
+"""Height of the line of one assumption [inch]."""
 
 
-def study(rows: Sequence[Row]) -> Figure:
-    """Draw the ratio of the loads under every assumption, and the bands of the paper's sentences."""
+def load_ratios(rows: Sequence[AssumptionResult]) -> Figure:
+    """Draw the ratio of the loads under every assumption, and the ranges that the paper states."""
     fig = style.figure(8.0, 1.4 + ROW_HEIGHT * len(rows))
     ax = fig.subplots()
     place = np.arange(len(rows))[::-1]
@@ -34,16 +34,16 @@ def study(rows: Sequence[Row]) -> Figure:
     ax.axvline(1.0, color=style.GREY, linewidth=0.8)
     ax.set_xscale("log")
     style.logarithmic(ax.xaxis)
-    few, many = (rows[0].packages[which].count for which in (0, -1))
-    style.dress(ax, f"load with {many} petals over load with {few}", "")
-    ax.set_yticks(place, [row.variation.says for row in rows], fontsize=style.TICK, color=style.INK)
+    few, many = (rows[0].packs[which].count for which in (0, -1))
+    style.dress(ax, f"load with {many} petals / load with {few} petals", "")
+    ax.set_yticks(place, [row.assumption.description for row in rows], fontsize=style.TICK, color=style.INK)
     ax.set_ylim(-0.7, len(rows) - 0.3)
     style.legend(ax, loc="upper center", bbox_to_anchor=(0.3, -0.5 / (ROW_HEIGHT * len(rows))), ncols=5, frameon=False)
     return fig
 
 
 def petal_maps(family: Sequence[tuple[str, xr.Dataset]], petal: int = 0) -> Figure:
-    """Draw pressure and film over the exposed part of one petal and the length, for a family in space."""
+    """Draw pressure and film thickness over the exposed part of one petal and the length, for a 3-D family."""
     states = [(label, one_point(ds)) for label, ds in family]
     ratios = [array(ds, "pressure")[petal] / number(ds, "ambient_pressure") for _, ds in states]
     films = [array(ds, "film_thickness")[petal] * 1e6 for _, ds in states]
@@ -61,10 +61,10 @@ def petal_maps(family: Sequence[tuple[str, xr.Dataset]], petal: int = 0) -> Figu
             ax.grid(False)
             if number_ == 0:
                 ax.set_title(label, fontsize=style.LABEL, color=style.INK)
-    for line, name in zip(axes, ("p / p$_a$", "film  h [µm]"), strict=True):
+    for line, name in zip(axes, ("p / p$_a$", "film thickness  h [µm]"), strict=True):
         bar = fig.colorbar(line[0].collections[0], ax=list(line), pad=0.01, aspect=14)
         bar.set_label(name, fontsize=style.LABEL)
         if name.startswith("film"):
             style.logarithmic(bar.ax.yaxis)
-    fig.supxlabel("angle from the petal's root  φ [deg]", fontsize=style.LABEL)
+    fig.supxlabel("angle from the root of the petal  φ [deg]", fontsize=style.LABEL)
     return fig
