@@ -1,8 +1,8 @@
-"""A motion by explicit steps, with the loops of the paper's method: what a revolution of it costs.
+"""A motion by explicit time steps with the loops of the paper's method, and the time of one revolution.
 
-petalfoil's classic method knows no motion; this is the one that its parts give. Each step marches the gas by one
-explicit step as long as (59) allows, moves the rotor by its forces, and settles the package by the projected descent
-from where it was.
+The classic method has no motion in time. This one consists of its parts: each step advances the gas by one explicit
+step of the limit (59), then the rotor by its forces, and solves the pack by projected descent from its previous
+deflections.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ NUMBERS = ClassicOptions()
 ENDLESS = -1.0
 """A tolerance that is never met."""
 CHUNK = 2000
-"""Descent steps between looks at the clock."""
+"""Descent steps between checks of the time limit."""
 LOST = 1.0
-"""Petals that move so far within a step of petalfoil's, where they move by a tenth, are lost [reference films]."""
+"""Limit of the motion of a petal within a step of petalfoil, in which it moves by a tenth [reference films]."""
 
 
 def placed(orbit: Orbit, at: Instant, e: Array | None = None) -> CoupledProblem:
-    """The bearing at the speed of an instant of `orbit`, and at its position or at `e`."""
+    """The bearing at the speed of a time state of `orbit`, at its position or at `e`."""
     speed = orbit.system.rotor.bearing_number(at.tau)
     return orbit.system.problem.at(displacement=at.e if e is None else e, bearing_number=speed)
 
@@ -49,7 +49,7 @@ def cells_at(problem: CoupledProblem, w: Array, P: Array) -> FilmCells:
 
 
 def turn(orbit: Orbit) -> float:
-    """Film steps of a revolution: the longest stable ones (59) at the state the orbit began with."""
+    """Number of film steps per revolution, with the stable step (59) of the initial state of the orbit."""
     start = orbit.start
     problem = placed(orbit, start)
     cells = cells_at(problem, *np.split(start.x, [problem.layout.n_wall]))
@@ -58,7 +58,7 @@ def turn(orbit: Orbit) -> float:
 
 
 def costs(orbit: Orbit, engine: Engine, steps: int) -> tuple[float, float]:
-    """Time of a film step and of a descent step in the bare loops, of `steps` together, after a first call [s]."""
+    """Time of a film step and of a descent step in calls of `steps` steps, after a first call [s]."""
     start, inner = orbit.start, kernels(engine)
     problem = placed(orbit, start)
     package = PackDescent(problem, NUMBERS, engine)
@@ -73,9 +73,9 @@ def costs(orbit: Orbit, engine: Engine, steps: int) -> tuple[float, float]:
         MarchSettings(NUMBERS.time_step_fraction, 1.0, ENDLESS, 32),
         DescentSettings(package.step, False, ENDLESS, 20),
     )
-    inner.march(P, cells, march)  # compiles, where something compiles
+    inner.march(P, cells, march)  # compiles the loops
     inner.descend(w, load, shell, held, descent)
-    steps = 160 * max(1, steps // 160)  # whole rounds of both
+    steps = 160 * max(1, steps // 160)  # a multiple of the steps between checks of both loops
     best = in_turn(
         {
             "film": lambda: inner.march(P, cells, march._replace(max_steps=steps)),
@@ -90,9 +90,9 @@ def costs(orbit: Orbit, engine: Engine, steps: int) -> tuple[float, float]:
 
 
 def settlings(orbit: Orbit, pair: tuple[Instant, Instant], tolerance: float, seconds: float) -> tuple[int, int]:
-    """Film steps between two instants of a motion, and the descent steps they ask for; as many as time permits.
+    """Film steps between two time states of a motion, and the descent steps for them, within a time limit.
 
-    Pressure and journal go from one instant to the other evenly; the package follows, each time from where it was.
+    Pressure and journal position are interpolated linearly. The pack is solved for each, from its previous deflections.
     """
     begin, end = pair
     steps, start = math.ceil(turn(orbit) * (end.tau - begin.tau) / (2.0 * math.pi)), time.process_time()
@@ -114,16 +114,16 @@ def settlings(orbit: Orbit, pair: tuple[Instant, Instant], tolerance: float, sec
 
 @dataclass
 class ExplicitMotion:
-    """The motion from an instant of an orbit on, by explicit steps alone.
+    """The motion from a time state of an orbit by explicit steps.
 
     Parameters
     ----------
     orbit : Orbit
         Bearing and rotor.
     start : Instant
-        Where it begins.
+        Initial time state.
     tolerance : float
-        Force that may be left on a node of the package, over ambient pressure on it [1].
+        Largest remaining nodal force of the pack over that of ambient pressure [1].
     """
 
     orbit: Orbit
@@ -146,18 +146,18 @@ class ExplicitMotion:
         return pressure_unknowns(self.problem, self.P.reshape(self.problem.layout.balance.mesh.shape))
 
     def follow(self, end: float, seconds: float) -> str:
-        """Steps until time `end` [units of time], for so many seconds at most; how it went."""
+        """Step until the time `end` or a limit of processor time [s]; returns a description of the end."""
         until = time.process_time() + seconds
         while self.tau < end and time.process_time() < until:
-            with np.errstate(all="ignore"):  # a film that blows up
+            with np.errstate(all="ignore"):  # a diverging film
                 self.film_and_rotor()
                 self.settle(until)
             if self.lost:
-                return f"blew up after {self.film_steps} film steps"
-        return f"{self.film_steps} film steps until {'its time was up' if self.tau < end else 'the end'}"
+                return f"diverged after {self.film_steps} film steps"
+        return f"{self.film_steps} film steps until {'the time limit' if self.tau < end else 'the end'}"
 
     def film_and_rotor(self) -> None:
-        """An explicit step of the gas in the cells, as long as (59) allows, then one of the rotor."""
+        """One explicit step of the gas of the limit (59), then one of the rotor."""
         cells, rotor = cells_at(self.problem, self.w, self.unknowns), self.orbit.system.rotor
         # the mass of gas in a cell does not change while its volume does
         self.P *= np.where(cells.is_unknown > 0.0, self.capacity / cells.capacity, 1.0)
@@ -173,7 +173,7 @@ class ExplicitMotion:
         self.film_steps += 1
 
     def settle(self, until: float) -> None:
-        """Bring the package to rest under the pressures, unless it gets lost or time is up."""
+        """Solve the pack under the pressures, unless it diverges or the time limit is reached."""
         load, shell, held = self.package.load(self.unknowns), self.package.shell, columns(self.problem)
         settings, left = DescentSettings(self.package.step, False, self.tolerance, CHUNK), math.inf
         while not left <= self.tolerance and not self.lost and time.process_time() < until:
@@ -182,10 +182,10 @@ class ExplicitMotion:
 
     @property
     def lost(self) -> bool:
-        """Film or package have left the motion."""
+        """Whether film or pack have diverged."""
         return not (np.all(np.isfinite(self.P)) and self.moved < LOST)
 
     @property
     def moved(self) -> float:
-        """How far the petals have moved at most since the start [reference films]."""
+        """Largest change of a deflection since the start [reference films]."""
         return float(np.max(np.abs(self.w - self.start.x[: len(self.w)]), initial=0.0))

@@ -1,4 +1,4 @@
-"""How time and memory of a warm point grow with the unknowns; each size in a process of its own.
+"""Growth of time and memory of a warm point with the number of unknowns; each size in its own process.
 
 python benchmarks/growth.py CELLS AXIAL point     one size as a JSON object; `factor` instead of `point`: without
                                                   the points, for a size at which they take too long
@@ -20,7 +20,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 from measure import Row, Value, at_most
-from spatial_point import FARTHEST, STEP, Grid
+from warm_point import FARTHEST, STEP, Grid
 
 from petalfoil.analysis.curve import curve
 from petalfoil.analysis.session import one_thread
@@ -28,11 +28,11 @@ from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.build import build_problem
 
 SIZES = (Grid(10, 6), Grid(18, 12), Grid(34, 22), Grid(58, 38))
-"""About 1000, 3000, 10 000 and 30 000 unknowns: a short curve on each."""
+"""Grids of about 1000, 3000, 10 000 and 30 000 unknowns, with a short curve on each."""
 LARGEST = Grid(106, 72)
-"""About 100 000: a curve takes minutes, one factorisation does not."""
+"""A grid of about 100 000 unknowns. A curve on it takes minutes; only one factorisation is measured."""
 MEGABYTES = 1.0
-"""Less than this is lost in what the imports took."""
+"""Smallest difference of memory that is told from that of the imports [MB]."""
 
 Found = dict[str, float]
 
@@ -45,30 +45,30 @@ def rows(sizes: tuple[Grid, ...], largest: Grid | None) -> list[Row]:
 
 
 def growth_of_time(found: list[Found], far: list[Found]) -> Row:
-    """Time of a warm point; at the far size, a factorisation times what a point costs over one at the last size."""
+    """Exponent of the time of a warm point; at the largest size a factorisation times the ratio of the one before."""
     over = found[-1]["point"] / found[-1]["factorisation"]
     seconds = [size["point"] for size in found] + [size["factorisation"] * over for size in far]
     unknowns = [size["unknowns"] for size in found + far]
     slope, details = fitted(unknowns, seconds, "seconds")
-    says = f"growth: exponent of the time per warm point, {unknowns[0]:.0f} to {unknowns[-1]:.0f} unknowns"
-    remark = "largest size: one factorisation measured, times what a point costs over one at the size before"
-    return at_most("growth_time", says, slope, 1.35, details=details, remark=remark if far else "")
+    description = f"growth: exponent of the time per warm point, {unknowns[0]:.0f} to {unknowns[-1]:.0f} unknowns"
+    remark = "largest size: one factorisation, times the ratio of a point to a factorisation at the size before"
+    return at_most("growth_time", description, slope, 1.35, details=details, remark=remark if far else "")
 
 
 def growth_of_memory(found: list[Found], far: list[Found]) -> Row:
-    """Peak memory of a curve; at the far size there is only a factorisation, which the remark tells."""
+    """Exponent of the peak memory of a curve. The remark states the memory of a factorisation at the largest size."""
     unknowns, megabytes = [size["unknowns"] for size in found], [size["megabytes"] for size in found]
     slope, details = fitted(unknowns, [max(held, MEGABYTES) for held in megabytes], "megabytes")
-    says = f"growth: exponent of the memory of a curve, {unknowns[0]:.0f} to {unknowns[-1]:.0f} unknowns"
+    description = f"growth: exponent of the memory of a curve, {unknowns[0]:.0f} to {unknowns[-1]:.0f} unknowns"
     remark = f"peak {megabytes[-1]:.0f} MB at {unknowns[-1]:.0f} unknowns, Python and imports not counted"
     for size in far:
         remark += f"; one factorisation of {size['unknowns']:.0f}: {size['megabytes']:.0f} MB"
         details["megabytes of the largest factorisation"] = size["megabytes"]
-    return Row("growth_memory", says, slope, details=details, remark=remark)
+    return Row("growth_memory", description, slope, details=details, remark=remark)
 
 
 def fitted(n: list[float], values: list[float], unit: str) -> tuple[float, dict[str, Value]]:
-    """Exponent of the growth of `values` with `n`, and what it is made of."""
+    """Exponent of the growth of `values` with `n`, and the values behind it."""
     local = np.diff(np.log(values)) / np.diff(np.log(n))
     details: dict[str, Value] = {f"{unit} at {size:.0f}": float(value) for size, value in zip(n, values, strict=True)}
     details |= {f"exponent to {size:.0f}": float(slope) for size, slope in zip(n[1:], local, strict=True)}
@@ -76,7 +76,7 @@ def fitted(n: list[float], values: list[float], unit: str) -> tuple[float, dict[
 
 
 def alone(grid: Grid, kind: str) -> Found:
-    """Measure one size in a process of its own."""
+    """Measure one size in its own process."""
     call = [sys.executable, str(Path(__file__)), str(grid.pitch), str(grid.axial), kind]
     done = subprocess.run(call, capture_output=True, text=True, check=True)
     found: Found = json.loads(done.stdout)
@@ -87,7 +87,7 @@ def alone(grid: Grid, kind: str) -> Found:
 
 
 def measured(grid: Grid, kind: str) -> Found:
-    """Time of an assembly with factorisation, of a point if asked for [s]; peak memory beyond that of the imports."""
+    """Time of assembly and factorisation, and of a point if requested [s]; peak memory above that of the imports."""
     before = peak()
     found = {"unknowns": float(build_problem(grid.case()).layout.n), "factorisation": factorisation(grid)}
     if kind == "point":
@@ -96,9 +96,9 @@ def measured(grid: Grid, kind: str) -> Found:
 
 
 def peak() -> float:
-    """Most memory that this program has held [MB].
+    """Peak memory of this process [MB].
 
-    Where Linux tells it: `getrusage` counts what the process held before it became this program, too.
+    On Linux from /proc: `getrusage` includes the memory of the parent before `exec`.
     """
     status = Path("/proc/self/status")
     if status.exists():
@@ -108,13 +108,15 @@ def peak() -> float:
 
 
 def factorisation(grid: Grid) -> float:
-    """One assembly and factorisation of the coupled tangent [s]; the free shape, its gaps held open."""
+    """Time of one assembly and factorisation of the coupled tangent at the free shape with open gaps [s]."""
     problem = build_problem(grid.case(0.5 * FARTHEST))
     x = np.ones(problem.layout.n)
     x[: problem.layout.n_wall] = 0.0
     shift = 1.0 - np.minimum(problem.gaps(x), 0.0)
     with one_thread():
-        LinearSolver().factor(problem.linearize(x, shift).matrix(problem.weight), problem.rank)  # finds the order
+        LinearSolver().factor(
+            problem.linearize(x, shift).matrix(problem.weight), problem.rank
+        )  # finds the elimination order
         start = time.process_time()
         LinearSolver().factor(problem.linearize(x, shift).matrix(problem.weight), problem.rank)
         return time.process_time() - start
@@ -122,12 +124,12 @@ def factorisation(grid: Grid) -> float:
 
 def point(grid: Grid) -> float:
     """Median time of the warm points of a short curve [s]."""
-    followed = curve.records(grid.case(), 0.5 * FARTHEST + STEP * np.arange(4))
-    next(followed)  # the cold one
+    points = curve.records(grid.case(), 0.5 * FARTHEST + STEP * np.arange(4))
+    next(points)  # the cold start
     seconds = []
     for _ in range(3):
         start = time.process_time()
-        record = next(followed)
+        record = next(points)
         seconds.append(time.process_time() - start)
         if not record.converged:
             raise RuntimeError(f"a point of the benchmark did not converge: {record.scalars['status']}")

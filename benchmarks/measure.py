@@ -1,4 +1,4 @@
-"""Ratios measured in one run: what is compared runs in turn, so that a busy machine slows both alike."""
+"""Ratios of times of one run. The compared calls run in turn, so that other load on the machine slows all of them."""
 
 from __future__ import annotations
 
@@ -17,52 +17,52 @@ class Row:
     ----------
     name : str
         Key in the JSON file.
-    says : str
-        What is divided by what, for people.
+    description : str
+        What is divided by what.
     ratio : float or None
         The ratio; None where it could not be measured.
-    wanted : str
-        What it should be, as the table prints it; empty where nothing is asked.
+    target : str
+        The limit of the ratio as text; empty without a limit.
     met : bool or None
-        Whether it is so; None where nothing is asked or nothing was measured.
+        Whether the ratio keeps the limit; None without a limit or a measurement.
     remark : str
-        What else a reader must know: how it was measured, why it was not.
+        How it was measured, or why it was not.
     details : dict
-        What the ratio was made of.
+        The measured quantities behind the ratio.
     """
 
     name: str
-    says: str
+    description: str
     ratio: float | None
-    wanted: str = ""
+    target: str = ""
     met: bool | None = None
     remark: str = ""
     details: dict[str, Value] = field(default_factory=dict)
 
     def plain(self) -> dict[str, object]:
-        """As JSON has it."""
+        """The row as a dictionary for JSON."""
         return asdict(self)
 
 
-def at_most(name: str, says: str, ratio: float, limit: float, **more: object) -> Row:
-    """A row whose ratio should not exceed `limit`."""
-    return Row(name, says, ratio, f"≤ {limit:g}", ratio <= limit, **more)  # type: ignore[arg-type]
+def at_most(name: str, description: str, ratio: float, limit: float, **more: object) -> Row:
+    """A row with an upper limit of its ratio."""
+    return Row(name, description, ratio, f"≤ {limit:g}", ratio <= limit, **more)  # type: ignore[arg-type]
 
 
-def at_least(name: str, says: str, ratio: float, limit: float, **more: object) -> Row:
-    """A row whose ratio should reach `limit`."""
-    return Row(name, says, ratio, f"≥ {limit:g}", ratio >= limit, **more)  # type: ignore[arg-type]
+def at_least(name: str, description: str, ratio: float, limit: float, **more: object) -> Row:
+    """A row with a lower limit of its ratio."""
+    return Row(name, description, ratio, f"≥ {limit:g}", ratio >= limit, **more)  # type: ignore[arg-type]
 
 
 def seconds(call: Callable[[], object]) -> float:
-    """Processor time of one call [s]: what other programs take of the machine does not count."""
+    """Processor time of one call [s]. It does not contain the time of other processes."""
     start = time.process_time()
     call()
     return time.process_time() - start
 
 
 def in_turn(calls: dict[str, Callable[[], object]], repeats: int) -> dict[str, float]:
-    """Least processor time of each call [s]; they run one after the other, `repeats` times over."""
+    """Smallest processor time of each call [s]. All calls run in turn, `repeats` times."""
     best = dict.fromkeys(calls, float("inf"))
     for _ in range(repeats):
         for name, call in calls.items():

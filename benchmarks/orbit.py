@@ -1,4 +1,4 @@
-"""The motion of a rotor: what a step costs in factorisations, and a revolution against explicit steps."""
+"""Rotor orbits: factorisations per step, and the time of a revolution against explicit time steps."""
 
 from __future__ import annotations
 
@@ -27,22 +27,26 @@ from petalfoil.system.build import build_problem
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 ROTOR = {"mass": 3.0, "unbalance": 2e-6}
-"""Mass [kg] and distance of its centre from the axis [m]."""
+"""Rotor mass [kg] and distance of the mass centre from the shaft axis [m]."""
 MOST_FACTORISATIONS, LEAST_RATIO = 0.15, 100.0
 SETTLED = 1e-2 * TOLERANCE
-"""Tolerance of the package's descent: as much of the local error as petalfoil leaves in a stage, and as the classic
-method's own rule gives for a change of this size."""
+"""Tolerance of the descent of the pack.
+
+It is the fraction of the local error that petalfoil leaves in a stage, and that the classic method gives for a change
+of this size.
+"""
 TURN, PLACES = 25, 8
-"""Steps of the last turn that are kept, and how many of them the explicit motion is looked at in."""
+"""Number of the last steps that are kept, and of those in which explicit steps are counted."""
 LOOPS = {Engine.NUMBA: 16_000, Engine.NUMPY: 960}
-"""Steps of the loops timed together."""
+"""Number of loop steps in one timed call."""
 
 
 @dataclass(frozen=True)
-class Lane:
-    """One motion of the paper's 8 petals: from balance, with unbalance, for some revolutions or some seconds.
+class OrbitCase:
+    """One orbit of the bearing with 8 petals from its equilibrium position, with unbalance.
 
-    `sample` is the processor time for the explicit motion's counts, and for its march [s].
+    It ends after `revolutions` or after `seconds` of processor time. `sample` is the processor time for counting
+    explicit steps, and for the explicit motion [s].
     """
 
     name: str
@@ -58,8 +62,8 @@ class Lane:
         return Case.load(EXAMPLES / f"{file}.toml").replace(rotor=ROTOR, **self.changes)
 
     @property
-    def says(self) -> str:
-        """Which motion."""
+    def description(self) -> str:
+        """Description of the motion."""
         case = self.case()
         cells = f"{build_problem(case).layout.wall.film.shape[1] - 1}"
         cells += f"×{case.model.axial_cells}" if self.kind == "3d" else ""
@@ -67,20 +71,20 @@ class Lane:
 
 
 FULL = (
-    Lane("2d", "2d", sample=40.0),
-    Lane("3d", "3d", {"model.cells_per_pitch": 24, "model.axial_cells": 16}, seconds=60.0, sample=40.0),
+    OrbitCase("2d", "2d", sample=40.0),
+    OrbitCase("3d", "3d", {"model.cells_per_pitch": 24, "model.axial_cells": 16}, seconds=60.0, sample=40.0),
 )
 QUICK = (
-    Lane("2d", "2d", {"model.cells_per_pitch": 16}, revolutions=2.0, sample=2.0),
-    Lane("3d", "3d", {"model.cells_per_pitch": 10, "model.axial_cells": 6}, revolutions=1.0, sample=2.0),
+    OrbitCase("2d", "2d", {"model.cells_per_pitch": 16}, revolutions=2.0, sample=2.0),
+    OrbitCase("3d", "3d", {"model.cells_per_pitch": 10, "model.axial_cells": 6}, revolutions=1.0, sample=2.0),
 )
 
 
 @dataclass(frozen=True)
 class Followed:
-    """A motion that was followed: its orbit, the instants of its last turn or so, and what the steps took."""
+    """A computed motion: its orbit, the time states of its last steps, factorisations and processor time."""
 
-    lane: Lane
+    case: OrbitCase
     orbit: Orbit
     turn: tuple[Instant, ...]
     factorisations: int
@@ -88,52 +92,52 @@ class Followed:
 
     @property
     def steps(self) -> int:
-        """Steps that were accepted."""
+        """Number of accepted steps."""
         return int(self.orbit.counts["steps"])
 
     @property
     def revolutions(self) -> float:
-        """Turns of the shaft."""
+        """Number of revolutions of the shaft."""
         rows = self.orbit.trace.rows
         return (rows[-1]["shaft_angle"] - rows[0]["shaft_angle"]) / (2.0 * math.pi)
 
     @property
-    def seconds_a_turn(self) -> float:
-        """Processor time of a revolution [s]; what it takes to find where it starts is not in it."""
+    def seconds_per_revolution(self) -> float:
+        """Processor time of a revolution without that of the start position [s]."""
         return self.seconds / self.revolutions
 
 
-def rows(lanes: tuple[Lane, ...]) -> list[Row]:
+def rows(cases: tuple[OrbitCase, ...]) -> list[Row]:
     """All rows of all motions."""
     found: list[Row] = []
-    for lane in lanes:
-        motion = followed(lane)
+    for case in cases:
+        motion = followed(case)
         found += own(motion)
         with one_thread():
             found += [*against_explicit(motion), marched(motion)]
     return found
 
 
-def followed(lane: Lane) -> Followed:
-    """Follow a motion until its end or until its time is up."""
-    orbit = Orbit.begin(lane.case(), OrbitRequest(initial="balance", revolutions=lane.revolutions))
+def followed(case: OrbitCase) -> Followed:
+    """Compute a motion until its end or its time limit."""
+    orbit = Orbit.begin(case.case(), OrbitRequest(initial="balance", revolutions=case.revolutions))
     before, last, start = orbit.work.film.factorizations, deque([orbit.start], TURN + 2), time.process_time()
     for _ in orbit.advance():
-        assert orbit.trace.last is not None  # it has just made a step
+        assert orbit.trace.last is not None  # a step has just been made
         last.append(orbit.trace.last)
-        if time.process_time() - start > lane.seconds:
+        if time.process_time() - start > case.seconds:
             break
     seconds = time.process_time() - start
-    last.pop()  # the last step of a motion may have been cut short
-    return Followed(lane, orbit, tuple(last), orbit.work.film.factorizations - before, seconds)
+    last.pop()  # the last step of a motion may be shorter
+    return Followed(case, orbit, tuple(last), orbit.work.film.factorizations - before, seconds)
 
 
 # ---------------------------------------------------------------------------------------------- petalfoil's steps
 
 
 def own(motion: Followed) -> list[Row]:
-    """What the steps cost."""
-    lane, steps, record = motion.lane, motion.steps, motion.orbit.record().scalars
+    """Rows about the cost of the steps."""
+    case, steps, record = motion.case, motion.steps, motion.orbit.record().scalars
     step, times = motion.seconds / steps, factorisation(motion)
     details: dict[str, Value] = {
         "unknowns": motion.orbit.system.problem.layout.n,
@@ -144,32 +148,36 @@ def own(motion: Followed) -> list[Row]:
         "rejected_steps": int(record["rejected_steps"]),
         "largest_residual": float(record["residual"]),
         "seconds": motion.seconds,
-        "seconds_a_step": step,
+        "seconds_per_step": step,
         **times,
     }
     count, kept = (
         motion.factorisations / steps,
-        f"{details['failed_steps']} failed, {details['rejected_steps']} refused",
+        f"{details['failed_steps']} failed, {details['rejected_steps']} rejected",
     )
     remark = f"{steps} steps in {motion.revolutions:.3g} revolutions, {kept}"
-    name, cost = f"orbit_{lane.name}", step / times["seconds_factorisation"]
-    anew = f"{step / times['seconds_factorisation_anew']:.3g} where its order is found anew"
+    name, cost = f"orbit_{case.name}", step / times["seconds_factorisation"]
+    anew = f"{step / times['seconds_factorisation_anew']:.3g} with a new elimination order"
     return [
         at_most(
             f"{name}_count",
-            f"{lane.says}: factorisations per step",
+            f"{case.description}: factorisations per step",
             count,
             MOST_FACTORISATIONS,
             details=details,
             remark=remark,
         ),
-        Row(f"{name}_step", f"{lane.says}: time of a step over that of a factorisation", cost, remark=anew),
-        Row(f"{name}_rate", f"{lane.says}: revolutions per minute of computing", 60.0 / motion.seconds_a_turn),
+        Row(f"{name}_step", f"{case.description}: time of a step over that of a factorisation", cost, remark=anew),
+        Row(
+            f"{name}_rate",
+            f"{case.description}: revolutions per minute of computing",
+            60.0 / motion.seconds_per_revolution,
+        ),
     ]
 
 
 def factorisation(motion: Followed) -> dict[str, float]:
-    """Time of a stage's assembly and factorisation, in the order known and with one found anew [s]."""
+    """Time of assembly and factorisation of a stage, with a known and with a new elimination order [s]."""
     (begin, end), system = motion.turn[-2:], motion.orbit.system
     stage = system.stage(begin.moving, end.tau, end.tau - begin.tau, begin)
     problem = stage.problem.at(displacement=end.e)
@@ -195,50 +203,55 @@ def factorisation(motion: Followed) -> dict[str, float]:
 
 
 def against_explicit(motion: Followed) -> list[Row]:
-    """A revolution by explicit steps over petalfoil's, with compiled loops and in NumPy; the counts are the same."""
+    """Time of a revolution by explicit steps over that of petalfoil, with compiled loops and in NumPy."""
     film_steps, each = explicit.turn(motion.orbit), []
     for place in np.linspace(0, len(motion.turn) - 2, PLACES).astype(int):
         pair = (motion.turn[place], motion.turn[place + 1])
-        looked, taken = explicit.settlings(motion.orbit, pair, SETTLED, motion.lane.sample / PLACES)
+        looked, taken = explicit.settlings(motion.orbit, pair, SETTLED, motion.case.sample / PLACES)
         each.append(taken / looked)
     counts: dict[str, Value] = {
-        "film_steps_a_turn": film_steps,
-        "package_steps_a_film_step": float(np.mean(each)),
+        "film_steps_per_revolution": film_steps,
+        "pack_steps_per_film_step": float(np.mean(each)),
         "least_at_a_place": min(each),
         "most_at_a_place": max(each),
-        "seconds_a_turn": motion.seconds_a_turn,
+        "seconds_per_revolution": motion.seconds_per_revolution,
     }
     return [by(engine, motion, counts, (film_steps, float(np.mean(each)))) for engine in Engine]
 
 
 def by(engine: Engine, motion: Followed, counts: dict[str, Value], steps: tuple[float, float]) -> Row:
-    """The row of one kind of loops."""
-    name, says = f"orbit_{motion.lane.name}_{engine}", f"{motion.lane.says}: explicit steps ({engine}) over petalfoil's"
+    """The row of one implementation of the loops."""
+    name, description = (
+        f"orbit_{motion.case.name}_{engine}",
+        f"{motion.case.description}: explicit steps ({engine}) over petalfoil's",
+    )
     if engine is Engine.NUMBA and find_spec("numba") is None:
-        return Row(name, says, None, remark="numba is not installed")
+        return Row(name, description, None, remark="numba is not installed")
     (film_steps, each), (film, package) = steps, explicit.costs(motion.orbit, engine, LOOPS[engine])
     alone, whole = film_steps * film, film_steps * (film + each * package)
     details = counts | {
         "seconds_film_step": film,
-        "seconds_package_step": package,
-        "seconds_film_a_turn": alone,
-        "seconds_explicit_a_turn": whole,
+        "seconds_pack_step": package,
+        "seconds_film_per_revolution": alone,
+        "seconds_explicit_per_revolution": whole,
     }
-    remark = f"estimated: {film_steps:.3g} film steps a turn, {each:.3g} of the package after each; "
-    remark += f"the film alone {alone / motion.seconds_a_turn:.3g}"
-    return at_least(name, says, whole / motion.seconds_a_turn, LEAST_RATIO, details=details, remark=remark)
+    remark = f"estimated: {film_steps:.3g} film steps per revolution, {each:.3g} of the pack after each; "
+    remark += f"the film alone {alone / motion.seconds_per_revolution:.3g}"
+    return at_least(
+        name, description, whole / motion.seconds_per_revolution, LEAST_RATIO, details=details, remark=remark
+    )
 
 
 def marched(motion: Followed) -> Row:
-    """Explicit steps that find their own way, from a state near the end: how long they stay with the motion."""
+    """An explicit motion from a state near the end: the time until it leaves the motion of petalfoil."""
     begin, end = motion.turn[-2:]
     march = explicit.ExplicitMotion(motion.orbit, begin, SETTLED)
-    how = march.follow(end.tau, motion.lane.sample)
+    how = march.follow(end.tau, motion.case.sample)
     details: dict[str, Value] = {
         "film_steps": march.film_steps,
         "pack_steps": march.pack_steps,
-        "share_of_a_step": (march.tau - begin.tau) / (end.tau - begin.tau),
+        "fraction_of_a_step": (march.tau - begin.tau) / (end.tau - begin.tau),
         "petals_moved": march.moved,
     }
-    says = f"{motion.lane.says}: explicit steps (no ratio): whether they can go on"
-    return Row(f"orbit_{motion.lane.name}_march", says, None, details=details, remark=how)
+    description = f"{motion.case.description}: explicit steps (no ratio): end of the motion"
+    return Row(f"orbit_{motion.case.name}_march", description, None, details=details, remark=how)

@@ -1,4 +1,4 @@
-"""Other programs, each on work that it can do, beside the same number of nodes solved by petalfoil. None is needed."""
+"""Other programs, each on a problem that it can solve, against petalfoil on the same number of nodes. All optional."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from petalfoil.system.build import build_problem
 GRID = (120, 40)
 EPS = 0.6
 STILL = 1e-3
-"""Bearing number at which a gas is as good as incompressible: the excess pressure is `Lam` times that of a liquid."""
+"""Bearing number at which compressibility is negligible: the excess pressure is `Lam` times that of a liquid."""
 
 
 def rows(repeats: int) -> list[Row]:
@@ -36,18 +36,18 @@ def rows(repeats: int) -> list[Row]:
 
 def row(package: str, module: str, repeats: int, measure: Callable[[ModuleType, int], tuple[float, str]]) -> Row:
     """Measure a program if it can be imported."""
-    says = f"{package}: one film on {GRID[0]}×{GRID[1]} cells, over petalfoil's"
+    description = f"{package}: one film on {GRID[0]}×{GRID[1]} cells, over petalfoil's"
     name = package.partition("-")[0]
     try:
         found = version(package)
-        with contextlib.redirect_stdout(io.StringIO()):  # some of their dependencies talk while they are imported
+        with contextlib.redirect_stdout(io.StringIO()):  # some of their dependencies print while they are imported
             loaded = import_module(module)
     except PackageNotFoundError:
-        return Row(name, says, None, remark="not installed")
+        return Row(name, description, None, remark="not installed")
     except ImportError as failure:
-        return Row(name, says, None, remark=f"version {version(package)} cannot be used: {failure}")
+        return Row(name, description, None, remark=f"version {version(package)} cannot be used: {failure}")
     ratio, remark = measure(loaded, repeats)
-    return Row(name, says, ratio, remark=f"{found}: {remark}", details={"version": found})
+    return Row(name, description, ratio, remark=f"{found}: {remark}", details={"version": found})
 
 
 def own(case: Case) -> Callable[[], object]:
@@ -57,7 +57,7 @@ def own(case: Case) -> Callable[[], object]:
 
 def porous(ab: ModuleType, repeats: int) -> tuple[float, str]:
     """Time of an externally pressurised porous journal at rest, over a rotating one; error of its own seal."""
-    bearing = ab.JournalBearing(nx=GRID[0], ny=GRID[1] + 1, nh=2)  # two displacements at once: it needs a slope
+    bearing = ab.JournalBearing(nx=GRID[0], ny=GRID[1] + 1, nh=2)  # it needs two displacements for its slope
     calls = {
         "theirs": lambda: ab.solve_bearing(bearing, "numeric2d"),
         "ours": own(Exact(2.0, EPS, 0.0, 0.0).case(GRID)),
@@ -72,7 +72,7 @@ def porous(ab: ModuleType, repeats: int) -> tuple[float, str]:
 
 
 def liquid(fluid_flow: ModuleType, repeats: int) -> tuple[float, str]:
-    """Time of a journal bearing with a liquid, over petalfoil's gas so slow that it does not compress."""
+    """Time of a journal bearing with a liquid, over petalfoil with a gas at negligible compressibility."""
     case = Exact(STILL, EPS, 0.0, 0.0).case(GRID)
     bearing, gas, omega = case.bearing, case.gas, case.operation.speed
     sizes = (bearing.length, omega, 0.0, 0.0, bearing.journal_radius, bearing.bushing_radius, gas.viscosity, 1.2)

@@ -1,4 +1,4 @@
-"""The plain gas journal bearing: petalfoil against the yardstick, both against the exact table."""
+"""The plain gas journal bearing: time against a short SciPy program, errors against an exact table."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Exact:
     across: float
 
     def error(self, along: float, across: float) -> float:
-        """Length of the error of a load over the length of the load."""
+        """Magnitude of the error of a load over the magnitude of the load."""
         return math.hypot(along - self.along, across - self.across) / math.hypot(self.along, self.across)
 
     def case(self, grid: Grid) -> Case:
@@ -85,7 +85,7 @@ def on(grid: Grid, repeats: int) -> list[Row]:
     whole, bare = best["petalfoil"] / best["yardstick"], best["solution"] / best["yardstick"]
     said = f"median {np.median(ours):.2%}, yardstick {np.median(theirs):.2%} (worst {max(theirs):.2%})"
     return [
-        Row(f"journal_{name}_solve", f"{about} `solve` with stability and all figures, over the yardstick", whole),
+        Row(f"journal_{name}_solve", f"{about} `solve` with stability and all results, over the yardstick", whole),
         at_most(f"journal_{name}", f"{about} the solution alone, over the yardstick", bare, 1.0, details=details),
         at_most(
             f"journal_{name}_error", f"{about} worst error of the load, twelve bearings", max(ours), 1e-3, remark=said
@@ -94,7 +94,7 @@ def on(grid: Grid, repeats: int) -> list[Row]:
 
 
 def timed(exact: Exact, grid: Grid, repeats: int) -> dict[str, float]:
-    """Least time of the yardstick, of a whole run, of the solution with its mesh [s]."""
+    """Smallest time of the yardstick, of a whole run and of the solution with its mesh [s]."""
     case = exact.case(grid)
     calls = {
         "yardstick": lambda: by_yardstick(exact, grid),

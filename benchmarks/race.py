@@ -1,10 +1,11 @@
-"""petalfoil's Newton against the paper's own method, on the paper's packages and grids.
+"""Newton's method of petalfoil and the method of the paper, on the bearings and grids of the paper.
 
     python benchmarks/race.py PETALS NODES STATIONS MICROMETRES ENGINE TURNS    the classic method alone, JSON lines
 
-The classic method runs in a process of its own, which is stopped when its time is up; what it would have needed is then
-estimated from how its changes fell. As the paper words it (`TURNS` is "settled") each turn settles film and package;
-in NumPy that takes some two hours, which are estimated from the steps that the compiled twin takes.
+The classic method runs in its own process, which is stopped at a time limit. The time to convergence is then
+extrapolated from the decrease of its changes. As the paper words its algorithm (`TURNS` is "settled"), every outer
+iteration solves film and pack to the accuracy of the paper. In NumPy this takes about two hours; that time is estimated
+from the number of steps of the compiled loops.
 """
 
 from __future__ import annotations
@@ -38,19 +39,19 @@ from petalfoil.system.coupled import CoupledProblem
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 EPSILON = 1e-5
-"""Accuracy of the paper: relative change from one outer iteration to the next."""
+"""Accuracy of the paper: relative change between outer iterations."""
 LEAST = 1e-10
-"""The classic method is not asked for more."""
-WANTED = 1000.0
+"""Smallest `epsilon` that the classic method is run with."""
+TARGET = 1000.0
 
 
 @dataclass(frozen=True)
-class Lane:
-    """One package of the paper on `nodes` by `stations` nodes a petal (no stations: flat), displaced downward.
+class Race:
+    """One bearing of the paper on `nodes` by `stations` nodes (0 stations: 2-D), with a downward displacement.
 
-    `engine` is what runs the inner loops of the classic method: numba, which compiles them, or numpy. `turns` are
-    "loose", film and package as close as the last outer change asks for, or "settled", both to the paper's accuracy in
-    every turn, as it words its algorithm.
+    `engine` runs the inner loops of the classic method: "numba" or "numpy". With `turns` "loose" the tolerance of film
+    and pack follows the last outer change. With "settled" both are solved to the accuracy of the paper in every outer
+    iteration, as the paper words its algorithm.
     """
 
     petals: int
@@ -62,29 +63,29 @@ class Lane:
 
     @property
     def name(self) -> str:
-        """Key of its row."""
+        """Key of the row."""
         word = "" if self.turns == "loose" else f"_{self.turns}"
         return f"race_n{self.petals}_{self.grid.replace('×', 'x')}_e{self.micrometres}_{self.engine}{word}"
 
     @property
     def patience(self) -> float:
-        """Times the limit of the loose races that it is given."""
+        """Time limit over that of the loose races [1]."""
         return 1.0 if self.turns == "loose" else SETTLED[self.engine]
 
     @property
-    def says(self) -> str:
-        """What its row says."""
-        about = f"{self.petals} petals, {self.grid} nodes a petal, e = {self.micrometres} µm"
+    def description(self) -> str:
+        """Description of the row."""
+        about = f"{self.petals} petals, {self.grid} nodes along a petal, e = {self.micrometres} µm"
         how = self.engine if self.turns == "loose" else f"{self.engine}, as worded"
         return f"classic ({how}) over newton: {about}"
 
     @property
     def grid(self) -> str:
-        """Nodes a petal."""
+        """Nodes along a petal."""
         return f"{self.nodes}×{self.stations}" if self.stations else f"{self.nodes}"
 
     def case(self) -> Case:
-        """The package; the cells a pitch that give a petal that many nodes."""
+        """The bearing with the number of cells per pitch that gives this number of nodes along a petal."""
         case = Case.load(EXAMPLES / f"paper_n{self.petals}.toml")
         overlap = case.package.overlap if case.package is not None else 1.0
         changes: dict[str, object] = {
@@ -96,42 +97,44 @@ class Lane:
         return case.replace(**changes)
 
 
-QUICK = (Lane(8, 14, 0, 0, "numpy"),)
+QUICK = (Race(8, 14, 0, 0, "numpy"),)
 FULL = (
-    *(Lane(n, 24, 0, e) for n in (6, 8, 10) for e in (0, 200)),
-    Lane(8, 24, 0, 200, "numpy"),
-    Lane(8, 17, 0, 200),
-    Lane(8, 72, 0, 200),
-    Lane(8, 143, 0, 200),
-    Lane(8, 17, 11, 200),
-    Lane(8, 24, 17, 200),
-    Lane(8, 24, 17, 200, "numpy"),
-    Lane(8, 24, 17, 200, "numba", "settled"),
-    Lane(8, 24, 17, 200, "numpy", "settled"),
-    Lane(8, 35, 31, 200),
+    *(Race(n, 24, 0, e) for n in (6, 8, 10) for e in (0, 200)),
+    Race(8, 24, 0, 200, "numpy"),
+    Race(8, 17, 0, 200),
+    Race(8, 72, 0, 200),
+    Race(8, 143, 0, 200),
+    Race(8, 17, 11, 200),
+    Race(8, 24, 17, 200),
+    Race(8, 24, 17, 200, "numpy"),
+    Race(8, 24, 17, 200, "numba", "settled"),
+    Race(8, 24, 17, 200, "numpy", "settled"),
+    Race(8, 35, 31, 200),
 )
-"""Nodes a petal as in the paper and coarser; and finer ones flat: 32 and 64 cells a pitch."""
+"""Numbers of nodes of the paper and coarser ones; in 2-D also finer ones, of 32 and 64 cells per pitch."""
 
 
-def rows(lanes: tuple[Lane, ...], limit: float, repeats: int) -> list[Row]:
-    """A row for each lane; the classic method has `limit` seconds in each."""
+def rows(races: tuple[Race, ...], limit: float, repeats: int) -> list[Row]:
+    """A row for each race; the classic method has `limit` seconds in each."""
     if find_spec("petalfoil.classic") is None:
         return [Row("race", "classic over newton", None, remark="this version has no classic method")]
     compiles = find_spec("numba") is not None
     return [
-        raced(lane, limit, repeats)
-        if compiles or (lane.engine, lane.turns) == ("numpy", "loose")  # as worded, NumPy asks its compiled twin
-        else Row(lane.name, lane.says, None, remark="numba is not installed")
-        for lane in lanes
+        raced(race, limit, repeats)
+        if compiles
+        or (race.engine, race.turns)
+        == ("numpy", "loose")  # settled turns in NumPy need the step counts of the compiled run
+        else Row(race.name, race.description, None, remark="numba is not installed")
+        for race in races
     ]
 
 
-def raced(lane: Lane, limit: float, repeats: int) -> Row:
-    """Time of the classic method over that of Newton, both from nothing, to the same answer."""
-    problem = build_problem(lane.case())
+def raced(race: Race, limit: float, repeats: int) -> Row:
+    """Time of the classic method over that of Newton's method, both from a cold start to the same solution."""
+    problem = build_problem(race.case())
     with one_thread():
         newton = in_turn({"newton": lambda: solve_cold(problem, RunLog())}, repeats)["newton"]
-    lines, stopped = alone(lane, limit * lane.patience)
+    lines, stopped = alone(race, limit * race.patience)
     details: dict[str, Value] = {"seconds_newton": newton, "unknowns": problem.layout.n}
     stops = [line for line in lines if "stop" in line]
     for line in stops:
@@ -139,58 +142,60 @@ def raced(lane: Lane, limit: float, repeats: int) -> Row:
     if stops and stops[-1]["apart"] <= EPSILON:
         seconds, first = stops[-1]["seconds"], stops[0]
         remark = f"its own stop after {first['seconds'] / newton:.3g} times newton's time, {first['apart']:.0e} apart"
-        return at_least(lane.name, lane.says, seconds / newton, WANTED, details=details, remark=remark)
-    row = Row(lane.name, lane.says, None, f"≥ {WANTED:g}", details=details)
+        return at_least(race.name, race.description, seconds / newton, TARGET, details=details, remark=remark)
+    row = Row(race.name, race.description, None, f"≥ {TARGET:g}", details=details)
     if not stopped:
-        why = next((line["error"] for line in lines if "error" in line), "it stopped short of the answer")
+        why = next((line["error"] for line in lines if "error" in line), "it stopped before it reached the solution")
         return replace(row, remark=why)
-    if (lane.engine, lane.turns) == ("numpy", "settled"):
-        twin = replace(lane, engine="numba")
+    if (race.engine, race.turns) == ("numpy", "settled"):
+        twin = replace(race, engine="numba")
         return by_steps(row, lines, alone(twin, limit * twin.patience)[0], newton)
-    return unfinished(row, lines, newton, limit * lane.patience)
+    return unfinished(row, lines, newton, limit * race.patience)
 
 
 def unfinished(row: Row, lines: list[dict[str, Any]], newton: float, limit: float) -> Row:
-    """The row of a classic method that was stopped: estimated from how its changes fell, else what was waited for."""
+    """The row of a stopped classic method: extrapolated from the decrease of its changes, or the time limit."""
     changes = [line for line in lines if "change" in line]
     if not changes:
         return replace(row, remark=f"stopped after {limit:g} s, within its first outer iteration")
     needed, last = estimate(changes), changes[-1]
     if needed is None:
         least = last["seconds"] / newton
-        remark = f"stopped at a change of {last['change']:.0e} that did not fall steadily: at least this"
-        return replace(row, ratio=least, met=True if least >= WANTED else None, remark=remark)
-    remark = f"estimated: stopped at a change of {last['change']:.0e}, to fall to {EPSILON:.0e} at its rate"
+        remark = f"stopped at a change of {last['change']:.0e} that did not decrease steadily: lower limit"
+        return replace(row, ratio=least, met=True if least >= TARGET else None, remark=remark)
+    remark = f"estimated: stopped at a change of {last['change']:.0e}, extrapolated to {EPSILON:.0e}"
     details = row.details | {"seconds_measured": last["seconds"], "seconds_estimated": needed}
-    return replace(row, ratio=needed / newton, met=needed / newton >= WANTED, remark=remark, details=details)
+    return replace(row, ratio=needed / newton, met=needed / newton >= TARGET, remark=remark, details=details)
 
 
 SETTLED = {"numba": 15.0, "numpy": 6.0}
-"""Times the limit of the other races that one with settled turns is given: compiled it needs five minutes; in NumPy the
-first turns tell what a step costs."""
+"""Time limit of a race with settled turns over that of a loose one [1].
+
+The compiled loops need five minutes. In NumPy the first outer iterations suffice to measure the time of a step.
+"""
 
 
 def by_steps(row: Row, lines: list[dict[str, Any]], twin: list[dict[str, Any]], newton: float) -> Row:
-    """The row of a run in NumPy that was stopped: what its steps cost, times those that its compiled twin took."""
+    """The row of a stopped run in NumPy: the time of its steps times the number of steps of the compiled run."""
     done = [line for line in lines if "change" in line]
     if len(done) < 3 or not twin or twin[-1].get("apart", math.inf) > EPSILON:
-        return replace(row, remark="stopped before its steps could be timed, or its compiled twin was")
+        return replace(row, remark="stopped before its steps could be timed, or the compiled run was")
     steps = np.array([[line["film_steps"], line["pack_steps"]] for line in done], dtype=float)
     cost = np.linalg.lstsq(steps, np.array([line["seconds"] for line in done]), rcond=None)[0]
     last = [line for line in twin if "change" in line][-1]
     needed = float(cost @ [last["film_steps"], last["pack_steps"]])
-    remark = f"estimated: a step takes {1e6 * cost[0]:.0f} µs in the film, {1e6 * cost[1]:.0f} µs in the package; its "
-    remark += f"compiled twin took {last['film_steps']:.3g} and {last['pack_steps']:.3g}"
+    remark = f"estimated: a step takes {1e6 * cost[0]:.0f} µs in the film, {1e6 * cost[1]:.0f} µs in the pack; the "
+    remark += f"compiled run took {last['film_steps']:.3g} and {last['pack_steps']:.3g}"
     details = row.details | {"seconds_measured": done[-1]["seconds"], "seconds_estimated": needed}
-    return replace(row, ratio=needed / newton, met=needed / newton >= WANTED, remark=remark, details=details)
+    return replace(row, ratio=needed / newton, met=needed / newton >= TARGET, remark=remark, details=details)
 
 
 STEADY = 0.1
-"""A change below this over the second half of a run, and tenfold less at its end, falls steadily."""
+"""Limit of the change over the second half of a run, and of its decrease there, for an extrapolation."""
 
 
 def estimate(changes: list[dict[str, Any]]) -> float | None:
-    """Time to the paper's accuracy from how the changes fell over the second half [s]; None if they did not."""
+    """Time to the accuracy of the paper by extrapolation of the second half [s]; None without a steady decrease."""
     late = changes[len(changes) // 2 :]
     seconds, level = np.array([line["seconds"] for line in late]), np.log([line["change"] for line in late])
     if len(late) < 3 or level[0] > math.log(STEADY) or level[-1] > level[0] + math.log(STEADY):
@@ -199,20 +204,20 @@ def estimate(changes: list[dict[str, Any]]) -> float | None:
     return float((math.log(EPSILON) - start) / slope)
 
 
-def figures(problem: CoupledProblem, x: Any, lam: Any) -> np.ndarray:
-    """Force on the journal, smallest film and largest pressure, each over what it is measured by."""
+def compared_results(problem: CoupledProblem, x: Any, lam: Any) -> np.ndarray:
+    """Force on the journal, minimum film thickness and peak pressure, each over its scale."""
     film, pressure, journal = problem.layout.wall.film, problem.pressure(x), problem.layout.wall.contacts.journal
-    push = film_force(film, 1.0, pressure - 1.0) * problem.layout.scales.pressure
+    from_film = film_force(film, 1.0, pressure - 1.0) * problem.layout.scales.pressure
     touching = lam[journal].reshape(*film.theta.shape, -1).sum(axis=2) * problem.layout.scales.force
-    load = push + contact_force(film.theta, touching)[0]
+    load = from_film + contact_force(film.theta, touching)[0]
     lift = np.sum((pressure - 1.0) * node_area(film, 1.0)) * problem.layout.scales.pressure
     return np.array([*(load / lift), problem.film(x).min(), pressure.max()])
 
 
 @cache
-def alone(lane: Lane, limit: float) -> tuple[list[dict[str, Any]], bool]:
-    """Lines of the classic method in its own process, and whether its time was up."""
-    call = [sys.executable, str(Path(__file__)), *map(str, astuple(lane))]
+def alone(race: Race, limit: float) -> tuple[list[dict[str, Any]], bool]:
+    """Lines of the classic method from its own process, and whether the time limit ended it."""
+    call = [sys.executable, str(Path(__file__)), *map(str, astuple(race))]
     try:
         text, ended = subprocess.run(call, capture_output=True, text=True, timeout=limit, check=False).stdout, False
     except subprocess.TimeoutExpired as expired:
@@ -225,18 +230,18 @@ def alone(lane: Lane, limit: float) -> tuple[list[dict[str, Any]], bool]:
 # ---------------------------------------------------------------------------------------------- in that process
 
 
-def run_classic(lane: Lane) -> None:
-    """Print a line for each outer iteration and for each stop, until the answer is that of Newton."""
+def run_classic(race: Race) -> None:
+    """Print a line for each outer iteration and each stop, until the solution is that of Newton's method."""
     from petalfoil.classic.kernels import Engine
     from petalfoil.classic.method_options import ClassicOptions
     from petalfoil.classic.relaxation import ClassicRun, relax
 
-    problem = build_problem(lane.case())
+    problem = build_problem(race.case())
     found = solve_cold(problem, RunLog())
-    wanted = figures(problem, found.x, found.lam)
-    engine = Engine(lane.engine)
-    with contextlib.suppress(ConvergenceError):  # compiles, where something compiles
-        relax(ClassicRun(build_problem(Lane(6, 9, 0, 0).case()), ClassicOptions(max_outer=1), engine))
+    reference = compared_results(problem, found.x, found.lam)
+    engine = Engine(race.engine)
+    with contextlib.suppress(ConvergenceError):  # compiles the loops
+        relax(ClassicRun(build_problem(Race(6, 9, 0, 0).case()), ClassicOptions(max_outer=1), engine))
     start = time.process_time()
 
     def tell(row: dict[str, Any]) -> None:
@@ -246,7 +251,7 @@ def run_classic(lane: Lane) -> None:
 
     def options(epsilon: float) -> ClassicOptions:
         plain = ClassicOptions(epsilon=epsilon)
-        return plain if lane.turns == "loose" else replace(plain, loosest_inner_tolerance=epsilon)
+        return plain if race.turns == "loose" else replace(plain, loosest_inner_tolerance=epsilon)
 
     state, epsilon, apart = None, EPSILON, math.inf
     while apart > EPSILON and epsilon > LEAST:
@@ -255,17 +260,17 @@ def run_classic(lane: Lane) -> None:
         except ConvergenceError as failure:
             say({"error": str(failure)})
             return
-        reached = figures(problem, np.concatenate([state.w, state.P]), state.lam)
-        apart = float(np.max(np.abs(reached / wanted - 1.0), where=np.abs(wanted) > 1e-9, initial=0.0))
+        reached = compared_results(problem, np.concatenate([state.w, state.P]), state.lam)
+        apart = float(np.max(np.abs(reached / reference - 1.0), where=np.abs(reference) > 1e-9, initial=0.0))
         say({"seconds": time.process_time() - start, "stop": epsilon, "apart": apart})
         epsilon *= 0.1
 
 
 def say(line: dict[str, Any]) -> None:
-    """Print one line at once: the process may be stopped at any time."""
+    """Print and flush one line: the process may be stopped at any time."""
     sys.stdout.write(json.dumps(line) + "\n")
     sys.stdout.flush()
 
 
 if __name__ == "__main__":
-    run_classic(Lane(*map(int, sys.argv[1:5]), *sys.argv[5:7]))
+    run_classic(Race(*map(int, sys.argv[1:5]), *sys.argv[5:7]))

@@ -1,9 +1,9 @@
-"""Ratios of petalfoil against other methods, and against itself at other sizes; one run, one table.
+"""Ratios of petalfoil to other methods, and to itself at other sizes, in one table.
 
     python benchmarks/run.py [--quick] [--json FILE] [--against FILE] [--only GROUP ...] [--classic-seconds S]
 
-Times are processor times of calls made in turn, the least of several: only their ratios in one run mean anything.
-What the rows mean is in docs/benchmarks.md.
+Times are the smallest processor times of calls made in turn. Only ratios of one run can be compared.
+docs/benchmarks.md explains the rows.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ import others
 import plain_journal
 import race
 import scipy
-import spatial_point
+import warm_point
 from measure import Row
 
 import petalfoil
@@ -36,11 +36,11 @@ GROUPS = ("race", "point", "growth", "journal", "orbit", "others")
 
 
 def groups(quick: bool, classic_seconds: float) -> dict[str, Callable[[], list[Row]]]:
-    """What each group measures; a quick run has the same rows, on grids too small to be asked anything."""
+    """The measurements of each group. A quick run has the same rows; its grids are too small for the limits."""
     if quick:
         return {
             "race": lambda: race.rows(race.QUICK, min(classic_seconds, 10.0), 1),
-            "point": lambda: spatial_point.rows(spatial_point.Grid(12, 6), 3, 2),
+            "point": lambda: warm_point.rows(warm_point.Grid(12, 6), 3, 2),
             "growth": lambda: growth.rows((growth.Grid(8, 4), growth.Grid(14, 8)), None),
             "journal": lambda: plain_journal.rows(((48, 16),), 2),
             "orbit": lambda: orbit.rows(orbit.QUICK),
@@ -48,7 +48,7 @@ def groups(quick: bool, classic_seconds: float) -> dict[str, Callable[[], list[R
         }
     return {
         "race": lambda: race.rows(race.FULL, classic_seconds, 3),
-        "point": lambda: spatial_point.rows(spatial_point.Grid(), 9, 7),
+        "point": lambda: warm_point.rows(warm_point.Grid(), 9, 7),
         "growth": lambda: growth.rows(growth.SIZES, growth.LARGEST),
         "journal": lambda: plain_journal.rows(plain_journal.GRIDS, 7),
         "orbit": lambda: orbit.rows(orbit.FULL),
@@ -65,7 +65,7 @@ def main() -> None:
         if name not in chosen.only:
             continue
         for row in measure():
-            measured.append(row if not chosen.quick else replace(row, wanted="", met=None))
+            measured.append(row if not chosen.quick else replace(row, target="", met=None))
             print(line(measured[-1], before), flush=True)
     if chosen.json is not None:
         chosen.json.write_text(
@@ -94,12 +94,12 @@ def earlier(path: Path | None) -> dict[str, float]:
 
 
 def line(row: Row, before: dict[str, float]) -> str:
-    """One row for people."""
+    """One row as text."""
     ratio = "–" if row.ratio is None else shown(row.ratio)
     ratio += f" (was {shown(before[row.name])})" if row.name in before else ""
     verdict = {True: "met", False: "not met", None: ""}[row.met]
-    wanted = f"{row.wanted} {verdict}".strip()
-    return f"{row.says:<88} {ratio:>9}  {wanted:<16} {row.remark}".rstrip()
+    target = f"{row.target} {verdict}".strip()
+    return f"{row.description:<88} {ratio:>9}  {target:<16} {row.remark}".rstrip()
 
 
 def shown(ratio: float) -> str:
@@ -108,7 +108,7 @@ def shown(ratio: float) -> str:
 
 
 def report(measured: list[Row], quick: bool) -> dict[str, object]:
-    """What the file holds: the run, then the rows."""
+    """Contents of the file: the versions, then the rows."""
     return {
         "petalfoil": petalfoil.__version__,
         "python": platform.python_version(),

@@ -1,4 +1,4 @@
-"""Where the time of a run goes: factorisations, assembly, solves, the rest. The code watched knows nothing of it."""
+"""Shares of the time of a run: factorisations, assembly, solves, the rest. Functions are wrapped from outside."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ PLACES: dict[str, tuple[Place, ...]] = {
     "stability": ((sys.modules["petalfoil.analysis.curve"], "leading_eigenvalue"),),
     "contact_search": ((contact_newton, "search"),),
 }
-"""Functions by what their time is called. The last two contain some of the first three."""
+"""Functions by the name of their share. The last two contain parts of the first three."""
 
 
 APART = ("factorisation", "assembly", "solves")
-"""Those that do not overlap: a solve inside a factorisation, which tries it, counts there."""
+"""Shares that do not overlap. A solve inside a factorisation counts as factorisation."""
 
 
 @dataclass
 class Share:
-    """Calls of some functions and what they took."""
+    """Number of calls and their processor time."""
 
     calls: int = 0
     seconds: float = 0.0
@@ -42,7 +42,7 @@ class Share:
 
 @dataclass
 class Watch:
-    """Processor time since it was made, and the shares of it."""
+    """Processor time since creation, and the shares of functions."""
 
     shares: dict[str, Share] = field(default_factory=lambda: {name: Share() for name in PLACES})
     start: float = field(default_factory=time.process_time)
@@ -50,7 +50,7 @@ class Watch:
 
     @property
     def seconds(self) -> float:
-        """All of the time [s]."""
+        """The whole time [s]."""
         return time.process_time() - self.start
 
     def wrapped(self, name: str, call: Callable[..., Any]) -> Callable[..., Any]:
@@ -73,7 +73,7 @@ class Watch:
 
 @contextmanager
 def watched() -> Iterator[Watch]:
-    """Watch what the block does."""
+    """Measure the calls in the block."""
     watch = Watch()
     places = [(name, *place) for name, found in PLACES.items() for place in found]
     before = [getattr(owner, function) for _, owner, function in places]

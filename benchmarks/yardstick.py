@@ -1,7 +1,7 @@
-"""The shortest honest SciPy program for a plain gas journal bearing: what petalfoil must not be slower than.
+"""A short SciPy program for a plain gas journal bearing, as a reference of time.
 
 Finite volumes for `div(H^3 P grad P / 2 - Lam P H / 2) = 0` in `phi, Z`, central in the advection, `P = 1` at both
-ends, half the length by symmetry; Newton with the exact sparse Jacobian and `spsolve`. It imports nothing of petalfoil.
+ends, half the length by symmetry; Newton with the exact sparse Jacobian and `spsolve`. It does not import petalfoil.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ TOLERANCE = 1e-8
 
 
 class Film(NamedTuple):
-    """Load along and across the line of centres over `p_a L D`, largest `p / p_a`, scaled residual."""
+    """Load along and across the line of centres over `p_a L D`, peak `p / p_a`, scaled residual."""
 
     along: float
     across: float
@@ -26,7 +26,7 @@ class Film(NamedTuple):
 
 
 def solve(around: int, along: int, length: float, Lam: float, eps: float) -> Film:
-    """Solve for the pressures from ambient ones.
+    """Solve for the pressures from ambient pressure.
 
     `around` by `along` cells over the circle and the whole length `L / R_j = length`; film `1 + eps cos(theta)`.
     """
@@ -36,7 +36,7 @@ def solve(around: int, along: int, length: float, Lam: float, eps: float) -> Fil
     node = np.arange(around * (half + 1)).reshape(around, half + 1)  # column 0 at the end, the last in the middle
     H = np.repeat(1.0 + eps * np.cos(theta), half + 1)
     width = np.full(half + 1, dZ)
-    width[-1] = 0.5 * dZ  # the middle has half a cell
+    width[-1] = 0.5 * dZ  # half a cell at the plane of symmetry
     a = np.concatenate([node[:, 1:].ravel(), node[:, :-1].ravel()])
     b = np.concatenate([np.roll(node, -1, axis=0)[:, 1:].ravel(), node[:, 1:].ravel()])
     n_around = around * half
@@ -63,9 +63,9 @@ def solve(around: int, along: int, length: float, Lam: float, eps: float) -> Fil
         by_a, by_b = mean_cube * P[a] + carried * H[a], -mean_cube * P[b] + carried * H[b]
         change = spsolve((outflow @ (by_a[:, None] * at_a + by_b[:, None] * at_b)).tocsc(), -residual)
         falling = change < 0.0
-        share = min(1.0, 0.8 * np.min(-P[free][falling] / change[falling], initial=np.inf))
-        P[free] += share * change
+        fraction = min(1.0, 0.8 * np.min(-P[free][falling] / change[falling], initial=np.inf))
+        P[free] += fraction * change
     weight = 2.0 * width * dphi / (2.0 * length)  # both halves, over L D / R_j^2
     weight[0] *= 0.5
-    push = (P.reshape(node.shape) - 1.0) @ weight
-    return Film(float(-push @ np.cos(theta)), float(push @ np.sin(theta)), float(P.max()), worst)
+    line_load = (P.reshape(node.shape) - 1.0) @ weight
+    return Film(float(-line_load @ np.cos(theta)), float(line_load @ np.sin(theta)), float(P.max()), worst)

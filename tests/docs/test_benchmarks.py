@@ -30,7 +30,8 @@ def measured(path: Path, *options: str) -> list[dict[str, Any]]:
     """Rows of a quick run."""
     printed = run("benchmarks/run.py", "--quick", "--json", str(path), *options).stdout.splitlines()
     rows: list[dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))["rows"]
-    assert [row["says"] for row in rows] == [line[: len(row["says"])] for row, line in zip(rows, printed, strict=True)]
+    descriptions = [row["description"] for row in rows]
+    assert descriptions == [line[: len(text)] for text, line in zip(descriptions, printed, strict=True)]
     return rows
 
 

@@ -17,7 +17,7 @@ def paper_case(count: int, **changes: object) -> Case:
     """The 2-D bearing of the paper with `count` petals and a centred journal; unstated inputs as in `UNSTATED`."""
     case = Case.model_validate(
         {
-            "title": f"Paper, 2-D, {count} petals",
+            "title": f"Paper, 2-D study, {count} petals",
             "bearing": {"journal_radius": 0.025, "bushing_radius": 0.026, "length": 0.05},
             "petals": {
                 "count": count,

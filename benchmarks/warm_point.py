@@ -1,4 +1,4 @@
-"""A warm point of a spatial load characteristic: how many factorisations, and what else it costs."""
+"""A warm point of a 3-D load characteristic: number of factorisations, and shares of the time."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ from petalfoil.system.build import build_problem
 EXAMPLES = Path(__file__).parents[1] / "examples"
 FARTHEST = 200e-6  # [m]
 STEP = FARTHEST / 9.0
-"""Displacement from point to point [m]: ten points with the central one."""
+"""Displacement from point to point [m]: ten points with the centred journal."""
 
 
 @dataclass(frozen=True)
 class Grid:
-    """Cells a pitch and along the axis."""
+    """Cells per pitch and along the axis."""
 
     pitch: int = 24
     axial: int = 16
 
     def case(self, e: float = 0.0) -> Case:
-        """The paper's bearing with 8 petals in space, displaced downward by `e` [m]."""
+        """The bearing of the paper with 8 petals in 3-D, displaced downward by `e` [m]."""
         changes = {"model.cells_per_pitch": self.pitch, "model.axial_cells": self.axial}
         return Case.load(EXAMPLES / "paper_n8_spatial.toml").replace(**changes, **{"operation.eccentricity": (0.0, -e)})
 
@@ -47,19 +47,19 @@ def rows(grid: Grid, points: int, repeats: int) -> list[Row]:
     seconds, plain = point[0].details["seconds_per_point"], one[0].details["seconds_original"]
     assert isinstance(seconds, float)
     assert isinstance(plain, float)
-    says = "warm spatial point: its time over one factorisation by COLAMD of the original unknowns"
+    description = "warm 3-D point: its time over one factorisation by COLAMD of the original unknowns"
     remark = "6 factorisations, 1.25 times their time, each 3 times faster than COLAMD: 2.5"
-    return [*point, *one, Row("warm_cost", says, seconds / plain, remark=remark)]
+    return [*point, *one, Row("warm_cost", description, seconds / plain, remark=remark)]
 
 
 # ---------------------------------------------------------------------------------------------- cost of a point
 
 
 def warm_points(grid: Grid, points: int) -> list[tuple[Watch, float]]:
-    """What was seen of each warm point of a curve, and its time [s]."""
+    """Watched calls of each warm point of a curve, and its time [s]."""
     seen = []
     followed = curve.records(grid.case(), STEP * np.arange(points + 1))
-    next(followed)  # the cold one
+    next(followed)  # the cold start
     for _ in range(points):
         with watched() as watch:
             record = next(followed)
@@ -71,7 +71,7 @@ def warm_points(grid: Grid, points: int) -> list[tuple[Watch, float]]:
 
 
 def cost(grid: Grid, points: int) -> list[Row]:
-    """Counts and shares of the time."""
+    """Rows of counts and shares of the time."""
     seen = warm_points(grid, points)
     total = sum(seconds for _, seconds in seen)
     share = {name: sum(watch.shares[name].seconds for watch, _ in seen) / total for name in seen[0][0].shares}
@@ -85,7 +85,7 @@ def cost(grid: Grid, points: int) -> list[Row]:
         "most": max(counts),
         "solves_median": float(statistics.median(solves)),
     }
-    count, point = float(statistics.median(counts)), "warm spatial point"
+    count, point = float(statistics.median(counts)), "warm 3-D point"
     rest = 1.0 - sum(share[name] for name in APART)
     return [
         at_most("warm_count", f"{point}: factorisations, median of a curve", count, 6, details=details),
@@ -103,7 +103,7 @@ def cost(grid: Grid, points: int) -> list[Row]:
 
 
 def answer(grid: Grid) -> Solution:
-    """A point of the curve with contacts closed, its tangent at hand."""
+    """A solution on the curve with active contacts."""
     problem = build_problem(grid.case(0.5 * FARTHEST))
     known = solve_cold(problem, RunLog())
     found, _ = advance(known, problem.at(displacement=1.02 * problem.displacement), RunLog())
@@ -113,7 +113,7 @@ def answer(grid: Grid) -> Solution:
 
 
 def saddle(found: Solution) -> sp.csc_array:
-    """The original unknowns in natural order: the tangent, bordered by the closed gaps with their multipliers."""
+    """Tangent of the original unknowns in natural order, bordered by the active contacts and their multipliers."""
     closed = found.in_contact
     J, G = found.problem.linearize(found.x).matrix(np.zeros(len(closed))), found.problem.G[closed]
     bordered = sp.csc_array(sp.block_array([[J, -G.T], [G, None]], format="csc"))
@@ -122,7 +122,7 @@ def saddle(found: Solution) -> sp.csc_array:
 
 
 def factorisation(grid: Grid, repeats: int) -> list[Row]:
-    """One factorisation as petalfoil does it, against SciPy's default."""
+    """Rows of one factorisation of petalfoil against that of SciPy."""
     with one_thread():
         found = answer(grid)
         assert found.closed is not None  # `answer` saw to it
@@ -141,17 +141,19 @@ def factorisation(grid: Grid, repeats: int) -> list[Row]:
         )
     details: dict[str, Value] = {f"seconds_{name}": value for name, value in best.items()}
     details |= {"unknowns": reduced.shape[0], "unknowns_original": bordered.shape[0]}
-    says = "factorisation: COLAMD on the {}, over petalfoil's"
+    description = "factorisation: COLAMD on the {}, over petalfoil's"
     whole = best["original"] / best["own"]
     return [
-        at_least("factor_original", says.format("original unknowns with multipliers"), whole, 3.0, details=details),
+        at_least(
+            "factor_original", description.format("original unknowns with multipliers"), whole, 3.0, details=details
+        ),
         Row(
             "factor_ties", "the same, with merging the tied unknowns counted", best["original"] / best["own_with_ties"]
         ),
-        Row("factor_reduced", says.format("reduced matrix"), best["reduced"] / best["own"]),
+        Row("factor_reduced", description.format("reduced matrix"), best["reduced"] / best["own"]),
         Row(
             "factor_anew",
-            "factorisation: petalfoil's with the order found anew, over that with the order of its neighbours",
+            "factorisation: petalfoil's with a new elimination order, over that with a known one",
             best["anew"] / best["own"],
         ),
     ]
