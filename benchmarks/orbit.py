@@ -37,6 +37,7 @@ of this size.
 """
 TURN, PLACES = 25, 8
 """Number of the last steps that are kept, and of those in which explicit steps are counted."""
+MODELS = {"2d": "2-D", "3d": "3-D"}
 LOOPS = {Engine.NUMBA: 16_000, Engine.NUMPY: 960}
 """Number of loop steps in one timed call."""
 
@@ -67,7 +68,7 @@ class OrbitCase:
         case = self.case()
         cells = f"{build_problem(case).layout.wall.film.shape[1] - 1}"
         cells += f"×{case.model.axial_cells}" if self.kind == "3d" else ""
-        return f"orbit, 8 petals, {self.kind}, {cells} cells"
+        return f"orbit, 8 petals, {MODELS[self.kind]}, {cells} cells"
 
 
 FULL = (
@@ -253,5 +254,5 @@ def marched(motion: Followed) -> Row:
         "fraction_of_a_step": (march.tau - begin.tau) / (end.tau - begin.tau),
         "petals_moved": march.moved,
     }
-    description = f"{motion.case.description}: explicit steps (no ratio): end of the motion"
+    description = f"{motion.case.description}: explicit steps (no ratio): whether they can go on"
     return Row(f"orbit_{motion.case.name}_march", description, None, details=details, remark=how)

@@ -75,7 +75,7 @@ class Race:
     @property
     def description(self) -> str:
         """Description of the row."""
-        about = f"{self.petals} petals, {self.grid} nodes along a petal, e = {self.micrometres} µm"
+        about = f"{self.petals} petals, {self.grid} nodes per petal, e = {self.micrometres} µm"
         how = self.engine if self.turns == "loose" else f"{self.engine}, as worded"
         return f"classic ({how}) over newton: {about}"
 

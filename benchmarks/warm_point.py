@@ -90,12 +90,12 @@ def cost(grid: Grid, points: int) -> list[Row]:
     return [
         at_most("warm_count", f"{point}: factorisations, median of a curve", count, 6, details=details),
         at_most("warm_total", f"{point}: time over that of its factorisations", 1.0 / share["factorisation"], 1.25),
-        Row("warm_factorisation", f"{point}: share of the factorisations", share["factorisation"]),
-        Row("warm_assembly", f"{point}: share of the assembly", share["assembly"]),
-        Row("warm_solves", f"{point}: share of the solves with the factors", share["solves"]),
-        Row("warm_rest", f"{point}: share of the rest", rest),
-        Row("warm_stability", f"{point}: share of its stability, contained in the above", share["stability"]),
-        Row("warm_search", f"{point}: share of the search for contacts, contained too", share["contact_search"]),
+        Row("warm_factorisation", f"{point}: part of the factorisations", share["factorisation"]),
+        Row("warm_assembly", f"{point}: part of the assembly", share["assembly"]),
+        Row("warm_solves", f"{point}: part of the solves with the factors", share["solves"]),
+        Row("warm_rest", f"{point}: part of the rest", rest),
+        Row("warm_stability", f"{point}: part of its stability, contained in the above", share["stability"]),
+        Row("warm_search", f"{point}: part of the search for contacts, contained too", share["contact_search"]),
     ]
 
 
