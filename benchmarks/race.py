@@ -81,11 +81,11 @@ class Race:
 
     @property
     def grid(self) -> str:
-        """Nodes along a petal."""
+        """Nodes per petal."""
         return f"{self.nodes}×{self.stations}" if self.stations else f"{self.nodes}"
 
     def case(self) -> Case:
-        """The bearing with the number of cells per pitch that gives this number of nodes along a petal."""
+        """The bearing with the number of cells per pitch that gives this number of nodes per petal."""
         case = Case.load(EXAMPLES / f"paper_n{self.petals}.toml")
         overlap = case.package.overlap if case.package is not None else 1.0
         changes: dict[str, object] = {

@@ -36,19 +36,19 @@ def assert_tangent(along: Callable[[float], Array], change: Array, largest: floa
 
 
 BEARINGS: dict[str, tuple[str, str, str, bool]] = {
-    "plain, flat": ("plain_journal", "2d", "ambient", True),
+    "plain, 2d": ("plain_journal", "2d", "ambient", True),
     "plain, half": ("plain_journal", "3d", "ambient", True),
     "plain, whole": ("plain_journal", "3d", "ambient", False),
-    "petals, flat": ("paper_n8", "2d", "ambient", True),
+    "petals, 2d": ("paper_n8", "2d", "ambient", True),
     "petals, half": ("paper_n8", "3d", "ambient", True),
     "petals, whole": ("paper_n8", "3d", "ambient", False),
-    "stepped petals, flat": ("paper_n8", "2d", "continuous", True),
+    "stepped petals, 2d": ("paper_n8", "2d", "continuous", True),
     "stepped petals, half": ("paper_n8", "3d", "continuous", True),
     "stepped petals, whole": ("paper_n8", "3d", "continuous", False),
-    "slipping plain, flat": ("plain_journal", "2d", "ambient", True),
+    "slipping plain, 2d": ("plain_journal", "2d", "ambient", True),
     "slipping plain, half": ("plain_journal", "3d", "ambient", True),
     "slipping petals, half": ("paper_n8", "3d", "ambient", True),
-    "slipping stepped petals, flat": ("paper_n8", "2d", "continuous", True),
+    "slipping stepped petals, 2d": ("paper_n8", "2d", "continuous", True),
 }
 """Example, kind, edges, symmetry; the slipping ones in a gas so thin that slip is a good part of the flow."""
 

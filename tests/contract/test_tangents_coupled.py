@@ -32,7 +32,7 @@ def storage(problem: CoupledProblem, x: Array, shift: Array) -> Array:
     """Mass in the cells of the film."""
     layout = problem.layout
     stored = layout.balance.storage(problem.pressure(x), problem.film(x, shift), problem.bearing_number)
-    if layout.film_rows.content is not None:  # the first balance gave way to the content of a film without ends
+    if layout.film_rows.content is not None:  # the gas inventory replaces the first balance
         stored[0] = 0.0
     return stored
 
@@ -149,8 +149,8 @@ def test_newton_direction_of_the_interior_point(name: str, side: str, rate: floa
 
 @pytest.mark.parametrize("share", [0.0, 0.1])
 @pytest.mark.parametrize("name", PETALS)
-def test_tangent_with_closed_gaps(name: str, share: float) -> None:
-    """Unknowns tied by closed gaps move together: the reduced matrix is the derivative of the merged equations."""
+def test_tangent_with_active_contacts(name: str, share: float) -> None:
+    """Unknowns in active contact move together: the reduced matrix is the derivative of the merged equations."""
     problem, rng = build_problem(bearing(name)), np.random.default_rng(15)
     x = open_state(problem, rng)
     ties = tie(problem.G, rng.random(problem.G.shape[0]) < share)

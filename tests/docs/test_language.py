@@ -16,7 +16,17 @@ import pytest
 
 from tests.docs.texts import ROOT, name_of, text
 
-ROOTS = ("README.md", "CONTRIBUTING.md", "docs", "examples")
+ROOTS = (
+    "README.md",
+    "CONTRIBUTING.md",
+    "docs",
+    "examples",
+    "benchmarks",
+    "src/petalfoil/physics",
+    "src/petalfoil/mesh",
+    "src/petalfoil/classic",
+    "src/petalfoil/report",
+)
 """Files and folders that are searched."""
 
 SUFFIXES = {".md", ".py", ".toml", ".csv"}

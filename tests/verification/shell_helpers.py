@@ -199,7 +199,7 @@ class Solved:
     x, lam : array
         Unknowns and reactions.
     closed : bool array
-        Gaps that are closed.
+        Active contacts.
     steps : int
         Steps of the interior point down to the first barrier.
     polish : int

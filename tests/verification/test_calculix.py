@@ -99,9 +99,9 @@ def by_calculix(folder: Path, nu: float, *, clamped: bool) -> dict[str, float]:
     }
 
 
-def by_petalfoil(nu: float, *, clamped: bool, flat: bool) -> dict[str, float]:
+def by_petalfoil(nu: float, *, clamped: bool, is_2d: bool) -> dict[str, float]:
     cells = 96
-    axial = axis_2d(LENGTH) if flat else axis_3d(LENGTH, 48, half=True)
+    axial = axis_2d(LENGTH) if is_2d else axis_3d(LENGTH, 48, half=True)
     D = YOUNG * THICKNESS**3 / 12.0 / (1.0 - nu**2)
     shell = PetalShell(np.linspace(0.0, ANGLE, cells + 1), axial, RADIUS, RADIUS, D, nu, clamped)
     n_z = len(axial.z)
@@ -119,33 +119,33 @@ def by_petalfoil(nu: float, *, clamped: bool, flat: bool) -> dict[str, float]:
 
 
 @pytest.mark.parametrize("clamped", [True, False], ids=["clamped", "hinged and propped"])
-@pytest.mark.parametrize("flat", [True, False], ids=["2d", "3d"])
-def test_without_lateral_contraction(tmp_path: Path, flat: bool, clamped: bool) -> None:
+@pytest.mark.parametrize("is_2d", [True, False], ids=["2d", "3d"])
+def test_without_lateral_contraction(tmp_path: Path, is_2d: bool, clamped: bool) -> None:
     """Both bend alike all along the shaft. What remains are the grids of both (2e-4 each) and `(t / R)^2`."""
-    theirs, ours = by_calculix(tmp_path, 0.0, clamped=clamped), by_petalfoil(0.0, clamped=clamped, flat=flat)
+    theirs, ours = by_calculix(tmp_path, 0.0, clamped=clamped), by_petalfoil(0.0, clamped=clamped, is_2d=is_2d)
     for place, value in ours.items():
         if clamped or place.startswith("half"):
             assert_allclose(value, theirs[place], rtol=1e-3, err_msg=place)
 
 
 @pytest.mark.parametrize("clamped", [True, False], ids=["clamped", "hinged and propped"])
-def test_flat_model_of_steel(tmp_path: Path, clamped: bool) -> None:
-    """A curved petal cannot bow across (its mid-surface would stretch), which is what the flat model says of it.
+def test_2d_model_of_steel(tmp_path: Path, clamped: bool) -> None:
+    """A curved petal cannot bow across (its mid-surface would stretch), which is what the 2-D model says of it.
 
     1 %: edges do bow, over a width like `sqrt(R t)` = 2 mm of 50.
     """
-    theirs, ours = by_calculix(tmp_path, 0.3, clamped=clamped), by_petalfoil(0.3, clamped=clamped, flat=True)
+    theirs, ours = by_calculix(tmp_path, 0.3, clamped=clamped), by_petalfoil(0.3, clamped=clamped, is_2d=True)
     for place, value in ours.items():
         if clamped or place.startswith("half"):
             assert_allclose(value, theirs[place], rtol=1e-2, err_msg=place)
 
 
-def test_spatial_model_of_steel_bows_more_than_a_shell(tmp_path: Path) -> None:
+def test_3d_model_of_steel_bows_more_than_a_shell(tmp_path: Path) -> None:
     """The limit of (33)-(39): without energy for stretching along the shaft, the petal bows across as a plate does.
 
     Clamped: 4 % at the middle of the free edge, against none between middle and side of the shell.
     """
-    theirs, ours = by_calculix(tmp_path, 0.3, clamped=True), by_petalfoil(0.3, clamped=True, flat=False)
+    theirs, ours = by_calculix(tmp_path, 0.3, clamped=True), by_petalfoil(0.3, clamped=True, is_2d=False)
     assert_allclose(theirs["tip middle"], theirs["tip side"], rtol=1e-3)
     for place, value in ours.items():
         assert_allclose(value, theirs[place], rtol=5e-2, err_msg=place)

@@ -14,8 +14,8 @@ from tests.cases import case
 
 pytest.importorskip("numba")  # the NumPy twin takes a hundred times longer
 
-FLAT = [(f"paper_n{n}", {"model.cells_per_pitch": 12}) for n in (6, 8, 10)]
-SPATIAL = [("paper_n8_spatial", {"model.cells_per_pitch": 10, "model.axial_cells": 16})]  # 23 x 17 nodes a petal
+CASES_2D = [(f"paper_n{n}", {"model.cells_per_pitch": 12}) for n in (6, 8, 10)]
+CASES_3D = [("paper_n8_spatial", {"model.cells_per_pitch": 10, "model.axial_cells": 16})]  # 23 x 17 nodes per petal
 AGREE = 1e-4
 """Required agreement; 1e-5 is what the paper's own stop at 1e-5 gives (most of these are closer)."""
 
@@ -27,7 +27,7 @@ def both(bearing: Case) -> tuple[Record, Record]:
 
 
 @pytest.mark.parametrize("e", [0.0, 200e-6])
-@pytest.mark.parametrize(("name", "grid"), FLAT + SPATIAL, ids=["n6", "n8", "n10", "3d"])
+@pytest.mark.parametrize(("name", "grid"), CASES_2D + CASES_3D, ids=["n6", "n8", "n10", "3d"])
 def test_load_film_and_pressure_agree(name: str, grid: dict[str, object], e: float) -> None:
     classic, newton = both(case(name, **{**grid, "operation.eccentricity": (0.0, -e)}))
     assert classic.converged

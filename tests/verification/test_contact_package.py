@@ -1,4 +1,4 @@
-"""The assembled package, no film: a convex programme, so that any other way to its answer is an oracle."""
+"""The assembled pack without a film: a convex program, so that another solver is an independent check."""
 
 import numpy as np
 import piqp
@@ -144,15 +144,15 @@ def by_piqp(problem: PackageProblem) -> tuple[Array, Array]:
 
 
 def agree(problem: PackageProblem) -> None:
-    """Deflections, reactions and the set of closed gaps are PIQP's."""
+    """Deflections, reactions and active contacts are those of PIQP."""
     answer, (x, lam) = answer_of(problem), by_piqp(problem)
     assert_allclose(answer.x, x, rtol=0.0, atol=1e-8 * np.abs(x).max())
     assert_allclose(answer.lam, lam, rtol=0.0, atol=1e-5 * lam.max())
     assert np.array_equal(answer.closed, lam / problem.weight > problem.gaps(x))
 
 
-# The rig with room for a displacement; PIQP's reactions of the example itself, pressed together, end at 1e-5.
-ROOMY: dict[str, object] = {
+# The rig with a larger clearance. PIQP's reactions of the example itself, close to bottoming out, have errors of 1e-5.
+WIDE: dict[str, object] = {
     "bearing.journal_radius": 28.2e-3,
     "petals.count": 8,
     "petals.arc_length": 42e-3,
@@ -165,8 +165,8 @@ ROOMY: dict[str, object] = {
 @pytest.mark.parametrize("name", EXAMPLES)
 @pytest.mark.parametrize("cells", [16, 48])
 def test_piqp_agrees(name: str, cells: int) -> None:
-    room = ROOMY if name == "rig" else {}
-    problem = package(example(name, cells, **{**room, "operation.eccentricity": (30e-6, -80e-6)}))
+    wider = WIDE if name == "rig" else {}
+    problem = package(example(name, cells, **{**wider, "operation.eccentricity": (30e-6, -80e-6)}))
     agree(problem)
 
 
@@ -217,8 +217,8 @@ def test_as_the_product_assembles_it() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_from_nothing_in_twenty_steps_on_the_finest_grid(name: str) -> None:
-    room = ROOMY if name == "rig" else {}
-    problem = package(example(name, 256, **{**room, "operation.eccentricity": (0.0, -100e-6)}))
+    wider = WIDE if name == "rig" else {}
+    problem = package(example(name, 256, **{**wider, "operation.eccentricity": (0.0, -100e-6)}))
     answer = answer_of(problem)
     assert answer.steps <= 20
     assert answer.polish <= 12

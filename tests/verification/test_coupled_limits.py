@@ -72,7 +72,7 @@ def film_alone(bearing: Case, H: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 
 
 def test_stiff_petals_are_the_rigid_stepped_bearing() -> None:
-    """`E / p_a -> infinity`: petals keep the shape of the assembled package, and the film is that of a rigid bearing.
+    """`E / p_a -> infinity`: petals keep the shape of the assembled pack, and the film is that of a rigid bearing.
 
     Viscosity falls with the ambient pressure, so that the film's own equation stays the same.
     """

@@ -124,7 +124,7 @@ def test_nothing_is_lost_over_a_step(seed: int, Lam: float, spread: float) -> No
     "film", ["strip with ends", "circle with ends", "petals with ends", "stepped petals with ends"]
 )
 def test_half_a_film_holds_and_leaks_as_much_as_the_whole(film: str) -> None:
-    """A film that is symmetric about the middle of the shaft; the half model's figures are those of both halves."""
+    """A film symmetric about the middle of the shaft: the results of the half model are those of both halves."""
     whole, half = film_of(film), film_of(f"half {film}")
     P, H = random_film(half, 7, 0.5)
     mirror = half.mesh.axial.whole

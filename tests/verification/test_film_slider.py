@@ -19,14 +19,14 @@ MARGIN = 0.1
 
 
 def peak(P: Array) -> float:
-    """Largest pressure, by the parabola through the highest node and its neighbours."""
+    """Peak pressure, by the parabola through the highest node and its neighbours."""
     i = int(np.argmax(P))
     left, top, right = P[i - 1 : i + 2]
     return float(top - (right - left) ** 2 / (8.0 * (left - 2.0 * top + right)))
 
 
 def taper(row: dict[str, str], cells: int) -> Array:
-    """(load, largest pressure, friction) of a taper slider, each over its reference."""
+    """(load, peak pressure, friction) of a taper slider, each over its reference."""
     a, Lam = float(row["a=h1/h2"]), float(row["Lam"])
     balance = slider(cells)
     H = a - (a - 1.0) * balance.mesh.phi[None, :, None]

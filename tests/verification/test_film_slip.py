@@ -143,12 +143,12 @@ def thin_gas(bearing: Case) -> Case:
     return bearing.replace(**changes, **{"model.slip": True})
 
 
-def test_a_long_bearing_is_a_flat_one() -> None:
-    """In its middle, twenty diameters long: the flat film holds as much gas (F6); without slip's part it would not."""
+def test_the_middle_of_a_long_bearing_is_the_2d_model() -> None:
+    """Twenty diameters long: the 2-D film has the same gas inventory (F6), which includes a term of slip."""
     e = np.array([0.0, -0.5])
-    long, flat = thin_gas(journal(20.0, 3.0, e, (32, 80))), thin_gas(journal(20.0, 3.0, e, (32, 80)))
+    long, short = thin_gas(journal(20.0, 3.0, e, (32, 80))), thin_gas(journal(20.0, 3.0, e, (32, 80)))
     answers = []
-    for bearing in (long, flat.replace(**{"model.kind": "2d"})):
+    for bearing in (long, short.replace(**{"model.kind": "2d"})):
         problem = build_problem(bearing)
         assert problem.layout.balance.knudsen == pytest.approx(bearing.gas.mean_free_path / 25e-6)
         answer = solve_cold(problem, RunLog())
@@ -176,7 +176,7 @@ def test_shear_between_slipping_walls() -> None:
 
 @pytest.fixture(scope="module")
 def plain() -> Case:
-    """A plain bearing whose smallest film is 2.5 um."""
+    """A plain bearing with a minimum film thickness of 2.5 um."""
     coarse = {"model.cells_per_pitch": 48, "model.axial_cells": 12}
     return case("plain_journal", **coarse, **{"operation.eccentricity": (0.0, -22.5e-6)})
 
@@ -208,7 +208,7 @@ def test_slip_fades_with_the_mean_free_path(plain: Case) -> None:
 
 
 def test_check_tells_the_knudsen_number(plain: Case) -> None:
-    """Of the room of a plain bearing, of the film floor of a package: the thinnest film there can be."""
+    """It is based on the clearance of a plain bearing, and on the contact film thickness of a petal bearing."""
     scalars = check.record(plain).scalars
     assert scalars["mean_free_path"] == plain.gas.mean_free_path
     assert scalars["viscosity"] == plain.gas.viscosity

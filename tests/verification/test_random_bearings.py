@@ -19,7 +19,7 @@ SEED = 2024
 
 
 def kkt_residual(case: Case, record: Record) -> float:
-    """Largest defect of a flat answer's equations, rebuilt petal by petal from its published fields.
+    """Largest residual of the equations of a 2-D result, evaluated petal by petal from its published fields.
 
     Wall: `K W` of each petal against film and contact pressures on its nodes, over ambient pressure (and the digits
     that `K W` loses). Gaps: `|min(gap / 10 um, contact pressure / p_a)|` of all three kinds. Film: the flux (F2)
@@ -129,7 +129,7 @@ def test_two_hundred_random_packages() -> None:
 
 
 def test_continuous_edges_and_a_coating() -> None:
-    """Spatial: a flat film that runs on all round has no ends to leak from, and not every one comes to rest."""
+    """In 3-D: not every 2-D film with continuous edges has an equilibrium."""
     rng = np.random.default_rng(SEED + 2)
     changes = {"model.kind": "3d", "model.edges": Edges.CONTINUOUS, "petals.coating": 5e-6}
     for _ in range(4):

@@ -114,6 +114,6 @@ def test_anticlastic_patch(clamped: bool, grid: str, half: bool) -> None:
 
     residual = (shell.stiffness @ W.ravel()).reshape(W.shape)
     cell = shell.phi[-1] - shell.phi[-2]
-    free = slice(0 if clamped else 2, -2)  # away from the edges that M loads; a rigid root mirrors the patch
+    free = slice(0 if clamped else 2, -2)  # away from the edges that M loads; a clamped root mirrors the patch
     assert_allclose(residual[free], 0.0, atol=1e-10 * M / cell)
     assert_allclose(residual[-2:].sum(axis=1), [-M * b / cell, M * b / cell], rtol=1e-11)

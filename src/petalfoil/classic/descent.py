@@ -80,9 +80,9 @@ class PackDescent:
         return left <= tolerance
 
     def reactions(self, W: Array, load: Array) -> Array:
-        """Contact reactions from the equilibrium of the pack, `G^T lam = K W - f` on the closed gaps, (m,) [1].
+        """Contact reactions from the equilibrium of the pack, `G^T lam = K W - f` on the active contacts, (m,) [1].
 
-        The closed gaps are those that the last projection closed. Negative values are set to zero.
+        The active contacts are the gaps that the last projection closed. Negative values are set to zero.
         """
         problem = self.problem
         gap = problem.gaps(np.concatenate([W, np.ones(problem.layout.n - len(W))]))

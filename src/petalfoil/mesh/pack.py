@@ -38,7 +38,7 @@ class PackMesh:
 
     @property
     def n_node(self) -> int:
-        """Number of nodes along a petal, root and free edge included."""
+        """Number of nodes per petal, root and free edge included."""
         return len(self.phi)
 
     @property

@@ -114,7 +114,7 @@ def centred_journal(evidence: Evidence) -> Claim:
     )
     contact = max(curve.values("contact_fraction")[0] for curve in curves)
     return Claim(
-        "Pressure and film thickness over every petal around the central journal, for n = 6, 8, 10",
+        "Pressure and film thickness over every petal around the centred journal, for n = 6, 8, 10",
         "3.8, Figures 6 and 7",
         f"minimum film thickness {films} µm, peak p/p_a {peaks}; solid contact carries {contact:.0%} of the normal "
         "force on the journal",

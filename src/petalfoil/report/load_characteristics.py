@@ -52,7 +52,7 @@ class Scope:
     assumptions : tuple of str
         Names of the assumptions to vary; empty for all.
     grids : tuple of (int, int)
-        Nodes along a petal and axial nodes, as the paper counts them.
+        Nodes per petal and axial nodes, as the paper counts them.
     """
 
     counts: tuple[int, ...] = (6, 8, 10)

@@ -186,7 +186,7 @@ def grids(evidence: Evidence) -> Iterator[str]:
     """Loads on the grids of the paper."""
     yield html.section("grids", SECTIONS["grids"])
     yield html.paragraph(
-        "The paper counts nodes along a petal and along the axis. Its explicit scheme has a time step limited by the "
+        "The paper counts nodes per petal and along the axis. Its explicit scheme has a time step limited by the "
         "grid. Here every grid is solved from a cold start, with 8 petals and e = 200 µm. The number of axial nodes is "
         "odd, so that one node lies in the plane of symmetry."
     )

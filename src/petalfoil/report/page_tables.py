@@ -93,7 +93,7 @@ def _values(one: Interpretation) -> tuple[str, ...]:
 
 def grids(loads: tuple[GridLoad, ...]) -> TextTable:
     """Loads on the grids of the paper."""
-    head = ("nodes along a petal", "cells per pitch", "load, N", "factorisations, cold start", "largest residual")
+    head = ("nodes per petal", "cells per pitch", "load, N", "factorisations, cold start", "largest residual")
     rows = []
     for grid in loads:
         is_2d = grid.nodes[1] == 1

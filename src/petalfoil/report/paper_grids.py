@@ -25,7 +25,7 @@ class GridLoad:
     Attributes
     ----------
     nodes : (int, int)
-        Nodes along a petal and axial nodes; one axial node is the 2-D model.
+        Nodes per petal and axial nodes; one axial node is the 2-D model.
     cells : (int, int)
         The nearest numbers of cells per pitch and of axial cells.
     load : float

@@ -1,4 +1,4 @@
-"""Small bearings of every kind that the film and the package of the classic method must serve."""
+"""Small bearings of every kind that the classic method can solve."""
 
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
@@ -6,8 +6,8 @@ from tests.cases import case
 
 KINDS: dict[str, tuple[str, dict[str, object]]] = {
     "2d": ("paper_n8", {"model.cells_per_pitch": 8}),
-    "flat, slip": ("paper_n8", {"model.cells_per_pitch": 8, "model.slip": True}),
-    "flat, without ends": ("paper_n8", {"model.cells_per_pitch": 8, "model.edges": "continuous"}),
+    "2d, slip": ("paper_n8", {"model.cells_per_pitch": 8, "model.slip": True}),
+    "2d, continuous": ("paper_n8", {"model.cells_per_pitch": 8, "model.edges": "continuous"}),
     "half": ("paper_n8_spatial", {"model.cells_per_pitch": 6, "model.axial_cells": 6}),
     "whole, continuous": (
         "paper_n8_spatial",
@@ -20,7 +20,7 @@ KINDS: dict[str, tuple[str, dict[str, object]]] = {
         },
     ),
     "plain": ("plain_journal", {"model.cells_per_pitch": 24, "model.axial_cells": 6}),
-    "plain, flat": (
+    "plain, 2d": (
         "plain_journal",
         {"model.kind": "2d", "model.cells_per_pitch": 24, "model.axial_cells": None},
     ),
@@ -34,6 +34,6 @@ def bearing(kind: str, **changes: object) -> CoupledProblem:
 
 
 def package(cells: int, e: float = 0.0, **changes: object) -> CoupledProblem:
-    """The paper's 8 petals, flat, displaced downward by `e` [m]."""
+    """The paper's 8 petals in 2-D, displaced downward by `e` [m]."""
     grid = {"model.cells_per_pitch": cells, "operation.eccentricity": (0.0, -e)}
     return build_problem(case("paper_n8", **{**grid, **changes}))

@@ -1,4 +1,4 @@
-"""The package by projected gradient: its restrictions, its descent, its reactions."""
+"""The pack by projected gradient: constraints, descent, reactions."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def gaps(problem: CoupledProblem, W: Array) -> Array:
     return problem.gaps(np.concatenate([W, np.ones(problem.layout.n - len(W))]))
 
 
-# ---------------------------------------------------------------------------------------------- restrictions
+# ---------------------------------------------------------------------------------------------- constraints
 
 
 @pytest.mark.parametrize("count", [6, 8, 10])  # overlaps 1.7, 2.2 and 2.8: two and three layers
@@ -41,7 +41,7 @@ def test_the_projection_is_the_nearest_point() -> None:
     rng = np.random.default_rng(5)
     W = rng.normal(size=problem.layout.n_wall) * 10.0
     nearest = project(W, columns)
-    for _ in range(200):  # (W - nearest) makes an obtuse angle with the way to any other point that is allowed
+    for _ in range(200):  # (W - nearest) makes an obtuse angle with the direction to any other admissible point
         other = project(nearest + rng.normal(size=len(W)) * rng.choice([0.1, 3.0, 30.0]), columns)
         assert np.dot(W - nearest, other - nearest) <= 1e-9
     assert_allclose(project(nearest, columns), nearest, rtol=0.0, atol=1e-12)
@@ -115,7 +115,7 @@ def petal_by_petal(problem: CoupledProblem, descent: PackDescent, W: Array, swee
 
 
 def test_petals_that_descend_one_by_one_stop_short_of_the_least_energy() -> None:
-    """Why the package is projected as a whole: a petal that only meets its neighbour as a wall cannot push it."""
+    """The pack is projected as a whole because a petal cannot displace a neighbour that is a fixed bound."""
     problem = package(8, 100e-6)
     descent = PackDescent(problem, ClassicOptions())
     W, none = np.zeros(problem.layout.n_wall), np.zeros(problem.layout.n_wall)

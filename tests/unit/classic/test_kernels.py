@@ -1,4 +1,4 @@
-"""The compiled inner loops and their NumPy twins give the same numbers."""
+"""The compiled inner loops and those in NumPy give the same numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Film and package in turn: limits, starts, relaxation, history."""
+"""Film and pack in turn: limits, starts, relaxation, history."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_a_run_that_uses_up_its_steps_says_which_and_how_it_went(limits: dict[st
     assert "coarser grid" in caught.value.advice
 
 
-def test_a_film_that_blows_up_is_told_apart() -> None:
+def test_a_diverged_film_has_its_own_message() -> None:
     problem = package(8)
     closed = np.ones(problem.layout.balance.mesh.shape)
     closed[0, 3] = 0.0
@@ -76,7 +76,7 @@ def test_a_plain_bearing_has_only_a_film() -> None:
     assert state.outer <= 6
 
 
-def test_relaxation_is_halved_where_film_and_package_take_turns() -> None:
+def test_the_relaxation_factor_is_halved_when_the_change_stops_to_fall() -> None:
     relaxation = Relaxation(0.5, 10.0)
     for change in (1.0, 0.5, *([0.6] * 19)):
         relaxation.update(change)
@@ -87,7 +87,7 @@ def test_relaxation_is_halved_where_film_and_package_take_turns() -> None:
     assert (relaxation.smallest, relaxation.waited) == (0.9, 0)
 
 
-def test_without_relaxation_film_and_package_take_turns_which_is_found_out() -> None:
+def test_without_relaxation_the_run_finds_a_smaller_factor() -> None:
     run = ClassicRun(package(10), ClassicOptions(deflection_relaxation=1.0))
     relax(run)
     assert run.rows[-1]["deflection_relaxation"] < 1.0
@@ -104,7 +104,7 @@ def no_numba(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("no_numba")
-def test_without_numba_the_numpy_twins_run() -> None:
+def test_without_numba_the_numpy_loops_run() -> None:
     assert inner.kernels() == (numpy_kernels.march, numpy_kernels.descend)
     state = relax(ClassicRun(package(6), ClassicOptions(epsilon=3e-2)))
     twin = relax(ClassicRun(package(6), ClassicOptions(epsilon=3e-2), inner.Engine.NUMPY))
