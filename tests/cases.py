@@ -8,6 +8,8 @@ from typing import Any
 from petalfoil.case import Case
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
+FAULTS = Path(__file__).parent / "faults"
+"""Small cases that were once answered wrongly, or not at all."""
 
 
 def tables(name: str = "paper_n8") -> dict[str, Any]:
