@@ -5,6 +5,7 @@ A case is refused when it is read; nothing but the errors of this package comes 
 
 import datetime
 import math
+import os
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from petalfoil.case import Case
+from petalfoil.case.toml import MAX_BYTES
 from petalfoil.errors import DefinitionError, PackageError, PetalfoilError, UnitError
 from tests.cases import DELETE, EXAMPLES, put, tables
 
@@ -40,22 +42,28 @@ MALFORMED: dict[str, tuple[str, str, Any, type[DefinitionError], tuple[str, ...]
     "eccentricity is a number": (PETALS, "operation.eccentricity", 1e-5, DefinitionError, ("eccentricity", "[x, y]")),
     "eccentricity is three": (PETALS, "operation.eccentricity", [0, 0, 0], DefinitionError, ("[0, 0, 0]", "[x, y]")),
     "eccentricity holds a weight": (PETALS, "operation.eccentricity", [0, "1 kg"], UnitError, ("ricity[1]", "mass")),
-    "load is one number": (PETALS, "operation.load", "50 N", DefinitionError, ("operation.load", "[x, y]")),
+    "load is a weight in kilograms": (PETALS, "operation.load", "5 kg", UnitError, ("operation.load", "'50 N'")),
+    "load is three": (PETALS, "operation.load", [0, 0, 0], DefinitionError, ("operation.load", "[x, y]")),
     # units
     "length in kilograms": (PETALS, "bearing.length", "50 kg", UnitError, ("bearing.length", "'50 kg'", "mass")),
     "length in parsnips": (PETALS, "bearing.length", "50 parsnip", UnitError, ("unknown unit 'parsnip'", "a length")),
     "length squared": (PETALS, "bearing.length", "50 mm^2", UnitError, ("bearing.length", "length^2")),
-    "speed in hertz": (PETALS, "operation.speed", "100 Hz", UnitError, ("operation.speed", "rpm or rad/s")),
+    "speed in hertz": (PETALS, "operation.speed", "100 Hz", UnitError, ("'6000 rpm'", "'100 rad/s'")),
+    "viscosity in gauge pressure": (PETALS, "gas.ambient_pressure", "14 psig", UnitError, ("gauge pressure (psig)",)),
+    "modulus in small letters": (PETALS, "petals.youngs_modulus", "200 gpa", UnitError, ("did you mean 'GPa'?",)),
     "viscosity in pascals": (PETALS, "gas.viscosity", "18.5 uPa", UnitError, ("gas.viscosity", "'18.5 uPa*s'")),
     "modulus in metres": (PETALS, "petals.youngs_modulus", "200 m", UnitError, ("petals.youngs_modulus", "1 bar")),
     "angle in metres": (PETALS, "petals.first_root", "1 m", UnitError, ("petals.first_root", "an angle", "45 deg")),
     "ratio in degrees": (PETALS, "petals.poisson_ratio", "0.3 deg", UnitError, ("petals.poisson_ratio", "an angle")),
-    "a decimal comma": (PETALS, "bearing.length", "0,05 m", UnitError, ("bearing.length", "','")),
+    "a decimal comma": (PETALS, "bearing.length", "0,05 m", UnitError, ("a decimal point, '0.05 m'",)),
     "a sum": (PETALS, "bearing.length", "25 mm + 25 mm", UnitError, ("bearing.length", "'+'")),
     # ranges
     "no radius": (PETALS, "bearing.journal_radius", 0, DefinitionError, ("journal_radius", "greater than 0 m")),
     "negative length": (PETALS, "bearing.length", "-5 mm", DefinitionError, ("'-5 mm'", "greater than 0 m")),
-    "a length in millimetres": (PETALS, "bearing.length", 50, DefinitionError, ("bearing.length", "at most 20 m")),
+    "a length in millimetres": (
+        PETALS, "bearing.length", 50, DefinitionError, ("50 (a bare number is read in m)", "at most 20 m"),
+    ),
+    "a text without a unit": (PETALS, "bearing.length", "50", DefinitionError, ("'50' (a bare number is read in m)",)),
     "one petal": (PETALS, "petals.count", 1, DefinitionError, ("petals.count", "at least 2 and at most 64")),
     "a hundred petals": (PETALS, "petals.count", 100, DefinitionError, ("petals.count", "100", "at most 64")),
     "negative coating": (PETALS, "petals.coating", "-1 um", DefinitionError, ("petals.coating", "at least 0 m")),
@@ -71,7 +79,7 @@ MALFORMED: dict[str, tuple[str, str, Any, type[DefinitionError], tuple[str, ...]
         ("surface.contact_film_thickness", "greater than 0 m"),
     ),
     "negative friction": (PETALS, "surface.friction_coefficient", -0.1, DefinitionError, ("at least 0",)),
-    "backwards": (PETALS, "operation.speed", "-100 rpm", DefinitionError, ("operation.speed", "at least 0 rad/s")),
+    "backwards": (PETALS, "operation.speed", "-100 rpm", DefinitionError, ("'-100 rpm' is outside its range",)),
     "faster than light": (PETALS, "operation.speed", 1e9, DefinitionError, ("operation.speed", "at most 1e+06")),
     "three cells": (PETALS, "model.cells_per_pitch", 3, DefinitionError, ("model.cells_per_pitch", "at least 4")),
     "too many cells": (PETALS, "model.axial_cells", 10**30, DefinitionError, ("model.axial_cells", "at most 512")),
@@ -82,6 +90,11 @@ MALFORMED: dict[str, tuple[str, str, Any, type[DefinitionError], tuple[str, ...]
     "edges of another kind": (PETALS, "model.edges", 3, DefinitionError, ("model.edges", "'ambient' or 'continuous'")),
     "a clasic method": (PETALS, "model.method", "clasic", DefinitionError, ("model.method", "mean 'classic'?")),
     "a tilt in words": (PETALS, "petals.root_tilt", "cordal", DefinitionError, ("root_tilt", "'cordal'", "'chordal'")),
+    "a flat model": (PETALS, "model.kind", "flat", DefinitionError, ("model.kind", "mean '2d'?")),
+    "a spatial model": (PETALS, "model.kind", "Spatial", DefinitionError, ("model.kind", "mean '3d'?")),
+    "3D": (PETALS, "model.kind", "3D", DefinitionError, ("model.kind", "mean '3d'?")),
+    "a rigid mount": (PETALS, "petals.mount", "rigid", DefinitionError, ("petals.mount", "mean 'clamped'?")),
+    "a pinned mount": (PETALS, "petals.mount", "pinned", DefinitionError, ("petals.mount", "mean 'hinged'?")),
     # keys
     "lenght": (PETALS, "bearing.lenght", 1, DefinitionError, ("bearing.lenght", "mean 'length'?", "journal_radius")),
     "youngs_module": (PETALS, "petals.youngs_module", 1, DefinitionError, ("mean 'youngs_modulus'?",)),
@@ -94,6 +107,29 @@ MALFORMED: dict[str, tuple[str, str, Any, type[DefinitionError], tuple[str, ...]
     ),
     "a key outside the tables": (PETALS, "speed", 1, DefinitionError, ("speed", "mean 'operation.speed'?")),
     "petal": (PETALS, "petal", {"count": 8}, DefinitionError, ("petal", "mean 'petals'?")),
+    "the film floor of before": (
+        PETALS, "surface.film_floor", 1e-6, DefinitionError, ("surface.film_floor", "mean 'contact_film_thickness'?"),
+    ),
+    "E": (PETALS, "petals.E", 2e11, DefinitionError, ("petals.E", "mean 'youngs_modulus'?")),
+    "rpm": (PETALS, "operation.rpm", 6e4, DefinitionError, ("operation.rpm", "mean 'speed'?")),
+    "a viscosity of the surface": (PETALS, "surface.mu", 1, DefinitionError, ("surface.mu", "mean 'gas.viscosity'?")),
+    "Bend Radius": (PETALS, "petals.Bend Radius", 0.04, DefinitionError, ("mean 'bend_radius'?",)),
+    "roottilt": (PETALS, "petals.roottilt", 0, DefinitionError, ("mean 'root_tilt'?",)),
+    "a diameter": (PETALS, "bearing.journal_diameter", 0.05, DefinitionError, ("give bearing.journal_radius and",)),
+    "a clearance": (PETALS, "bearing.radial_clearance", 1e-3, DefinitionError, ("clearance follows: give bearing",)),
+    "tilt": (PETALS, "operation.tilt", [0, 0], DefinitionError, ("Misalignment is not modelled: journal and bushing",)),
+    "misalignment": (PETALS, "misalignment", {}, DefinitionError, ("Misalignment is not modelled: journal",)),
+    "heat": (PETALS, "heat", {}, DefinitionError, ("heat: is not", "Heat is not modelled: the gas is isothermal")),
+    "conductivity": (PETALS, "petals.thermal_conductivity", 15, DefinitionError, ("Heat is not modelled",)),
+    "a wall's temperature": (PETALS, "gas.wall_temperature", 350, DefinitionError, ("Heat is not modelled",)),
+    "bump foils": (PETALS, "bumps", {"pitch": 1}, DefinitionError, ("Bump foils are not modelled: [petals] or",)),
+    "external feed": (PETALS, "gas.supply_pressure", 5e5, DefinitionError, ("External pressurisation is not",)),
+    "turbulence": (PETALS, "model.turbulent", True, DefinitionError, ("Turbulence is not modelled: the film",)),
+    "grooves": (PETALS, "surface.groove_depth", 1e-5, DefinitionError, ("Grooves and textures are not modelled",)),
+    "a key that speaks to the terminal": (
+        PETALS, "bearing.\x1b[31mred", 1, DefinitionError, (r"bearing.\x1b[31mred: is not a known key",),
+    ),
+    "a key without end": (PETALS, "bearing." + "k" * 9000, 1, DefinitionError, ("bearing." + "k" * 60 + "…: is not",)),
     "an unknown key like no other": (PETALS, "zzz", 1, DefinitionError, ("zzz: is not a known key", "bearing, petals")),
     "no bearing": (PETALS, "bearing", DELETE, DefinitionError, ("bearing: is missing", "a table [bearing]")),
     "no length": (PETALS, "bearing.length", DELETE, DefinitionError, ("bearing.length: is missing", "[m]")),
@@ -231,8 +267,45 @@ def test_an_absent_file(tmp_path: Path) -> None:
 
 
 def test_a_directory(tmp_path: Path) -> None:
-    with pytest.raises(DefinitionError, match="is a directory"):
+    with pytest.raises(DefinitionError, match="is a directory; expected a file"):
         Case.load(tmp_path)
+
+
+def test_a_device_that_never_ends() -> None:
+    with pytest.raises(DefinitionError, match=r"^/dev/zero: is a device, a pipe or a socket; expected a file$"):
+        Case.load("/dev/zero")
+
+
+def test_a_pipe_that_nobody_fills(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "case.toml")
+    with pytest.raises(DefinitionError, match="is a device, a pipe or a socket"):
+        Case.load(tmp_path / "case.toml")
+
+
+def test_a_file_of_terabytes(tmp_path: Path) -> None:
+    with (tmp_path / "case.toml").open("wb") as file:
+        file.truncate(2**40)  # sparse: it takes no place
+    with pytest.raises(DefinitionError, match="has more than 1 MiB; expected a text of some kilobytes"):
+        Case.load(tmp_path / "case.toml")
+
+
+def test_a_case_as_large_as_may_be_is_read(tmp_path: Path) -> None:
+    text = (EXAMPLES / "paper_n8.toml").read_bytes()
+    (tmp_path / "case.toml").write_bytes(text + b"#" * (MAX_BYTES - len(text)))
+    assert Case.load(tmp_path / "case.toml") == Case.load(EXAMPLES / "paper_n8.toml")
+
+
+def test_a_latin_1_file_is_told_how_to_be_saved(tmp_path: Path) -> None:
+    text = "# bearing\ntitle = 'Größe'\n"
+    (tmp_path / "case.toml").write_bytes(text.encode("latin-1"))
+    with pytest.raises(DefinitionError, match=r"not a text in UTF-8 \(line 2, byte 0xf6\): save it as UTF-8 \(in an"):
+        Case.load(tmp_path / "case.toml")
+
+
+def test_a_file_name_that_speaks_to_the_terminal(tmp_path: Path) -> None:
+    with pytest.raises(DefinitionError) as caught:
+        Case.load(tmp_path / "a\x1b[31m\nb.toml")
+    assert r"a\x1b[31m\nb.toml: there is no such file" in str(caught.value)
 
 
 def test_a_file_that_cannot_be_opened(tmp_path: Path) -> None:

@@ -19,6 +19,7 @@ from petalfoil.case.rotor import Rotor
 from petalfoil.case.sections import Bearing, Model, ModelKind, Operation, Surface
 from petalfoil.case.wall_tables import WallTable, with_table
 from petalfoil.errors import DefinitionError, PackageError
+from petalfoil.text import for_terminal
 
 # Grids whose error in the load stays under 1 %: measured on the paper's packages (six to ten petals, displaced by 100
 # to 280 um: at most 0.3 % flat, 0.6 % spatial) and on plain bearings (L/D 1/2 to 2).
@@ -65,7 +66,7 @@ class Case(Definition):
         try:
             return cls.from_toml(toml.read_file(path))
         except DefinitionError as error:
-            message = f"{os.fspath(path)}: {error}"
+            message = f"{for_terminal(str(path))}: {error}"
             raise type(error)(message, key=error.key, given=error.given, allowed=error.allowed) from None
 
     @classmethod

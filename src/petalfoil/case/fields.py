@@ -17,7 +17,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from petalfoil.errors import UnitError
 from petalfoil.units import parse_quantity
-from petalfoil.units.reading import shown
+from petalfoil.units.reading import is_bare, shown
 
 UNIT_PROBLEM = "unit_problem"  # pydantic error types of ours; `problems.py` tells them apart
 VALUE_PROBLEM = "value_problem"
@@ -89,7 +89,8 @@ class Quantity(Range):
         except UnitError as error:
             raise refuse(UNIT_PROBLEM, str(error), error.allowed) from None
         if not self.holds(number):
-            text = f"{shown(value)} is outside its range; allowed: {self.bounds(self.unit)}"
+            bare = f" (a bare number is read in {self.unit})" if is_bare(value) and self.unit != "1" else ""
+            text = f"{shown(value)}{bare} is outside its range; allowed: {self.bounds(self.unit)}"
             raise refuse(VALUE_PROBLEM, text, self.bounds(self.unit))
         return number
 
@@ -160,6 +161,17 @@ def as_pair(value: object) -> object:
     if entries is None or len(entries) != 2:
         raise refuse(VALUE_PROBLEM, f"{shown(value)} is not {allowed}", allowed)
     return tuple(entries)
+
+
+def as_load(value: object) -> object:
+    """Let pairs through, and make a single quantity a load along -y: ``"10 N"`` becomes (0, -10) N."""
+    if _as_sequence(value) is not None:
+        return as_pair(value)
+    try:
+        return 0.0, -parse_quantity(value, "N")
+    except UnitError as error:
+        allowed = f"two forces, [x, y], or one along -y, {error.allowed}"
+        raise refuse(UNIT_PROBLEM, str(error), allowed) from None
 
 
 def as_table(value: object) -> object:

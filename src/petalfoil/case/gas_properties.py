@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import Any
 
 from petalfoil.case.fields import VALUE_PROBLEM, refuse
-from petalfoil.case.problems import nearest
+from petalfoil.case.hints import nearest
 from petalfoil.units.reading import shown
 from petalfoil.units.writing import format_quantity
 

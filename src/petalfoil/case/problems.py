@@ -5,7 +5,7 @@ Every problem is told with the key's dotted path, what was given, what is allowe
 
 from __future__ import annotations
 
-import difflib
+import re
 import typing
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,8 +16,12 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from petalfoil.case.fields import UNIT_PROBLEM, VALUE_PROBLEM
+from petalfoil.case.hints import nearest_key, nearest_word
 from petalfoil.errors import DefinitionError, UnitError
+from petalfoil.text import for_terminal
 from petalfoil.units.reading import shown
+
+MAX_KEY = 60  # longer keys are cut in messages
 
 Location = tuple[int | str, ...]
 
@@ -45,12 +49,6 @@ def definition_error(error: ValidationError, root: type[BaseModel], section: str
     kind = UnitError if all(detail["type"] == UNIT_PROBLEM for detail in details) else DefinitionError
     first = problems[0]
     return kind(joined(problems), key=first.key, given=first.given, allowed=first.allowed)
-
-
-def nearest(name: object, known: Sequence[str]) -> str:
-    """Return " Did you mean '…'?" for the known name closest to `name`, or nothing."""
-    matches = difflib.get_close_matches(str(name).lower(), known, n=1)
-    return f" Did you mean {matches[0]!r}?" if matches else ""
 
 
 def _problem(detail: ErrorDetails, root: type[BaseModel], section: str) -> Problem:
@@ -84,25 +82,23 @@ def dotted(location: Location, section: str = "") -> str:
         if isinstance(part, int):
             path += f"[{part}]"
         else:
-            path += f".{part}" if path else part
+            name = for_terminal(part if len(part) <= MAX_KEY else f"{part[:MAX_KEY]}…")
+            path += f".{name}" if path else name
     return path
 
 
 def _unknown_key(key: str, location: Location, root: type[BaseModel], given: object) -> Problem:
     owner = _model_at(root, location[:-1])
-    known = [] if owner is None else list(owner.model_fields)
-    name = location[-1]
-    hint = nearest(name, known)
-    if not hint:
-        homes = [path for path in _paths(root) if path.rpartition(".")[2] == name]
-        hint = f" Did you mean {homes[0]!r}?" if homes else ""
-    return Problem(key, f"is not a known key; known here: {', '.join(known)}.{hint}", given, ", ".join(known))
+    known = ", ".join([] if owner is None else owner.model_fields)
+    parent = dotted(location[:-1])
+    hint = nearest_key(str(location[-1]), parent, _paths(root))
+    return Problem(key, f"is not a known key; known here: {known}.{hint}", given, known)
 
 
 def _unknown_word(key: str, detail: ErrorDetails) -> Problem:
     allowed = str(detail.get("ctx", {}).get("expected", ""))
-    known = [word for word in allowed.split("'") if word.isalpha() and word != "or"]
-    text = f"{shown(detail['input'])} is not a known choice; allowed: {allowed}.{nearest(detail['input'], known)}"
+    hint = nearest_word(detail["input"], re.findall(r"'([^']*)'", allowed))
+    text = f"{shown(detail['input'])} is not a known choice; allowed: {allowed}.{hint}"
     return Problem(key, text, detail["input"], allowed)
 
 
@@ -139,4 +135,8 @@ def _nested(fields: Mapping[str, Any]) -> dict[str, type[BaseModel]]:
 
 
 def _paths(root: type[BaseModel]) -> list[str]:
-    return [f"{section}.{name}" for section, model in _nested(root.model_fields).items() for name in model.model_fields]
+    """Dotted paths of all tables and keys."""
+    inner = [
+        f"{section}.{name}" for section, model in _nested(root.model_fields).items() for name in model.model_fields
+    ]
+    return [*root.model_fields, *inner]

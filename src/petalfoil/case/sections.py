@@ -8,9 +8,9 @@ from typing import Annotated, ClassVar
 from pydantic import BeforeValidator, StrictBool
 
 from petalfoil.case.definition import Definition
-from petalfoil.case.fields import Count, Quantity, as_pair
+from petalfoil.case.fields import Count, Quantity, as_load, as_pair
 
-MAX_SPEED = 1e6  # rad/s, nearly ten million turns a minute: beyond any shaft
+MAX_SPEED = 1e6  # rad/s, 9.5 million rpm: beyond any shaft
 
 
 class Bearing(Definition):
@@ -28,7 +28,7 @@ class Bearing(Definition):
 
     @property
     def clearance(self) -> float:
-        """Room between bushing and a centred journal, ``R_B − R_j`` [m]."""
+        """Radial clearance of the centred journal, ``R_B − R_j`` [m]."""
         return self.bushing_radius - self.journal_radius
 
 
@@ -39,9 +39,7 @@ class Surface(Definition):
 
     contact_film_thickness: Annotated[
         float,
-        Quantity(
-            unit="m", meaning="film thickness below which surfaces touch", symbol="h_min", above=0.0, at_most=1e-2
-        ),
+        Quantity(unit="m", meaning="film thickness below which surfaces touch", symbol="h_c", above=0.0, at_most=1e-2),
     ] = 1e-6
     friction_coefficient: Annotated[
         float, Quantity(unit="1", meaning="dry friction coefficient", symbol="mu_f", at_least=0.0, at_most=5.0)
@@ -69,7 +67,10 @@ _Force = Annotated[float, Quantity(unit="N", meaning="load on the journal", symb
 
 
 class Operation(Definition):
-    """What the journal does: its speed and where it sits, or the load it bears (`x`, `y` in the bushing frame)."""
+    """What the journal does: its speed and where it sits, or the load on it (`x`, `y` in the bushing frame).
+
+    A load given as one quantity acts along -y, as a weight does.
+    """
 
     section: ClassVar[str] = "operation"
 
@@ -77,11 +78,11 @@ class Operation(Definition):
         float, Quantity(unit="rad/s", meaning="angular speed", symbol="omega", at_least=0.0, at_most=MAX_SPEED)
     ]
     eccentricity: Annotated[tuple[_Displacement, _Displacement], BeforeValidator(as_pair)] = (0.0, 0.0)
-    load: Annotated[tuple[_Force, _Force], BeforeValidator(as_pair)] | None = None
+    load: Annotated[tuple[_Force, _Force], BeforeValidator(as_load)] | None = None
 
 
 class ModelKind(StrEnum):
-    """Dimensions of the model: without (`FLAT`) or with (`SPATIAL`) the axial coordinate."""
+    """Dimensions of the model: infinitely long, without side leakage (`TWO_D`), or of finite length (`THREE_D`)."""
 
     TWO_D = "2d"
     THREE_D = "3d"

@@ -1,8 +1,9 @@
-"""TOML in and out of a case."""
+"""TOML in and out of a case, and the files that a case is read from."""
 
 from __future__ import annotations
 
 import os
+import stat
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,20 +13,42 @@ import tomli_w
 
 from petalfoil.errors import DefinitionError
 
+MAX_BYTES = 2**20
+"""Size of the largest file that is read; a case has some kilobytes, a measured shape of 10 000 rows has 300."""
+
+_AS_UTF_8 = "save it as UTF-8 (in an editor: save as, encoding UTF-8; or: iconv -f LATIN1 -t UTF-8 old > new)"
+
 
 def read_file(path: str | os.PathLike[str]) -> str:
-    """Return the text of a case file, or say why there is none."""
+    """Return the text of a case file or of a table beside it, or say why there is none."""
     try:
-        return Path(path).read_bytes().decode("utf-8-sig")  # editors on Windows put a mark in front
+        return _read_regular(Path(path)).decode("utf-8-sig")  # editors on Windows put a mark in front
     except FileNotFoundError:
         raise DefinitionError("there is no such file") from None
-    except IsADirectoryError:
-        raise DefinitionError("is a directory; a case is one TOML file") from None
     except UnicodeDecodeError as error:
-        raise DefinitionError(f"is not a text in UTF-8 (byte {error.start})") from None
+        raise DefinitionError(f"is not a text in UTF-8 ({_first_wrong(error)}): {_AS_UTF_8}") from None
     except (OSError, ValueError) as error:  # a ValueError is a path with a null character
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise DefinitionError(f"cannot be read: {reason}") from None
+
+
+def _read_regular(path: Path) -> bytes:
+    """Bytes of a file of ordinary size; devices and pipes, which may never end, are not opened."""
+    kind = path.stat().st_mode
+    if stat.S_ISDIR(kind):
+        raise DefinitionError("is a directory; expected a file")
+    if not stat.S_ISREG(kind):
+        raise DefinitionError("is a device, a pipe or a socket; expected a file")
+    with path.open("rb") as file:
+        content = file.read(MAX_BYTES + 1)
+    if len(content) > MAX_BYTES:
+        raise DefinitionError(f"has more than {MAX_BYTES // 2**20} MiB; expected a text of some kilobytes")
+    return content
+
+
+def _first_wrong(error: UnicodeDecodeError) -> str:
+    line = error.object.count(b"\n", 0, error.start) + 1
+    return f"line {line}, byte 0x{error.object[error.start]:02x}"
 
 
 def parse(text: str) -> dict[str, Any]:

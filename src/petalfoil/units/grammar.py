@@ -11,6 +11,7 @@ rounded once: 25 µm is exactly the float 2.5e-05.
 
 from __future__ import annotations
 
+import difflib
 import re
 from fractions import Fraction
 from functools import lru_cache
@@ -32,17 +33,44 @@ _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺", "0123456789-+
 _SUPERSCRIPT_RUN = re.compile(r"[⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+")
 _ANGLES = {"radian", "degree", "turn", "revolutions_per_minute", "revolutions_per_second"}
 
+_ALSO_WRITTEN = {
+    "GPA": "GPa",
+    "KRPM": "krpm",
+    "Msi": "Mpsi",
+    "RPM": "rpm",
+    "lbm": "lb",
+    "mil": "thou",  # to pint an angle, the 6400th part of a turn
+    "mils": "thou",
+    "psia": "psi",
+}
+"""Units as engineers write them, and the names under which pint knows them."""
+
+_GAUGE = {"barg", "psig"}
+"""Pressures above the ambient one: another zero, which no factor converts."""
+
+_COMMON = (
+    *("m", "mm", "um", "nm", "in", "thou", "microinch", "deg", "rad", "s", "ms", "rpm", "krpm", "rps", "Hz", "kHz"),
+    *("Pa", "kPa", "MPa", "GPa", "bar", "mbar", "atm", "psi", "ksi", "Msi", "N", "kN", "lbf", "kgf", "kg", "g", "lb"),
+    *("K", "degC", "degF", "cP", "J", "W", "min"),
+)
+"""Units that a mistyped one is compared with."""
+
 
 class UnitTextError(ValueError):
     """A unit that cannot be read or converted; the message completes "… <value> …"."""
 
 
-def convert(number: Fraction, text: str, unit: str) -> float:
-    """Convert `number` times the unit written in `text` to the SI unit `unit` (``"1"`` for a plain number)."""
+def convert(number: Fraction, text: str, unit: str, *, whirl: bool = False) -> float:
+    """Convert `number` times the unit written in `text` to the SI unit `unit` (``"1"`` for a plain number).
+
+    Of a `whirl` frequency [rad/s] a hertz is one whirl orbit a second, 2 pi rad/s; for a speed it is refused.
+    """
     import pint
 
     given = _Reader(text).read()
-    _refuse_lookalikes(given, unit)
+    if whirl and "hertz" in _base_names(given):
+        given = given * _registry().Unit("turn")
+    _refuse_lookalikes(number, given, unit)
     try:
         return float(_registry().Quantity(number, given).to("" if unit == "1" else unit).magnitude)
     except pint.DimensionalityError:
@@ -51,17 +79,25 @@ def convert(number: Fraction, text: str, unit: str) -> float:
         raise UnitTextError("cannot be converted") from None
 
 
-def _refuse_lookalikes(given: Any, unit: str) -> None:
+def _refuse_lookalikes(number: Fraction, given: Any, unit: str) -> None:
     """Refuse units that pint takes for the wanted one although a reader may mean another.
 
     To pint ``"1000 Hz"`` is 1000 rad/s, where most people mean a thousand turns a second, and ``"30 deg"`` is a plain
     number.
     """
-    names = {name for name, _ in _registry().Quantity(1, given).unit_items()}
+    names = _base_names(given)
     if unit == "rad/s" and given.dimensionality == {"[time]": -1} and names != {"second"} and not names & _ANGLES:
-        raise UnitTextError("is ambiguous: say rpm or rad/s")
+        cycles = float(_registry().Quantity(number, given).to("1/s").magnitude)
+        turns, radians = f"{60.0 * cycles:.6g} rpm", f"{cycles:.6g} rad/s"
+        raise UnitTextError(f"is ambiguous: for turns write '{turns}', for radians '{radians}'")
     if unit == "1" and names & _ANGLES:
         raise UnitTextError("is an angle")
+
+
+def _base_names(given: Any) -> set[str]:
+    """Names of the units in `given` without their prefixes: ``{"hertz"}`` of kHz."""
+    names = (name for name, _ in _registry().Quantity(1, given).unit_items())
+    return {_registry().parse_unit_name(name)[0][1] for name in names}
 
 
 def _dimension(given: Any) -> str:
@@ -158,7 +194,16 @@ def _tokens(text: str) -> list[tuple[str, str]]:
 def _named(name: str) -> Any:
     import pint
 
+    if name in _GAUGE:
+        raise UnitTextError(f"is a gauge pressure ({name}): write the absolute one")
     try:
-        return _registry().Unit(name)
+        return _registry().Unit(_ALSO_WRITTEN.get(name, name))
     except (pint.PintError, ValueError):
-        raise UnitTextError(f"has the unknown unit {name!r}") from None
+        raise UnitTextError(f"has the unknown unit {name!r}{_nearest(name)}") from None
+
+
+def _nearest(name: str) -> str:
+    """Return " (did you mean 'GPa'?)" for the common unit closest to `name`, upper and lower case alike, or nothing."""
+    lower = {unit.lower(): unit for unit in _COMMON}
+    matches = difflib.get_close_matches(name.lower(), lower, n=1)
+    return f" (did you mean {lower[matches[0]]!r}?)" if matches else ""

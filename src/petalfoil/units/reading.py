@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from fractions import Fraction
+from itertools import pairwise
 from numbers import Real
 
 from petalfoil.errors import UnitError, UsageError
@@ -16,6 +17,8 @@ MAX_POINTS = 10_000  # more points than this in one range is a slip of the pen
 # At most three digits of exponent: a number is also read as an exact fraction, whose length grows with the exponent.
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3}(?![0-9]))?")
 
+_DECIMAL_COMMA = re.compile(r"[+-]?[0-9]+,[0-9]")
+
 # What each SI unit measures, with an example to follow.
 _MEASURES = {
     "1": ("a plain number", "0.3"),
@@ -25,6 +28,7 @@ _MEASURES = {
     "Pa": ("a pressure or an elastic modulus", "1 bar"),
     "Pa*s": ("a dynamic viscosity", "18.5 uPa*s"),
     "kg": ("a mass", "2 kg"),
+    "kg*m^2": ("a moment of inertia", "0.01 kg m^2"),
     "m": ("a length", "25 um"),
     "rad": ("an angle", "45 deg"),
     "rad/s": ("an angular speed", "60000 rpm"),
@@ -32,7 +36,7 @@ _MEASURES = {
 }
 
 
-def parse_quantity(value: object, unit: str) -> float:
+def parse_quantity(value: object, unit: str, *, whirl: bool = False) -> float:
     """Read a number or a text as a float in an SI unit.
 
     Parameters
@@ -41,6 +45,9 @@ def parse_quantity(value: object, unit: str) -> float:
         A bare number (or a text of a number alone) is already in `unit`; a text may carry any unit of the same kind.
     unit : str
         SI unit to return, such as ``"m"`` or ``"rad/s"``; ``"1"`` for a plain number.
+    whirl : bool
+        The quantity is a whirl frequency [rad/s], whose usual unit is Hz: one orbit a second, 2 pi rad/s. For a speed
+        Hz is refused, since it may mean turns or radians a second.
 
     Returns
     -------
@@ -58,7 +65,7 @@ def parse_quantity(value: object, unit: str) -> float:
     2.5e-05
     """
     try:
-        number = _read(value, unit)
+        number = _read(value, unit, whirl)
     except UnitTextError as error:
         raise _unit_error(value, unit, str(error)) from None
     except OverflowError:
@@ -68,16 +75,21 @@ def parse_quantity(value: object, unit: str) -> float:
     return number
 
 
+def is_bare(value: object) -> bool:
+    """Whether `value` is a number without a unit, which is read as SI."""
+    return not isinstance(value, str) or _NUMBER.fullmatch(_plain(value)) is not None
+
+
 def parse_pair(text: str, unit: str) -> tuple[float, float]:
     """Read two quantities separated by a comma, such as ``"0 um, -100 um"``, as floats [`unit`]."""
-    parts = text.split(",")
+    parts = _split(text, unit)
     if len(parts) != 2:
         _, example = _measure(unit)
         raise UsageError(f"{shown(text)} is not a pair of quantities; write two, such as '{example}, {example}'")
     return parse_quantity(parts[0], unit), parse_quantity(parts[1], unit)
 
 
-def parse_range(text: str, unit: str) -> list[float]:
+def parse_range(text: str, unit: str, *, whirl: bool = False) -> list[float]:
     """Read a range or a list of quantities as floats [`unit`].
 
     Parameters
@@ -86,6 +98,8 @@ def parse_range(text: str, unit: str) -> list[float]:
         ``"0 um : 280 um : 15"`` (start, stop, count; both ends included), ``"0 um, 50 um"`` or a single quantity.
     unit : str
         SI unit to return.
+    whirl : bool
+        The quantities are whirl frequencies: see `parse_quantity`.
 
     Raises
     ------
@@ -95,11 +109,11 @@ def parse_range(text: str, unit: str) -> list[float]:
         One of the quantities cannot be read.
     """
     if ":" not in text:
-        return [parse_quantity(part, unit) for part in text.split(",")]
+        return [parse_quantity(part, unit, whirl=whirl) for part in _split(text, unit)]
     parts = text.split(":")
     if len(parts) != 3:
         raise UsageError(f"{shown(text)} is not a range; write start : stop : count, such as '0 um : 280 um : 15'")
-    start, stop = parse_quantity(parts[0], unit), parse_quantity(parts[1], unit)
+    start, stop = (parse_quantity(part, unit, whirl=whirl) for part in parts[:2])
     count = _count(parts[2].strip(), text)
     return [start + (stop - start) * i / (count - 1) for i in range(count - 1)] + [stop]
 
@@ -113,21 +127,40 @@ def shown(value: object, limit: int = 60) -> str:
     return text if len(text) <= limit + 3 else text[:limit] + "…"
 
 
-def _read(value: object, unit: str) -> float:
+def _read(value: object, unit: str, whirl: bool) -> float:
     if isinstance(value, bool) or not isinstance(value, str | Real):
         raise UnitTextError("is not a number, nor a text with a unit")
-    return _read_text(value, unit) if isinstance(value, str) else float(value)
+    return _read_text(value, unit, whirl) if isinstance(value, str) else float(value)
 
 
-def _read_text(text: str, unit: str) -> float:
-    plain = text.strip().replace("−", "-")  # the minus sign of typeset texts
+def _read_text(text: str, unit: str, whirl: bool) -> float:
+    plain = _plain(text)
     if len(plain) > MAX_TEXT:
         raise UnitTextError("is too long for a quantity")
+    if _DECIMAL_COMMA.match(plain):
+        raise UnitTextError(f"has a decimal comma: write a decimal point, '{plain.replace(',', '.', 1)}'")
     number = _NUMBER.match(plain)
     if number is None:
         raise UnitTextError("does not begin with a number")
     rest = plain[number.end() :].strip()
-    return convert(Fraction(number.group()), rest, unit) if rest else float(number.group())
+    return convert(Fraction(number.group()), rest, unit, whirl=whirl) if rest else float(number.group())
+
+
+def _plain(text: str) -> str:
+    return text.strip().replace("−", "-")  # the minus sign of typeset texts
+
+
+def _split(text: str, unit: str) -> list[str]:
+    """Parts of a list at its commas; ``"0,1 mm"`` is refused: a list of 0 and 1 mm, or a decimal comma."""
+    parts = text.split(",")
+    for before, after in pairwise(parts):
+        if _DECIMAL_COMMA.match(f"{before},{after}".strip()) and not is_bare(after):
+            (_, example), number = _measure(unit), f"{before}.{after}".strip()
+            raise UsageError(
+                f"{shown(text)} may have a decimal comma: write a decimal point, '{number}', "
+                f"or in a list a unit with each quantity, such as '{example}, {example}'"
+            )
+    return parts
 
 
 def _count(text: str, whole: str) -> int:

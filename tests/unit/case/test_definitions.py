@@ -101,6 +101,11 @@ def test_an_odd_grid_only_without_symmetry() -> None:
     assert case("paper_n8", **odd).axial_cells == 9
 
 
+@pytest.mark.parametrize("load", ["10 N", 10, 10.0, [0, "-10 N"], ("0 N", -10), np.array([0.0, -10.0])])
+def test_a_load_of_one_quantity_acts_downward(load: object) -> None:
+    assert case("paper_n8", **{"operation.load": load}).operation.load == (0.0, -10.0)
+
+
 def test_the_gas_has_a_density() -> None:
     assert case("paper_n8").gas.ambient_density == pytest.approx(1e5 / (287.05 * 293.15), rel=1e-14)
 
@@ -142,7 +147,7 @@ def test_all_problems_of_all_sections_in_one_message() -> None:
 
 
 def test_a_section_made_alone_names_its_table() -> None:
-    with pytest.raises(DefinitionError, match=r"^bearing\.length: -1\.0 is outside its range"):
+    with pytest.raises(DefinitionError, match=r"^bearing\.length: -1\.0 \(a bare number is read in m\) is outside"):
         Bearing(journal_radius=1.0, bushing_radius=1.1, length=-1.0)
 
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from petalfoil.errors import PetalfoilError, UnitError, UsageError
 from petalfoil.units import parse_pair, parse_quantity, parse_range
-from petalfoil.units.reading import shown
+from petalfoil.units.reading import is_bare, shown
 
 
 @pytest.mark.parametrize(
@@ -41,6 +41,10 @@ from petalfoil.units.reading import shown
         ("287.05 J/kg/K", "J/(kg*K)", 287.05),
         ("1 kgf", "N", 9.80665),
         ("5 %", "1", 0.05),
+        ("20 mil", "m", 20 * 2.54e-5),
+        ("2 mils", "m", 5.08e-5),
+        ("2 lbm", "kg", 0.90718474),
+        ("200 GPA", "Pa", 2e11),
         ("0.3", "1", 0.3),
     ],
 )
@@ -51,6 +55,28 @@ def test_a_text_becomes_the_float_nearest_to_it(text: str, unit: str, expected: 
 @pytest.mark.parametrize("text", ["60000 rpm", "60000 rev/min", "1000 rps", "1000 turn/s", "360000 deg/s"])
 def test_turns_are_two_pi(text: str) -> None:
     assert parse_quantity(text, "rad/s") == pytest.approx(60000 * 2 * math.pi / 60, rel=1e-15)
+
+
+@pytest.mark.parametrize("text", ["30 krpm", "30 KRPM", "30000 RPM", "500 rps"])
+def test_speeds_as_engineers_write_them(text: str) -> None:
+    assert parse_quantity(text, "rad/s") == pytest.approx(1000.0 * math.pi, rel=1e-15)
+
+
+@pytest.mark.parametrize(("text", "psi"), [("14.7 psia", 14.7), ("3 ksi", 3e3), ("30 Msi", 30e6), ("2 kpsi", 2e3)])
+def test_pounds_per_square_inch(text: str, psi: float) -> None:
+    assert parse_quantity(text, "Pa") == pytest.approx(psi * 0.45359237 * 9.80665 / 0.0254**2, rel=1e-14)
+
+
+@pytest.mark.parametrize("text", ["100 Hz", "0.1 kHz", "6000 rpm", "100 rps", "628.3185307179587 rad/s"])
+def test_whirl_frequencies_are_read_in_hertz_too(text: str) -> None:
+    assert parse_quantity(text, "rad/s", whirl=True) == pytest.approx(200.0 * math.pi, rel=1e-15)
+    assert parse_range(f"{text}, {text}", "rad/s", whirl=True) == [parse_quantity(text, "rad/s", whirl=True)] * 2
+    assert parse_range(f"0 : {text} : 3", "rad/s", whirl=True)[1] == pytest.approx(100.0 * math.pi, rel=1e-15)
+
+
+def test_what_has_no_unit_is_bare() -> None:
+    assert all(is_bare(value) for value in (5, "5", " −1e-3 "))
+    assert not any(is_bare(value) for value in ("5 mm", "5 %", "five"))
 
 
 def test_angles() -> None:
@@ -91,8 +117,13 @@ def test_no_quantity_at_all(value: object) -> None:
         ("25 m^2", "m", "measures something else (length^2)"),
         ("1 degC/m", "K", "something else"),
         ("3 dB", "m", "something else"),
-        ("1 Hz", "rad/s", "ambiguous: say rpm or rad/s"),
-        ("60 1/min", "rad/s", "ambiguous: say rpm or rad/s"),
+        ("100 Hz", "rad/s", "ambiguous: for turns write '6000 rpm', for radians '100 rad/s'"),
+        ("1.5 kHz", "rad/s", "ambiguous: for turns write '90000 rpm', for radians '1500 rad/s'"),
+        ("60 1/min", "rad/s", "ambiguous: for turns write '60 rpm', for radians '1 rad/s'"),
+        ("200 gpa", "Pa", "unknown unit 'gpa' (did you mean 'GPa'?)"),
+        ("30 KRpm", "rad/s", "unknown unit 'KRpm' (did you mean 'krpm'?)"),
+        ("2 psig", "Pa", "is a gauge pressure (psig): write the absolute one"),
+        ("1 mil", "rad", "measures something else (length)"),
         ("30 deg", "1", "is an angle"),
         ("1 m/", "m", "lacks a unit at its end"),
         ("1 (m", "m", "a bracket that is not closed"),
@@ -101,7 +132,8 @@ def test_no_quantity_at_all(value: object) -> None:
         ("1 m^99", "m", "the power '99'"),
         ("9**9**9**9 m", "m", "'**'"),
         ("25 um + 3 um", "m", "'+'"),
-        ("1,5 mm", "m", "','"),
+        ("1,5 mm", "m", "has a decimal comma: write a decimal point, '1.5 mm'"),
+        ("-0,1 mm", "m", "write a decimal point, '-0.1 mm'"),
         ("1 __import__('os').abort()", "m", "'_'"),
         ("1 " + "m " * 100, "m", "too long"),
     ],
@@ -142,6 +174,20 @@ def test_numbers_survive_as_text(value: float) -> None:
 def test_a_pair() -> None:
     assert parse_pair("0 um, -100 um", "m") == (0.0, -1e-4)
     assert parse_pair("1e-6,2e-6", "m") == (1e-6, 2e-6)
+
+
+@pytest.mark.parametrize("text", ["0,1 mm", "-0,1mm", "1 um,5,2 um"])
+def test_a_decimal_comma_is_no_list(text: str) -> None:
+    """`0,1 mm` would be the pair of 0 m and 1 mm, ten times as far as was meant."""
+    for parse in (parse_pair, parse_range):
+        with pytest.raises(UsageError, match="may have a decimal comma: write a decimal point, '"):
+            parse(text, "m")
+
+
+def test_a_list_without_blanks_is_a_list() -> None:
+    assert parse_pair("1 um,2 um", "m") == (1e-6, 2e-6)
+    assert parse_pair("0,-1 mm", "m") == (0.0, -1e-3)
+    assert parse_pair("0, 1 mm", "m") == (0.0, 1e-3)
 
 
 @pytest.mark.parametrize("text", ["", "1 um", "1 um, 2 um, 3 um"])
