@@ -172,7 +172,7 @@ MALFORMED: dict[str, tuple[str, str, Any, type[DefinitionError], tuple[str, ...]
     ),
     "slip by a word": (PETALS, "model.slip", "yes", DefinitionError, ("model.slip", "true or false")),
     # measured free shapes
-    "two rows": (PETALS, "petals.free_shape", [[0, 0.0259], [2, 0.0259]], DefinitionError, ("free_shape", "3 rows")),
+    "two rows": (PETALS, "petals.free_shape", [[0, 0.0259], [2, 0.0259]], DefinitionError, ("has 2 rows", "3 to 10")),
     "rows of three": (PETALS, "petals.free_shape", [[0, 1, 2]] * 3, DefinitionError, ("free_shape", "[angle, radius]")),
     "rows in metres": (
         PETALS, "petals.free_shape", [[0, 1], ["1 m", 1], [2, 1]], UnitError, ("free_shape[1][0]", "an angle"),
@@ -184,7 +184,7 @@ MALFORMED: dict[str, tuple[str, str, Any, type[DefinitionError], tuple[str, ...]
         PETALS, "petals.free_shape", [[0.5, 0.0259], [1, 0.024], [2, 0.0259]], DefinitionError, ("begins at 0.5 rad",),
     ),
     "rows that end early": (
-        PETALS, "petals.free_shape", [[0, 0.0259], [0.7, 0.024], [1.4, 0.0259]], PackageError, ("0.3366 rad short",),
+        PETALS, "petals.free_shape", [[0, 0.0259], [0.7, 0.024], [1.4, 0.0259]], PackageError, ("19.288459° short",),
     ),
     "a root outside the bore": (
         PETALS, "petals.free_shape", [[0, 0.027], [1, 0.024], [2, 0.0259]], PackageError, ("the root", "25.912 mm"),

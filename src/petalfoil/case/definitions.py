@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any, Self
 
 from pydantic import Field, model_validator
@@ -62,9 +63,9 @@ class Case(Definition):
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
-        """Read a case from a TOML file."""
+        """Read a case from a TOML file; the name of a CSV file in it counts from the folder of the case."""
         try:
-            return cls.from_toml(toml.read_file(path))
+            return cls(**_from_folder(toml.parse(toml.read_file(path)), Path(path).parent))
         except DefinitionError as error:
             message = f"{for_terminal(str(path))}: {error}"
             raise type(error)(message, key=error.key, given=error.given, allowed=error.allowed) from None
@@ -184,6 +185,14 @@ class Case(Definition):
                 f"{cells} cells cannot be halved at the plane of symmetry; allowed: an even number, or symmetry = false"
             )
             yield Problem("model.axial_cells", text, cells, "an even number")
+
+
+def _from_folder(data: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Put `folder` in front of the file that holds a measured free shape."""
+    petals = data.get("petals")
+    if isinstance(petals, dict) and isinstance(petals.get("free_shape"), str):
+        return {**data, "petals": {**petals, "free_shape": str(folder / petals["free_shape"])}}
+    return data
 
 
 def _entries(section: object) -> dict[str, object]:

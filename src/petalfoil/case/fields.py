@@ -157,7 +157,7 @@ class Count(Range):
 def as_pair(value: object) -> object:
     """Let only sequences of two entries through: the components along x and y."""
     allowed = "two quantities, [x, y]"
-    entries = _as_sequence(value)
+    entries = as_sequence(value)
     if entries is None or len(entries) != 2:
         raise refuse(VALUE_PROBLEM, f"{shown(value)} is not {allowed}", allowed)
     return tuple(entries)
@@ -165,7 +165,7 @@ def as_pair(value: object) -> object:
 
 def as_load(value: object) -> object:
     """Let pairs through, and make a single quantity a load along -y: ``"10 N"`` becomes (0, -10) N."""
-    if _as_sequence(value) is not None:
+    if as_sequence(value) is not None:
         return as_pair(value)
     try:
         return 0.0, -parse_quantity(value, "N")
@@ -174,16 +174,7 @@ def as_load(value: object) -> object:
         raise refuse(UNIT_PROBLEM, str(error), allowed) from None
 
 
-def as_table(value: object) -> object:
-    """Let only sequences of pairs through: rows of a table with two columns."""
-    allowed = "a list of rows, each [angle, radius]"
-    rows = _as_sequence(value)
-    pairs = None if rows is None else [_as_sequence(row) for row in rows]
-    if pairs is None or any(pair is None or len(pair) != 2 for pair in pairs):
-        raise refuse(VALUE_PROBLEM, f"{shown(value)} is not {allowed}", allowed)
-    return tuple(tuple(pair) for pair in pairs if pair is not None)
-
-
-def _as_sequence(value: object) -> Sequence[object] | None:
+def as_sequence(value: object) -> Sequence[object] | None:
+    """Entries of a list, a tuple or an array; None for anything else."""
     listed = value.tolist() if hasattr(value, "tolist") else value  # NumPy arrays
     return listed if isinstance(listed, list | tuple) else None

@@ -7,13 +7,12 @@ the x-axis, its centre and radius are (G3)::
     r0(φ) = c + sqrt(c² − |C|² + R_p²),     c = C·(cos φ, sin φ)
 
 with `r_m` the metric radius, `R_p` the bend radius and `ψ` the root tilt, turned inward from the tangent of the bore.
-A measured free shape is a table instead, interpolated monotonically (PCHIP).
+A measured free shape is a table instead: `measured_shape`.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -76,23 +75,6 @@ def arc_reach(*, metric_radius: float, bend_radius: float, tilt: float) -> float
     if distance < bend_radius:
         return math.inf
     return math.atan2(y, x) + math.asin(bend_radius / distance)
-
-
-def table_radius(phi: ArrayLike, table: Sequence[tuple[float, float]]) -> FloatArray:
-    """Return the mid-surface radius of a measured free shape [m].
-
-    Parameters
-    ----------
-    phi : array_like
-        Angles from the root [rad]; beyond the table's ends its end radii hold.
-    table : sequence of (float, float)
-        Rows of angle [rad] and radius [m], the angles growing.
-    """
-    from scipy.interpolate import PchipInterpolator  # 0.3 s: only for those who measured
-
-    angles, radii = np.asarray(table, dtype=np.float64).T
-    angle = np.clip(np.asarray(phi, dtype=np.float64), angles[0], angles[-1])
-    return np.asarray(PchipInterpolator(angles, radii)(angle), dtype=np.float64)
 
 
 def _centre(metric_radius: float, bend_radius: float, tilt: float) -> tuple[float, float]:

@@ -18,7 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from petalfoil.case.free_shape import arc_radius, arc_reach, chordal_tilt, table_radius
+from petalfoil.case.free_shape import arc_radius, arc_reach, chordal_tilt
+from petalfoil.case.measured_shape import EDGE_TOLERANCE, Table, fitted_bend_radius, measured_radius
 from petalfoil.case.petals import Petals
 from petalfoil.case.problems import Problem
 from petalfoil.case.sections import Bearing, Operation, Surface
@@ -26,6 +27,8 @@ from petalfoil.units import format_quantity
 
 MAX_ARC_ANGLE = 2.4  # rad; beyond it an arc is no longer a shallow shell (model of the free shape)
 ROOT_TOLERANCE = 1e-9  # m; a measured root may lie outside the bore by rounding only
+ROOT_SCATTER = 3.0  # standard deviations by which a measured root may lie outside the bore
+BEND_TOLERANCE = 0.05  # by which a stated bend radius may miss the measured shape's: what production scatters by
 FLUSH = 1e-9  # pitches; an overlap this close below a whole number is that number, rounded
 
 
@@ -41,10 +44,13 @@ class Package:
     petal_angle: float
     """`φ1` [rad]."""
     bend_radius: float
-    """`R_p` [m]."""
+    """`R_p` [m]; of a measured free shape that of the circle which fits it best."""
     root_tilt: float
     """`ψ` [rad]; nan where a measured table gives the free shape."""
-    table: tuple[tuple[float, float], ...] | None = None
+    table: Table | None = None
+    """Measured free shape, rows of angle [rad] and radius [m]."""
+    table_tolerance: float = 0.0
+    """Standard deviation of its radii [m]."""
 
     @property
     def pitch(self) -> float:
@@ -69,7 +75,7 @@ class Package:
     def free_radius(self, phi: ArrayLike) -> NDArray[np.float64]:
         """Return the radius of the free mid-surface, `r0` [m], at angles `phi` from the root [rad]."""
         if self.table is not None:
-            return table_radius(phi, self.table)
+            return measured_radius(phi, self.table, self.table_tolerance)
         return arc_radius(phi, metric_radius=self.metric_radius, bend_radius=self.bend_radius, tilt=self.root_tilt)
 
 
@@ -85,10 +91,17 @@ def package_of(bearing: Bearing, petals: Petals) -> Package:
         thickness=petals.total_thickness,
         metric_radius=metric_radius,
         petal_angle=petal_angle,
-        bend_radius=petals.bend_radius,
+        bend_radius=_bend_radius(petals),
         root_tilt=_tilt(petals, metric_radius, petal_angle),
         table=petals.free_shape,
+        table_tolerance=petals.free_shape_tolerance,
     )
+
+
+def _bend_radius(petals: Petals) -> float:
+    if petals.free_shape is not None:
+        return fitted_bend_radius(petals.free_shape)
+    return math.nan if petals.bend_radius is None else petals.bend_radius  # nan never: `Petals` refuses it
 
 
 def _tilt(petals: Petals, metric_radius: float, petal_angle: float) -> float:
@@ -96,9 +109,10 @@ def _tilt(petals: Petals, metric_radius: float, petal_angle: float) -> float:
         return math.nan
     if petals.root_tilt != "chordal":
         return petals.root_tilt
-    if petals.bend_radius < metric_radius or petal_angle > MAX_ARC_ANGLE:
+    bend_radius = _bend_radius(petals)
+    if bend_radius < metric_radius or petal_angle > MAX_ARC_ANGLE:
         return math.nan
-    return chordal_tilt(metric_radius, petals.bend_radius, petal_angle)
+    return chordal_tilt(metric_radius, bend_radius, petal_angle)
 
 
 def bearing_problems(bearing: Bearing, surface: Surface, operation: Operation) -> Iterator[Problem]:
@@ -118,7 +132,7 @@ def bearing_problems(bearing: Bearing, surface: Surface, operation: Operation) -
         yield Problem(
             "operation.eccentricity",
             f"the journal displaced by {_m(eccentricity)} touches the bushing by {_m(eccentricity - room)}; allowed: "
-            f"less than clearance less film floor, {_m(room)}",
+            f"less than the radial clearance less the contact film thickness, {_m(room)}",
             operation.eccentricity,
             f"less than {room:g} m",
         )
@@ -173,8 +187,8 @@ def _room_problems(package: Package, bearing: Bearing, surface: Surface, operati
     where = f", the clearance {_m(bearing.clearance)} less the eccentricity {_m(eccentricity)}," if eccentricity else ""
     yield Problem(
         "operation.eccentricity" if displaced else "petals",
-        f"the package does not fit: {package.layers} layers of {_m(package.thickness)} and the film floor "
-        f"{_m(surface.contact_film_thickness)} need {_m(need)}, "
+        f"the foil pack does not fit: {package.layers} layers of {_m(package.thickness)} and the contact film "
+        f"thickness {_m(surface.contact_film_thickness)} need {_m(need)}, "
         f"the radial clearance between journal and bushing{where} is {_m(room)}: "
         f"{_m(need - room)} too much",
         operation.eccentricity if displaced else package.thickness,
@@ -184,7 +198,8 @@ def _room_problems(package: Package, bearing: Bearing, surface: Surface, operati
 
 def _shape_problems(package: Package, bearing: Bearing, petals: Petals) -> Iterator[Problem]:
     if petals.free_shape is not None:
-        yield from _table_problems(package, bearing, petals.free_shape)
+        found = list(_table_problems(package, bearing, petals.free_shape))
+        yield from found or _twice_given(package, petals)
     elif package.petal_angle > MAX_ARC_ANGLE:
         longest = MAX_ARC_ANGLE * package.metric_radius
         yield Problem(
@@ -202,8 +217,8 @@ def _arc_problems(package: Package, petals: Petals) -> Iterator[Problem]:
     if math.isnan(package.root_tilt):
         yield Problem(
             "petals.bend_radius",
-            f"a chordal petal bent to {_m(petals.bend_radius)} would lie outside the bore; allowed: at least the "
-            f"metric radius, {_m(package.metric_radius)} ({_m(package.metric_radius - petals.bend_radius)} more), "
+            f"a chordal petal bent to {_m(package.bend_radius)} would lie outside the bore; allowed: at least the "
+            f"metric radius, {_m(package.metric_radius)} ({_m(package.metric_radius - package.bend_radius)} more), "
             "or another petals.root_tilt",
             petals.bend_radius,
             f"at least {package.metric_radius:g} m",
@@ -213,7 +228,7 @@ def _arc_problems(package: Package, petals: Petals) -> Iterator[Problem]:
     if reach <= package.petal_angle:
         yield Problem(
             "petals.root_tilt",
-            f"an arc bent to {_m(petals.bend_radius)} with a root tilt of {package.root_tilt:.4g} rad turns back at "
+            f"an arc bent to {_m(package.bend_radius)} with a root tilt of {package.root_tilt:.4g} rad turns back at "
             f"{reach:.4g} rad and does not reach the free edge at {package.petal_angle:.4g} rad "
             f"({package.petal_angle - reach:.4g} rad short)",
             petals.root_tilt,
@@ -221,25 +236,50 @@ def _arc_problems(package: Package, petals: Petals) -> Iterator[Problem]:
         )
 
 
-def _table_problems(package: Package, bearing: Bearing, table: tuple[tuple[float, float], ...]) -> Iterator[Problem]:
+def _table_problems(package: Package, bearing: Bearing, table: Table) -> Iterator[Problem]:
     last, root = table[-1][0], table[0][1]
-    if last < package.petal_angle:
+    if last < package.petal_angle - EDGE_TOLERANCE:
         yield Problem(
             "petals.free_shape",
-            f"the table ends at {last:.6g} rad, {package.petal_angle - last:.4g} rad short of the free edge at "
-            f"{package.petal_angle:.6g} rad",
+            f"the table ends at {_deg(last)}, {_deg(package.petal_angle - last)} short of the free edge at "
+            f"{_deg(package.petal_angle)}",
             last,
-            f"a last angle of at least {package.petal_angle:.6g} rad",
+            f"a last angle of at least {package.petal_angle:.8g} rad",
         )
     lowest = bearing.journal_radius + package.thickness / 2.0
-    if not lowest <= root <= package.metric_radius + ROOT_TOLERANCE:
+    outermost = package.metric_radius + max(ROOT_TOLERANCE, ROOT_SCATTER * package.table_tolerance)
+    if not lowest <= root <= outermost:
         yield Problem(
             "petals.free_shape",
             f"the root, which cannot move, is at the radius {_m(root)}; allowed: from {_m(lowest)} (journal) to "
-            f"{_m(package.metric_radius)} (bore)",
+            f"{_m(outermost)} (bore)",
             root,
-            f"a first radius from {lowest:g} m to {package.metric_radius:g} m",
+            f"a first radius from {lowest:g} m to {outermost:g} m",
         )
+
+
+def _twice_given(package: Package, petals: Petals) -> Iterator[Problem]:
+    """Yield what contradicts a measured free shape."""
+    given, measured = petals.bend_radius, package.bend_radius
+    if given is not None and abs(given / measured - 1.0) > BEND_TOLERANCE:
+        yield Problem(
+            "petals.bend_radius",
+            f"{_m(given)} contradicts the measured petals.free_shape, whose best circle has the radius {_m(measured)}; "
+            f"allowed: within {100.0 * BEND_TOLERANCE:g} % of it, or no bend_radius",
+            given,
+            f"{measured:g} m",
+        )
+    if petals.root_tilt != "chordal":
+        yield Problem(
+            "petals.root_tilt",
+            "is given beside a measured petals.free_shape, which has its own; allowed: one of the two",
+            petals.root_tilt,
+            "a root tilt or a measured free shape",
+        )
+
+
+def _deg(angle: float) -> str:
+    return format_quantity(angle, "rad", digits=8)
 
 
 def _m(length: float) -> str:

@@ -1,4 +1,4 @@
-"""The petals of a package: number, size, material, mount, free shape."""
+"""The petals of a foil pack: number, size, material, mount, free shape."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ from enum import StrEnum
 from itertools import pairwise
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import BeforeValidator, field_validator
+from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
-from petalfoil.case.fields import VALUE_PROBLEM, Count, Quantity, QuantityOrWord, as_table, refuse
+from petalfoil.case.fields import VALUE_PROBLEM, Count, Quantity, QuantityOrWord, refuse
+from petalfoil.case.shape_file import as_shape
 from petalfoil.case.wall_tables import WallTable
 
 MIN_ROWS = 3  # of a measured free shape: fewer say nothing of a curvature
+MAX_ROWS = 10_000  # more than a coordinate measuring machine takes of a petal, and read in a second or two
 
 
 class Mount(StrEnum):
@@ -29,7 +31,11 @@ _Radius = Annotated[
 
 
 class Petals(WallTable):
-    """A package of equal petals (leaves); absent in a plain bearing."""
+    """A foil pack of equal petals (leaves); absent in a plain bearing.
+
+    The free shape is an arc of `bend_radius` at `root_tilt`, or measured: `free_shape` gives rows [angle, radius], in
+    the case itself or as the name of a CSV file. The bend radius then follows from the rows.
+    """
 
     section: ClassVar[str] = "petals"
 
@@ -41,9 +47,20 @@ class Petals(WallTable):
     coating: Annotated[
         float, Quantity(unit="m", meaning="coating thickness", symbol="delta_c", at_least=0.0, at_most=0.1)
     ] = 0.0
-    bend_radius: Annotated[
-        float, Quantity(unit="m", meaning="bend radius of the free petal", symbol="R_p", above=0.0, at_most=1e4)
-    ]
+    free_shape: Annotated[tuple[tuple[_Angle, _Radius], ...], BeforeValidator(as_shape)] | None = None
+    free_shape_tolerance: Annotated[
+        float,
+        Quantity(
+            unit="m", meaning="standard deviation of a measured radius", symbol="sigma_r", at_least=0.0, at_most=1e-3
+        ),
+    ] = 0.0
+    # after free_shape, which makes it needless
+    bend_radius: (
+        Annotated[
+            float, Quantity(unit="m", meaning="bend radius of the free petal", symbol="R_p", above=0.0, at_most=1e4)
+        ]
+        | None
+    ) = Field(default=None, validate_default=True)
     root_tilt: Annotated[
         float | Literal["chordal"],
         QuantityOrWord(
@@ -59,7 +76,10 @@ class Petals(WallTable):
         float,
         Quantity(unit="rad", meaning="angle of the first root", symbol="theta_ref", at_least=-6.3, at_most=6.3),
     ] = 0.0
-    free_shape: Annotated[tuple[tuple[_Angle, _Radius], ...], BeforeValidator(as_table)] | None = None
+    yield_strength: (
+        Annotated[float, Quantity(unit="Pa", meaning="yield strength", symbol="sigma_y", above=0.0, at_most=1e11)]
+        | None
+    ) = None
 
     @property
     def total_thickness(self) -> float:
@@ -81,11 +101,20 @@ class Petals(WallTable):
     def _is_a_curve(cls, rows: tuple[tuple[float, float], ...] | None) -> tuple[tuple[float, float], ...] | None:
         if rows is None:
             return rows
-        allowed = f"at least {MIN_ROWS} rows [angle, radius], the first at angle 0, the angles growing"
-        if len(rows) < MIN_ROWS:
+        allowed = f"{MIN_ROWS} to {MAX_ROWS} rows [angle, radius], the first at angle 0, the angles growing"
+        if not MIN_ROWS <= len(rows) <= MAX_ROWS:
             raise refuse(VALUE_PROBLEM, f"has {len(rows)} rows; allowed: {allowed}", allowed)
         if rows[0][0] != 0.0:
             raise refuse(VALUE_PROBLEM, f"begins at {rows[0][0]:g} rad; allowed: {allowed}", allowed)
         if any(after <= before for (before, _), (after, _) in pairwise(rows)):
             raise refuse(VALUE_PROBLEM, f"its angles do not grow from row to row; allowed: {allowed}", allowed)
         return rows
+
+    @field_validator("bend_radius")
+    @classmethod
+    def _is_given_once(cls, radius: float | None, info: ValidationInfo) -> float | None:
+        """Refuse a petal without any free shape; where the measured one is refused itself, nothing more is said."""
+        if radius is None and info.data.get("free_shape", ()) is None:
+            allowed = "bend radius of the free petal [m], or a measured petals.free_shape"
+            raise refuse(VALUE_PROBLEM, f"is missing; expected {allowed}", allowed)
+        return radius

@@ -49,7 +49,7 @@ def build_shell(case: Case, mesh: PackMesh) -> PetalShell:
         phi=mesh.phi,
         axial=mesh.axial,
         metric_radius=package.metric_radius,
-        bend_radius=petals.bend_radius,
+        bend_radius=package.bend_radius,
         rigidity=petals.bending_stiffness,
         poisson_ratio=petals.poisson_ratio,
         clamped=petals.mount is Mount.CLAMPED,

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from petalfoil.case.free_shape import arc_radius, arc_reach, chordal_tilt, table_radius
+from petalfoil.case.free_shape import arc_radius, arc_reach, chordal_tilt
 
 R_M, R_P = 25.912e-3, 40e-3  # the paper's flat study
 PHI_1 = 45e-3 / R_M
@@ -91,12 +91,3 @@ def test_a_tight_arc_turns_back() -> None:
     with np.errstate(invalid="ignore"):
         outside = arc_radius(reach * (1 + 1e-6), metric_radius=R_M, bend_radius=tight, tilt=tilt)
     assert np.isnan(outside)
-
-
-def test_a_table_is_met_at_its_rows_and_held_beyond() -> None:
-    table = [(0.0, 0.026), (0.5, 0.0245), (1.0, 0.024), (1.8, 0.0255)]
-    phi, r0 = np.array(table).T
-    np.testing.assert_array_equal(table_radius(phi, table), r0)
-    assert table_radius(2.0, table) == r0[-1]
-    between = table_radius(np.linspace(0.5, 1.0, 21), table)
-    assert np.all(np.diff(between) < 0.0)  # monotone between monotone rows

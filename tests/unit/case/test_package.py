@@ -1,6 +1,5 @@
 import math
 
-import numpy as np
 import pytest
 
 from petalfoil.case import Case, package_of
@@ -77,41 +76,12 @@ def test_the_coating_adds_to_the_thickness_but_not_to_the_stiffness() -> None:
     assert bare.bending_stiffness == pytest.approx(2e11 * 0.176e-3**3 / (12 * 0.91), rel=1e-14)
 
 
-def test_free_radius_of_an_arc_and_of_its_own_table_agree() -> None:
-    paper = case("paper_n8")
-    arc = paper.package
-    assert arc is not None
-    phi = np.linspace(0.0, arc.petal_angle * 1.0001, 400)
-    rows = list(zip(phi.tolist(), arc.free_radius(phi).tolist(), strict=True))
-    measured = paper.replace(**{"petals.free_shape": rows}).package
-    assert measured is not None
-    assert math.isnan(measured.root_tilt)
-    at = np.linspace(0.0, arc.petal_angle, 57)
-    # A monotone interpolant is level at the lowest row, so there it is off by at most the sagitta of one interval.
-    step = phi[1] - phi[0]
-    sagitta = float(np.max(np.abs(np.diff(arc.free_radius(phi), 2)))) / 8.0
-    error = np.abs(measured.free_radius(at) - arc.free_radius(at))
-    lowest = phi[np.argmin(arc.free_radius(phi))]
-    assert np.all(error < sagitta)
-    np.testing.assert_allclose(error[np.abs(at - lowest) > 2 * step], 0.0, atol=1e-9)
-
-
-def test_a_measured_shape_may_span_more_than_an_arc() -> None:
-    long = {"petals.arc_length": "75 mm", "petals.thickness": "0.1 mm"}
-    with pytest.raises(PackageError, match=r"2\.4 rad"):
-        case("paper_n8", **long)
-    rows = [(angle, 25.9e-3) for angle in np.linspace(0.0, 3.0, 7)]
-    measured = case("paper_n8", **long, **{"petals.free_shape": rows}).package
-    assert measured is not None
-    assert measured.petal_angle > 2.4
-
-
 def test_several_problems_come_in_one_message() -> None:
     with pytest.raises(PackageError) as caught:
         case("paper_n8", **{"petals.count": 32, "petals.bend_radius": "20 mm"})
     message = str(caught.value)
     assert "2 problems" in message
-    assert "9 layers of 176 µm and the film floor 1 µm need 1.585 mm" in message
+    assert "9 layers of 176 µm and the contact film thickness 1 µm need 1.585 mm" in message
     assert "petals.bend_radius: a chordal petal" in message
 
 
