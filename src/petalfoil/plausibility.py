@@ -1,0 +1,239 @@
+"""What is hardly ever meant, or lies outside what the model holds for: one line each, with the reason and what to do.
+
+A case that is possible is never refused for being unlikely; it is answered, with warnings beside the answer.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from petalfoil.case import Case
+from petalfoil.case.measured_shape import row_errors
+from petalfoil.units.writing import format_quantity
+
+Scalars = Mapping[str, float | int | bool | str]
+
+MAX_STRESS = 2e9
+"""Yield strength of the strongest spring steels and nickel alloys in foils [Pa]."""
+
+MAX_MACH = 0.7
+"""Mach number of the journal's surface above which the gas heats by tens of kelvins and its inertia matters."""
+
+HEAT_CAPACITY_RATIO = 1.4
+"""Of air and other gases of two atoms; 1.67 of noble gases makes the Mach number 9 % smaller."""
+
+MAX_KNUDSEN = 0.1
+"""Mean free path over film thickness above which first-order slip no longer holds (Burgdorfer 1959)."""
+
+MIN_CONTACT = 1e-3
+"""Fraction of the force on the journal that solid contact must carry to be called contact."""
+
+MIN_ROWS = 6
+"""Rows of a measured free shape from which its error can be estimated."""
+
+SCATTER = 6.0
+"""Standard deviations by which the worst of some hundred rows misses its neighbours: they scatter as it does."""
+
+BOTTOMED_OUT = ("bottomed out", "pressed solid")
+"""Words in the solution path of a foil pack that a load has closed to its solid height."""
+
+
+@dataclass(frozen=True)
+class Usual:
+    """Values of a quantity that bearings have.
+
+    Attributes
+    ----------
+    key : str
+        Dotted path in the case.
+    low, high : float
+        Smallest and largest usual value [`unit`].
+    unit : str
+        SI unit.
+    why : str
+        What lies in this range.
+    ask : str
+        What may have gone wrong, and what to do.
+    """
+
+    key: str
+    low: float
+    high: float
+    unit: str
+    why: str
+    ask: str
+
+    def warning(self, value: float) -> Iterator[str]:
+        """Yield a warning where `value` [`unit`] is unusual."""
+        if self.low <= value <= self.high:
+            return
+        given, low, high = (format_quantity(number, self.unit) for number in (value, self.low, self.high))
+        yield f"{self.key}: {given} is outside {low} to {high}, {self.why}; {self.ask}"
+
+
+USUAL = (
+    Usual(
+        "petals.youngs_modulus", 1e9, 1e12, "Pa", "where metals and polymers lie",
+        "if it was typed in MPa or psi, write the unit, as in '200 GPa'",
+    ),
+    Usual(
+        "gas.viscosity", 5e-6, 1e-4, "Pa*s", "where gases lie",
+        "if it was typed in mPa s or cP, write the unit, as in '18.5 uPa*s'; liquids are not modelled",
+    ),
+    Usual(
+        "gas.ambient_pressure", 1e3, 1e7, "Pa", "where gas bearings run",
+        "if it was typed in bar or psi, write the unit, as in '1 bar'; it is the absolute pressure",
+    ),
+    Usual(
+        "gas.temperature", 100.0, 1500.0, "K", "where gas bearings run",
+        "if it was typed in degrees Celsius, write the unit, as in '20 degC'",
+    ),
+    Usual(
+        "gas.gas_constant", 20.0, 5000.0, "J/(kg*K)", "where gases lie",
+        "the specific gas constant is wanted, 287.05 J/(kg*K) for air, not the molar one",
+    ),
+)  # fmt: skip
+"""Ranges of single quantities."""
+
+CLEARANCE_RATIO = Usual(
+    "bearing.bushing_radius", 1e-4, 0.15, "1", "where the clearance ratio (R_B - R_j)/R_j of gas bearings lies",
+    "check both radii: they are radii, not diameters",
+)  # fmt: skip
+
+SLENDERNESS = Usual(
+    "bearing.length", 0.1, 10.0, "1", "where length over diameter of journal bearings lies",
+    "check the units of length and radii",
+)  # fmt: skip
+
+
+def warnings_of(case: Case, scalars: Scalars) -> list[str]:
+    """Return what is implausible about a case and its answer.
+
+    Parameters
+    ----------
+    case : Case
+        What was asked.
+    scalars : mapping
+        The answer's scalars by their names in a result, in SI units; what is absent, nan or a text where a number is
+        expected is not judged. Empty for the case alone.
+
+    Returns
+    -------
+    list of str
+        One line each: key or quantity, what is implausible about it, why, and what to do.
+    """
+    return [*_of_inputs(case, scalars), *_of_answer(case, scalars)]
+
+
+# ---------------------------------------------------------------------------------------------- inputs
+
+
+def _of_inputs(case: Case, scalars: Scalars) -> Iterator[str]:
+    for usual in USUAL:
+        section, _, name = usual.key.partition(".")
+        table = getattr(case, section)
+        if table is not None:
+            yield from usual.warning(getattr(table, name))
+    yield from CLEARANCE_RATIO.warning(case.bearing.clearance / case.bearing.journal_radius)
+    yield from SLENDERNESS.warning(0.5 * case.bearing.length / case.bearing.journal_radius)
+    yield from _surface_speed(case, _number(scalars, "speed", case.operation.speed))
+    yield from _unbalance(case)
+    yield from _measured_shape(case)
+
+
+def _surface_speed(case: Case, speed: float) -> Iterator[str]:
+    gas, surface = case.gas, speed * case.bearing.journal_radius
+    mach = surface / math.sqrt(HEAT_CAPACITY_RATIO * gas.gas_constant * gas.temperature)
+    if mach > MAX_MACH:
+        yield (
+            f"operation.speed: the journal's surface moves at {surface:.4g} m/s, Mach {mach:.2g}, above {MAX_MACH:g}, "
+            "where heating and inertia of the gas matter, which are not modelled; if the speed was typed in rpm, write "
+            f"the unit, as in '{speed:.6g} rpm'"
+        )
+
+
+def _unbalance(case: Case) -> Iterator[str]:
+    if case.rotor is not None and case.rotor.unbalance > 0.5 * case.bearing.clearance:
+        yield (
+            f"rotor.unbalance: the mass centre lies {format_quantity(case.rotor.unbalance, 'm')} off the axis, more "
+            f"than half the radial clearance {format_quantity(case.bearing.clearance, 'm')}; balanced rotors have some "
+            "micrometres: divide a residual unbalance in g mm by the mass"
+        )
+
+
+def _measured_shape(case: Case) -> Iterator[str]:
+    petals = case.petals
+    if petals is None or petals.free_shape is None:
+        return
+    rows = len(petals.free_shape)
+    if rows < MIN_ROWS:
+        yield (
+            f"petals.free_shape: {rows} rows are too few to tell how good the shape between them is; "
+            f"measure {MIN_ROWS} or more"
+        )
+        return
+    error, tolerance = float(np.max(np.abs(row_errors(petals.free_shape)))), petals.free_shape_tolerance
+    if error > case.surface.contact_film_thickness + SCATTER * tolerance:
+        by = format_quantity(error, "m", digits=2)
+        yield (
+            f"petals.free_shape: its estimated error is up to {by}, by which a row misses the curve through its "
+            "neighbours, and the film is as sensitive to it as to its own thickness; measure more rows, or state their "
+            "scatter as petals.free_shape_tolerance"
+        )
+
+
+# ---------------------------------------------------------------------------------------------- answers
+
+
+def _of_answer(case: Case, scalars: Scalars) -> Iterator[str]:
+    yield from _stress(case, _number(scalars, "max_bending_stress"))
+    yield from _rarefaction(case, _number(scalars, "knudsen_number"))
+    yield from _contact(case, scalars)
+    if any(words in str(scalars.get("solution_path", "")) for words in BOTTOMED_OUT):
+        yield (
+            "solution_path: the foil pack has bottomed out, journal, petals and bushing touch as a solid stack, whose "
+            "own stiffness is not modelled; reduce the load, or enlarge the pack's clearance"
+        )
+
+
+def _stress(case: Case, stress: float) -> Iterator[str]:
+    given = None if case.petals is None else case.petals.yield_strength
+    limit = MAX_STRESS if given is None else given
+    if stress > limit:
+        what = "above which no foil alloy stays elastic" if given is None else "the yield strength"
+        yield (
+            f"max_bending_stress: {format_quantity(stress, 'Pa')} exceeds {format_quantity(limit, 'Pa')}, {what}: the "
+            "petals would yield, which is not modelled; use a larger petals.bend_radius or a smaller petals.thickness"
+        )
+
+
+def _rarefaction(case: Case, knudsen: float) -> Iterator[str]:
+    if knudsen > MAX_KNUDSEN:
+        slip = (
+            "first-order slip"
+            if case.model.slip
+            else "without slip the film is too stiff: set model.slip = true, which"
+        )
+        yield (
+            f"knudsen_number: the mean free path is {knudsen:.2g} of the minimum film thickness, over {MAX_KNUDSEN:g}, "
+            f"where the gas is no continuum; {slip} holds up to there: take the film's force and damping as an estimate"
+        )
+
+
+def _contact(case: Case, scalars: Scalars) -> Iterator[str]:
+    fraction, speed = _number(scalars, "contact_fraction"), _number(scalars, "speed", case.operation.speed)
+    if fraction > MIN_CONTACT and 0.0 < case.operation.speed <= speed:
+        yield (
+            f"contact_fraction: at operating speed solid contact carries {100.0 * fraction:.2g} % of the force on the "
+            "journal: it would wear and heat up, which is not modelled; reduce the load, or raise the speed"
+        )
+
+
+def _number(scalars: Scalars, name: str, default: float = math.nan) -> float:
+    """A scalar as a number; `default` where there is none."""
+    value = scalars.get(name)
+    return default if value is None or isinstance(value, str) or math.isnan(value) else float(value)

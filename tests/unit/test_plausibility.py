@@ -1,0 +1,198 @@
+"""Warnings: a case that triggers each, one close by that does not, and none in the examples."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import petalfoil
+from petalfoil.case import Case
+from petalfoil.plausibility import warnings_of
+from tests.cases import EXAMPLES, FAULTS, case
+
+PETALS, PLAIN = "paper_n8", "plain_journal"
+SOUND = math.sqrt(1.4 * 287.05 * 293.15)  # m/s
+NAMES = sorted(path.stem for path in EXAMPLES.glob("*.toml"))
+
+
+def only(found: list[str], key: str) -> str:
+    """The one warning there is; it names `key`, and is one line with a reason and an advice."""
+    assert len(found) == 1, found
+    assert found[0].startswith(f"{key}: ")
+    assert ";" in found[0]
+    assert "\n" not in found[0]
+    return found[0]
+
+
+# name: (example, key, value that is warned of, value close by that is not)
+INPUTS: dict[str, tuple[str, str, Any, Any]] = {
+    "a soft metal": (PETALS, "petals.youngs_modulus", "0.9 GPa", "1.1 GPa"),
+    "a hard metal": (PETALS, "petals.youngs_modulus", "1001 GPa", "999 GPa"),
+    "a modulus typed in MPa": (PETALS, "petals.youngs_modulus", 200e3, 200e9),
+    "a thin gas": (PETALS, "gas.viscosity", "4.9 uPa*s", "5.1 uPa*s"),
+    "a thick gas": (PETALS, "gas.viscosity", "101 uPa*s", "99 uPa*s"),
+    "a viscosity typed in mPa s": (PETALS, "gas.viscosity", 0.0185, 18.5e-6),
+    "a pressure typed in bar": (PLAIN, "gas.ambient_pressure", 1.0, 1e5),
+    "a deep vacuum": (PLAIN, "gas.ambient_pressure", "9 mbar", "11 mbar"),
+    "a high pressure": (PLAIN, "gas.ambient_pressure", "101 bar", "99 bar"),
+    "a temperature typed in Celsius": (PLAIN, "gas.temperature", 20, "20 degC"),
+    "a flame": (PLAIN, "gas.temperature", 1501, 1499),
+    "a heavy gas": (PLAIN, "gas.gas_constant", 19.9, 20.1),
+    "a fast surface": (PETALS, "operation.speed", 0.701 * SOUND / 25e-3, 0.699 * SOUND / 25e-3),
+    "a speed typed in rpm": (PETALS, "operation.speed", 60000, "60000 rpm"),
+    "a tight bushing": (PLAIN, "bearing.bushing_radius", "25.0024 mm", "25.0026 mm"),
+    "a wide bushing": (PLAIN, "bearing.bushing_radius", "28.8 mm", "28.7 mm"),
+    "a short bearing": (PLAIN, "bearing.length", "4.9 mm", "5.1 mm"),
+    "a long bearing": (PLAIN, "bearing.length", "501 mm", "499 mm"),
+    "an unbalance in mm": ("orbit_n8", "rotor.unbalance", "0.51 mm", "0.49 mm"),
+}
+
+
+@pytest.mark.parametrize("name", INPUTS)
+def test_an_unusual_input_is_warned_of(name: str) -> None:
+    example, key, unusual, usual = INPUTS[name]
+    centred = {"operation.eccentricity": (0, 0), "surface.contact_film_thickness": "0.1 um"}
+    only(warnings_of(case(example, **centred, **{key: unusual}), {}), key)
+    assert warnings_of(case(example, **centred, **{key: usual}), {}) == []
+
+
+def test_a_speed_in_rpm_is_told_how_to_be_written() -> None:
+    text = only(warnings_of(case(PETALS, **{"operation.speed": 60000}), {}), "operation.speed")
+    assert "1500 m/s, Mach 4.4, above 0.7" in text
+    assert "'60000 rpm'" in text
+
+
+def test_a_molar_gas_constant_is_warned_of() -> None:
+    molar = warnings_of(case(PLAIN, **{"gas.gas_constant": 8.314, "operation.speed": 1000}), {})
+    assert "the specific gas constant is wanted" in only(molar, "gas.gas_constant")
+
+
+def test_a_light_gas_takes_higher_speeds() -> None:
+    fast = case(PETALS, **{"operation.speed": 20000})
+    assert warnings_of(fast, {})
+    assert warnings_of(fast.replace(gas={"name": "helium", "ambient_pressure": "1 bar"}), {}) == []
+
+
+def test_the_answer_s_own_speed_counts() -> None:
+    assert only(warnings_of(case(PETALS), {"speed": 12000.0}), "operation.speed")
+
+
+# name: (key, example, scalars that are warned of, scalars close by that are not)
+ANSWERS: dict[str, tuple[str, str, dict[str, Any], dict[str, Any]]] = {
+    "stress": ("max_bending_stress", PETALS, {"max_bending_stress": 2.01e9}, {"max_bending_stress": 1.99e9}),
+    "Knudsen": ("knudsen_number", PLAIN, {"knudsen_number": 0.101}, {"knudsen_number": 0.099}),
+    "contact": (
+        "contact_fraction", PETALS, {"contact_fraction": 0.02, "speed": 8000.0}, {"contact_fraction": 5e-4},
+    ),
+    "contact below operating speed": (
+        "contact_fraction", PETALS, {"contact_fraction": 0.5}, {"contact_fraction": 0.5, "speed": 7999.0},
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_an_implausible_answer_is_warned_of(name: str) -> None:
+    key, example, implausible, plausible = ANSWERS[name]
+    only(warnings_of(case(example), implausible), key)
+    assert warnings_of(case(example), plausible) == []
+
+
+def test_contact_at_rest_is_no_matter_for_a_warning() -> None:
+    assert warnings_of(case(PETALS, **{"operation.speed": 0.0}), {"contact_fraction": 1.0, "speed": 0.0}) == []
+
+
+def test_a_stated_yield_strength_replaces_the_limit() -> None:
+    soft = case(PETALS, **{"petals.yield_strength": "300 MPa"})
+    text = only(warnings_of(soft, {"max_bending_stress": 3.3e8}), "max_bending_stress")
+    assert "330 MPa exceeds 300 MPa, the yield strength" in text
+    assert warnings_of(soft, {"max_bending_stress": 2.9e8}) == []
+    hard = case(PETALS, **{"petals.yield_strength": "2.5 GPa"})
+    assert warnings_of(hard, {"max_bending_stress": 2.4e9}) == []
+
+
+def test_slip_changes_the_advice() -> None:
+    thin = {"knudsen_number": 0.3}
+    assert "set model.slip = true" in only(warnings_of(case(PLAIN), thin), "knudsen_number")
+    assert "set model.slip" not in only(warnings_of(case(PLAIN, **{"model.slip": True}), thin), "knudsen_number")
+
+
+def test_what_is_absent_is_not_judged() -> None:
+    empty = {
+        "max_bending_stress": math.nan,
+        "knudsen_number": math.nan,
+        "contact_fraction": math.nan,
+        "speed": math.nan,
+    }
+    assert warnings_of(case(PETALS), empty) == []
+    assert warnings_of(case(PLAIN), {"status": "no convergence"}) == []
+
+
+# ---------------------------------------------------------------------------------------------- measured shapes
+
+
+def measured(rows: Any, **changes: object) -> Case:
+    return case(PETALS, **{"petals.free_shape": rows, "petals.bend_radius": None}, **changes)
+
+
+def rows_of(count: int, scatter: float = 0.0) -> list[list[float]]:
+    package = case(PETALS).package
+    assert package is not None
+    angles = np.linspace(0.0, package.petal_angle, count)
+    deviation = scatter * np.random.default_rng(4).standard_normal(count)
+    deviation[0] = 0.0
+    return np.column_stack([angles, package.free_radius(angles) + deviation]).tolist()  # type: ignore[no-any-return]
+
+
+def test_a_coarse_measured_shape_is_warned_of() -> None:
+    text = only(warnings_of(measured(rows_of(8)), {}), "petals.free_shape")
+    assert "its estimated error is up to 6.3 µm" in text
+    assert warnings_of(measured(rows_of(12)), {}) == []
+    assert "5 rows are too few" in only(warnings_of(measured(rows_of(5)), {}), "petals.free_shape")
+
+
+def test_scatter_is_warned_of_unless_it_is_stated() -> None:
+    scattered = measured(rows_of(100, 5e-6))
+    assert "estimated error is up to 24 µm" in only(warnings_of(scattered, {}), "petals.free_shape")
+    assert warnings_of(scattered.replace(**{"petals.free_shape_tolerance": "5 um"}), {}) == []
+    assert warnings_of(measured(rows_of(100, 0.1e-6)), {}) == []
+
+
+def test_a_table_stretched_to_reach_the_edge_is_warned_of() -> None:
+    """Its last row stands 0.1 degrees too far; the same rows without that are exact."""
+    stretched = Case.load(FAULTS / "free_shape_12_points.toml")
+    assert "up to 3.6 µm" in only(warnings_of(stretched, {}), "petals.free_shape")
+    assert warnings_of(Case.load(FAULTS / "free_shape_last_row_rounded.toml"), {}) == []
+
+
+# ---------------------------------------------------------------------------------------------- whole runs
+
+
+def scalars_of(answer: Any) -> dict[str, Any]:
+    return {name: variable.item() for name, variable in answer.data_vars.items() if not variable.dims}
+
+
+COARSE = {"model.cells_per_pitch": 32, "model.axial_cells": 8}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_examples_give_none(name: str) -> None:
+    one = case(name, **COARSE)
+    assert warnings_of(one, scalars_of(petalfoil.solve(one))) == []
+
+
+def test_fourteen_gigapascals_are_warned_of() -> None:
+    one = Case.load(FAULTS / "stress_14GPa.toml")
+    stress, contact = warnings_of(one, scalars_of(petalfoil.solve(one)))
+    assert stress.startswith("max_bending_stress: 14.")
+    assert contact.startswith("contact_fraction: at operating speed solid contact carries 99 %")
+
+
+def test_a_foil_pack_that_has_bottomed_out_is_warned_of() -> None:
+    one = case(PETALS, **{"model.cells_per_pitch": 16})
+    contact, solid = warnings_of(one, scalars_of(petalfoil.balance(one, load=(0.0, -500.0))))
+    assert contact.startswith("contact_fraction: ")
+    assert solid.startswith("solution_path: the foil pack has bottomed out")
+    assert warnings_of(one, scalars_of(petalfoil.balance(one, load=(0.0, -10.0)))) == []
