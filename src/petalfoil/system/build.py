@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
+from petalfoil.memory import check_memory
 from petalfoil.physics.mass_balance import FilmBalance
 from petalfoil.system.coupled import CoupledProblem, Layout
 from petalfoil.system.scales import scales_of
@@ -14,7 +15,8 @@ from petalfoil.walls.two_bearings import paired
 
 
 def build_problem(case: Case) -> CoupledProblem:
-    """Discretise `case` at its speed and eccentricity."""
+    """Discretise `case` at its speed and eccentricity; a grid beyond the memory there is is refused first."""
+    check_memory(case)
     return discretised(case, build_wall(case), np.array(case.operation.eccentricity))
 
 
@@ -23,6 +25,7 @@ def build_pair(case: Case) -> CoupledProblem:
     if case.rotor is None or case.rotor.span is None:
         raise ValueError("this rotor runs in one bearing")
     whole = case.replace(**{"model.symmetry": False})
+    check_memory(whole, bearings=2)
     return discretised(
         whole, paired(build_wall(whole), case.rotor.span), np.append(case.operation.eccentricity, [0, 0])
     )

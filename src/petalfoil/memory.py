@@ -1,0 +1,128 @@
+"""Memory that a case's grid needs, told before it is taken.
+
+Nearly all of it is the factorisation of the coupled system. With nested dissection a grid of `N` unknowns fills in to
+some ``c N log2 N`` entries (George 1973); `c` is measured, at the peak of whole runs of `solve`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from petalfoil.case import Case, ModelKind
+from petalfoil.errors import DefinitionError
+from petalfoil.units.writing import format_quantity
+
+BYTES_WITH_PETALS = 700.0
+"""`c` of film and petals [bytes]: measured 430 to 660, over 4 000 to 160 000 unknowns."""
+
+BYTES_OF_FILM = 350.0
+"""`c` of a film alone [bytes]: measured 220 to 330, over 2 000 to 130 000 unknowns."""
+
+SMALLER = 0.98
+"""Factor between the grids that are tried for one that fits."""
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Size of a case's grid.
+
+    Attributes
+    ----------
+    petals : int
+        Petals; 0 in a plain bearing.
+    overlap : float
+        Petal angle over pitch [1]; 0 in a plain bearing.
+    cells : int
+        Cells along a pitch; of a plain bearing round the circle.
+    axial : int
+        Cells over the whole length; 0 in a 2-D model.
+    symmetric : bool
+        Half the length is gridded.
+    """
+
+    petals: int
+    overlap: float
+    cells: int
+    axial: int
+    symmetric: bool
+
+    @property
+    def unknowns(self) -> int:
+        """Number of pressures and deflections."""
+        gridded = self.axial // 2 if self.symmetric else self.axial
+        along = self.petals * (math.ceil(self.overlap * self.cells) + self.cells) if self.petals else self.cells
+        return along * (gridded + 1)
+
+    @property
+    def memory(self) -> float:
+        """Estimate of the memory that solving takes at its peak, beside Python itself [bytes]."""
+        factor = BYTES_WITH_PETALS if self.petals else BYTES_OF_FILM
+        return factor * self.unknowns * math.log2(self.unknowns)
+
+    @property
+    def words(self) -> str:
+        """The keys of a case that give this grid."""
+        along = f"cells_per_pitch = {self.cells}"
+        return f"{along}, axial_cells = {self.axial}" if self.axial else along
+
+    def scaled(self, factor: float) -> Grid:
+        """The grid with `factor` as many cells each way, an even number along the axis."""
+        axial = max(2 * int(0.5 * factor * self.axial), 2) if self.axial else 0
+        return replace(self, cells=max(int(factor * self.cells), 4), axial=axial)
+
+
+def grid_of(case: Case) -> Grid:
+    """The grid of a case."""
+    package, axial = case.package, 0 if case.model.kind is ModelKind.TWO_D else case.axial_cells
+    count, overlap = (0, 0.0) if package is None else (package.count, package.overlap)
+    return Grid(count, overlap, case.cells_per_pitch, axial, case.model.symmetry)
+
+
+def check_memory(case: Case, bearings: int = 1) -> None:
+    """Refuse a grid that needs more memory than there is.
+
+    Parameters
+    ----------
+    case : Case
+        The case that is to be solved.
+    bearings : int
+        Equal bearings that are solved together.
+
+    Raises
+    ------
+    DefinitionError
+        The message tells the memory needed and available, and a grid of the same proportions that fits.
+    """
+    grid, available = grid_of(case), available_memory()
+    if bearings * grid.memory <= available:
+        return
+    fitting = _fitting(grid, available / bearings)
+    raise DefinitionError(
+        f"model.cells_per_pitch: a grid of {grid.words} has {bearings * grid.unknowns:.2g} unknowns and needs some "
+        f"{_gigabytes(bearings * grid.memory)} of memory, {_gigabytes(available)} are available; allowed: {fitting}",
+        key="model.cells_per_pitch",
+        given=case.cells_per_pitch,
+        allowed=fitting,
+    )
+
+
+def available_memory() -> float:
+    """Memory that can be taken without swapping [bytes]."""
+    import psutil
+
+    return float(psutil.virtual_memory().available)
+
+
+def _fitting(grid: Grid, available: float) -> str:
+    """Words for a grid of about the same proportions that fits into `available` [bytes]."""
+    factor = SMALLER
+    while (smaller := grid.scaled(factor)).memory > available:
+        if smaller.cells == 4:
+            return "none here, free some memory"
+        factor *= SMALLER
+    return f"up to {smaller.words}"
+
+
+def _gigabytes(size: float) -> str:
+    return f"{format_quantity(size / 1e9, '1', digits=2)} GB"
