@@ -5,8 +5,8 @@
     PetalfoilError(Exception)
      ├── DefinitionError      a bad case
      │    ├── UnitError       a wrong or unknown unit
-     │    └── PackageError    petals that do not overlap, do not fit, or have no free shape
-     ├── UsageError           a bad argument of a verb, a bad value on the command line
+     │    └── PackageError    a foil pack that cannot be assembled: no overlap, no clearance, no free shape
+     ├── UsageError           a bad argument of an analysis, a bad value on the command line
      ├── ConvergenceError     no converged answer
      └── StoreError           a result file that cannot be read or written
 
@@ -55,11 +55,11 @@ class UnitError(DefinitionError):
 
 
 class PackageError(DefinitionError):
-    """A package of petals that cannot be assembled; the message says by how much."""
+    """A foil pack that cannot be assembled; the message says by how much."""
 
 
 class UsageError(PetalfoilError):
-    """A bad argument of a verb, or a bad value on the command line."""
+    """A bad argument of an analysis, or a bad value on the command line."""
 
 
 class ConvergenceError(PetalfoilError):
@@ -70,7 +70,7 @@ class ConvergenceError(PetalfoilError):
     message : str
         What did not converge, and how far it came.
     history : sequence of mappings, optional
-        One mapping an iteration.
+        One mapping per iteration.
     advice : str, optional
         What to try next.
     """

@@ -1,8 +1,8 @@
-"""Foreign text (titles, keys, file names) made safe to show, one function for each kind of output.
+r"""Foreign text (titles, keys, file names) made safe to show, one function for each kind of output.
 
 A title in a case or in a result file of someone else may hold anything: escape sequences that recolour a terminal or
 rename its window, marks that turn the order of letters around, `$` that starts a formula in a figure, tags that a
-browser runs. Nothing is dropped silently: what is not shown as it is, is shown by its code, as in ``\\x1b[31m``.
+browser runs. Nothing is dropped silently: what is not shown as it is, is shown by its code, as in ``\x1b[31m``.
 """
 
 from __future__ import annotations

@@ -64,9 +64,9 @@ def bearing_numbers(case: Case) -> BearingNumbers:
     scales = Scales(case.bearing.clearance, case.gas.ambient_pressure, 1.0)
     number = scales.bearing_number(case.gas.viscosity, case.operation.speed, case.bearing.journal_radius)
     on_journal = wall_kind(case).can(Capability.PACK)
-    thinnest = case.surface.contact_film_thickness if on_journal else case.room
+    thinnest = case.surface.contact_film_thickness if on_journal else case.radial_clearance
     return BearingNumbers(
-        radial_clearance=case.room,
+        radial_clearance=case.radial_clearance,
         pack_clearance=case.pack_clearance,
         compressibility_number=number,
         viscosity=case.gas.viscosity,

@@ -4,14 +4,17 @@ In the order data flows:
 
 - `fields`: kinds of numbers (quantity, count) and their checks.
 - `problems`: all problems of a definition → one `DefinitionError`.
+- `hints`: what a wrong key or word was meant to be.
 - `definition`: the base of all definitions.
 - `gas_properties`: a gas by its name.
 - `sections`, `petals`, `gas`, `rotor`: the tables of a case.
 - `wall_tables`: base and registry of the tables that describe a wall.
-- `free_shape`: radius of a free petal.
-- `package`: geometry that follows, and whether the package can be assembled.
+- `free_shape`: radius of a free petal bent to an arc.
+- `measured_shape`: radius of a measured one; `shape_file`: its rows from a CSV file.
+- `package`: geometry that follows, and whether the foil pack can be assembled.
 - `toml`: files and texts.
 - `definitions`: `Case`, which puts all of it together.
+- `plausibility`: warnings of what is implausible about a case and its answer.
 
 All numbers are floats in SI units; texts such as ``"25 um"`` are read when a definition is made.
 """
@@ -21,6 +24,7 @@ from petalfoil.case.free_shape import arc_radius, chordal_tilt
 from petalfoil.case.gas import Gas
 from petalfoil.case.package import Package, package_of
 from petalfoil.case.petals import Mount, Petals
+from petalfoil.case.plausibility import warnings_of
 from petalfoil.case.rotor import Rotor
 from petalfoil.case.sections import Bearing, Edges, Method, Model, ModelKind, Operation, Surface
 from petalfoil.case.wall_tables import WallTable, register_table, unregister_table
@@ -43,6 +47,7 @@ __all__ = [
     "arc_radius",
     "chordal_tilt",
     "package_of",
+    "warnings_of",
     "register_table",
     "unregister_table",
 ]

@@ -22,14 +22,14 @@ from petalfoil.case.wall_tables import WallTable, with_table
 from petalfoil.errors import DefinitionError, PackageError
 from petalfoil.text import for_terminal
 
-# Grids whose error in the load stays under 1 %: measured on the paper's packages (six to ten petals, displaced by 100
-# to 280 um: at most 0.3 % flat, 0.6 % spatial) and on plain bearings (L/D 1/2 to 2).
-DEFAULT_CELLS = {ModelKind.TWO_D: 128, ModelKind.THREE_D: 64}  # along the pitch of a package
+# Grids whose error in the bearing force stays under 1 %: measured on the paper's foil packs (six to ten petals,
+# displaced by 100 to 280 um: at most 0.3 % in 2-D, 0.6 % in 3-D) and on plain bearings (L/D 1/2 to 2).
+DEFAULT_CELLS = {ModelKind.TWO_D: 128, ModelKind.THREE_D: 64}  # along a pitch
 DEFAULT_AXIAL_CELLS = 24
 DEFAULT_PLAIN_CELLS = 128  # a plain bearing's pitch is the whole circle
 DEFAULT_PLAIN_AXIAL_CELLS = 32
 DEFAULT_PLAIN_GRADING = 0.6
-"""A plain bearing's film is steepest at its ends; a package's petals bend as much elsewhere (docs/decisions/014)."""
+"""The pressure in a plain bearing is steepest at its ends; petals bend as much elsewhere (docs/decisions/014)."""
 
 
 class Case(Definition):
@@ -113,8 +113,8 @@ class Case(Definition):
         return None if self.petals is None else package_of(self.bearing, self.petals)
 
     @property
-    def room(self) -> float:
-        """Gap between journal and bushing where it is narrowest, ``R_B − R_j − |e|`` [m]."""
+    def radial_clearance(self) -> float:
+        """Radial clearance between journal and bushing where it is narrowest, ``R_B − R_j − |e|`` [m]."""
         return self.bearing.clearance - math.hypot(*self.operation.eccentricity)
 
     @property
@@ -127,7 +127,7 @@ class Case(Definition):
     @property
     def pack_clearance(self) -> float:
         """Clearance above the solid wall and the contact film thickness, never negative [m]."""
-        return self.room - (self.solid_height or 0.0) - self.surface.contact_film_thickness
+        return self.radial_clearance - (self.solid_height or 0.0) - self.surface.contact_film_thickness
 
     @property
     def slip_length(self) -> float:
@@ -143,14 +143,14 @@ class Case(Definition):
 
     @property
     def axial_cells(self) -> int:
-        """Cells over the whole length, the default filled in; without meaning in a flat model."""
+        """Cells over the whole length, the default filled in; of no effect in a 2-D model."""
         if self.model.axial_cells is not None:
             return self.model.axial_cells
         return DEFAULT_PLAIN_AXIAL_CELLS if self.petals is None else DEFAULT_AXIAL_CELLS
 
     @property
     def axial_grading(self) -> float:
-        """How far cells shrink toward the ends, the default filled in; without meaning in a flat model [1]."""
+        """How far cells shrink toward the ends, the default filled in; of no effect in a 2-D model [1]."""
         if self.model.axial_grading is not None:
             return self.model.axial_grading
         return DEFAULT_PLAIN_GRADING if self.petals is None else 0.0

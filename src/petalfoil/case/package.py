@@ -1,4 +1,4 @@
-"""Geometry of the assembled package that follows from a bearing and its petals, and whether it can be built.
+"""Geometry of the assembled foil pack that follows from a bearing and its petals, and whether it can be built.
 
 ::
 
@@ -6,7 +6,7 @@
     φ0  = 2π/n             pitch
     φ1  = l_p / r_m        angle of a petal;  φ1/φ0 = k + f,  0 ≤ f < 1
     φ3  = φ1 − φ0          angle covered by the neighbour; φ3 ≤ φ ≤ φ1 is exposed to the film   (G1)
-    layers = k + 1         number of petals where the package is thickest
+    layers = k + 1         number of petals where the pack is thickest
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class Package:
 
     @property
     def layers(self) -> int:
-        """Number of petals on top of each other where the package is thickest."""
+        """Number of petals on top of each other where the pack is thickest."""
         return math.floor(self.overlap + FLUSH) + 1
 
     @property
@@ -80,7 +80,7 @@ class Package:
 
 
 def package_of(bearing: Bearing, petals: Petals) -> Package:
-    """Derive the package of `petals` in `bearing`.
+    """Derive the foil pack of `petals` in `bearing`.
 
     A chordal tilt that does not exist comes out as nan; `package_problems` says why.
     """
@@ -127,19 +127,19 @@ def bearing_problems(bearing: Bearing, surface: Surface, operation: Operation) -
         )
         return
     eccentricity = math.hypot(*operation.eccentricity)
-    room = bearing.clearance - surface.contact_film_thickness
-    if eccentricity >= room:
+    farthest = bearing.clearance - surface.contact_film_thickness
+    if eccentricity >= farthest:
         yield Problem(
             "operation.eccentricity",
-            f"the journal displaced by {_m(eccentricity)} touches the bushing by {_m(eccentricity - room)}; allowed: "
-            f"less than the radial clearance less the contact film thickness, {_m(room)}",
+            f"the journal displaced by {_m(eccentricity)} touches the bushing by {_m(eccentricity - farthest)}; "
+            f"allowed: less than the radial clearance less the contact film thickness, {_m(farthest)}",
             operation.eccentricity,
-            f"less than {room:g} m",
+            f"less than {farthest:g} m",
         )
 
 
 def package_problems(bearing: Bearing, petals: Petals, surface: Surface, operation: Operation) -> Iterator[Problem]:
-    """Yield what keeps a package from being assembled: no overlap, no room (G2), no free shape."""
+    """Yield what keeps a foil pack from being assembled: no overlap, no clearance (G2), no free shape."""
     if bearing.bushing_radius <= petals.total_thickness:
         yield Problem(
             "petals.thickness",
@@ -160,7 +160,7 @@ def package_problems(bearing: Bearing, petals: Petals, surface: Surface, operati
         )
         return
     yield from _overlap_problems(package, petals)
-    yield from _room_problems(package, bearing, surface, operation)
+    yield from _clearance_problems(package, bearing, surface, operation)
     yield from _shape_problems(package, bearing, petals)
 
 
@@ -177,11 +177,13 @@ def _overlap_problems(package: Package, petals: Petals) -> Iterator[Problem]:
     )
 
 
-def _room_problems(package: Package, bearing: Bearing, surface: Surface, operation: Operation) -> Iterator[Problem]:
+def _clearance_problems(
+    package: Package, bearing: Bearing, surface: Surface, operation: Operation
+) -> Iterator[Problem]:
     eccentricity = math.hypot(*operation.eccentricity)
-    room = bearing.clearance - eccentricity
+    clearance = bearing.clearance - eccentricity
     need = package.layers * package.thickness + surface.contact_film_thickness
-    if package.overlap <= 1.0 + FLUSH or need <= room:
+    if package.overlap <= 1.0 + FLUSH or need <= clearance:
         return
     displaced = need <= bearing.clearance
     where = f", the clearance {_m(bearing.clearance)} less the eccentricity {_m(eccentricity)}," if eccentricity else ""
@@ -189,10 +191,10 @@ def _room_problems(package: Package, bearing: Bearing, surface: Surface, operati
         "operation.eccentricity" if displaced else "petals",
         f"the foil pack does not fit: {package.layers} layers of {_m(package.thickness)} and the contact film "
         f"thickness {_m(surface.contact_film_thickness)} need {_m(need)}, "
-        f"the radial clearance between journal and bushing{where} is {_m(room)}: "
-        f"{_m(need - room)} too much",
+        f"the radial clearance between journal and bushing{where} is {_m(clearance)}: "
+        f"{_m(need - clearance)} too much",
         operation.eccentricity if displaced else package.thickness,
-        f"an eccentricity up to {bearing.clearance - need:g} m" if displaced else f"at most {room:g} m in all",
+        f"an eccentricity up to {bearing.clearance - need:g} m" if displaced else f"at most {clearance:g} m in all",
     )
 
 

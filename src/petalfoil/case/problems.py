@@ -1,6 +1,6 @@
 """All problems of a definition → one error a user can act on.
 
-Every problem is told with the key's dotted path, what was given, what is allowed, and the nearest known name.
+Every problem is given with the key's dotted path, what was given, what is allowed, and the nearest known name.
 """
 
 from __future__ import annotations

@@ -12,16 +12,24 @@ from petalfoil.case.sections import MAX_SPEED
 
 
 class Rotor(Definition):
-    """A rigid rotor: its mass, what turns with it, and the second bearing if it has one.
+    """A rigid rotor: its mass, unbalance and rotating load, and the distance of its second bearing if it has one.
 
-    Without `span` the rotor moves parallel to its axis, and `mass` is the part of it on this bearing. With `span` it
-    runs in two of these bearings, as far to the left as to the right of its mass centre, and may tilt; `mass` is then
-    all of it.
+    Without `span` the rotor moves parallel to its axis, and `mass` is the part of its mass on this bearing. With `span`
+    it runs in two of these bearings, equally far from its mass centre, and may tilt; `mass` is then its whole mass.
     """
 
     section: ClassVar[str] = "rotor"
 
-    mass: Annotated[float, Quantity(unit="kg", meaning="mass on this bearing", symbol="m", above=0.0, at_most=1e6)]
+    mass: Annotated[
+        float,
+        Quantity(
+            unit="kg",
+            meaning="rotor mass on this bearing, with span of the whole rotor",
+            symbol="m",
+            above=0.0,
+            at_most=1e6,
+        ),
+    ]
     unbalance: Annotated[
         float,
         Quantity(unit="m", meaning="distance of the mass centre from the axis", symbol="u", at_least=0.0, at_most=1.0),
@@ -31,7 +39,8 @@ class Rotor(Definition):
     ] = 0.0
     span: (
         Annotated[
-            float, Quantity(unit="m", meaning="distance of two equal bearings", symbol="2 l", above=0.0, at_most=1e3)
+            float,
+            Quantity(unit="m", meaning="distance between two equal bearings", symbol="2 l", above=0.0, at_most=1e3),
         ]
         | None
     ) = None
@@ -70,14 +79,14 @@ class Rotor(Definition):
 
     @property
     def mass_on_bearing(self) -> float:
-        """Mass that a bearing carries [kg]."""
+        """Part of the mass on one bearing [kg]."""
         return 0.5 * self.mass if self.span else self.mass
 
     @model_validator(mode="after")
     def _tilts_as_a_body(self) -> Self:
-        """Refuse inertias without a second bearing, a second bearing without, and more than a body can have."""
+        """Refuse inertias without a span, a span without inertias, and a polar inertia beyond that of a disk."""
         if self.span is None and (self.transverse_inertia or self.polar_inertia or self.skew):
-            text = "inertias and skew move only a rotor in two bearings: give their span, or leave them out"
+            text = "inertias and skew matter only to a rotor in two bearings: give its span, or leave them out"
             raise refuse(VALUE_PROBLEM, text, "together with span")
         if self.span is not None and not self.transverse_inertia > 0.0:
             text = "a rotor in two bearings (span) may tilt: give its transverse_inertia, greater than 0 kg*m^2"

@@ -1,4 +1,4 @@
-"""The sections of a case but petals and gas: bearing, surface, operation, model."""
+"""Sections of a case other than petals and gas: bearing, surface, operation, model."""
 
 from __future__ import annotations
 
@@ -39,7 +39,13 @@ class Surface(Definition):
 
     contact_film_thickness: Annotated[
         float,
-        Quantity(unit="m", meaning="film thickness below which surfaces touch", symbol="h_c", above=0.0, at_most=1e-2),
+        Quantity(
+            unit="m",
+            meaning="contact film thickness, below which surfaces touch",
+            symbol="h_c",
+            above=0.0,
+            at_most=1e-2,
+        ),
     ] = 1e-6
     friction_coefficient: Annotated[
         float, Quantity(unit="1", meaning="dry friction coefficient", symbol="mu_f", at_least=0.0, at_most=5.0)
@@ -96,7 +102,7 @@ class Edges(StrEnum):
 
 
 class Method(StrEnum):
-    """How the equations are solved: coupled Newton, or the paper's relaxation."""
+    """Solution method: coupled Newton, or the paper's relaxation."""
 
     NEWTON = "newton"
     CLASSIC = "classic"

@@ -28,9 +28,9 @@ def test_layers(name: str, layers: int) -> None:
     assert layers - 1 <= package.overlap < layers
 
 
-def test_room() -> None:
+def test_clearances() -> None:
     paper = case("paper_n8", **{"operation.eccentricity": (3e-5, -4e-5)})
-    assert paper.room == pytest.approx(1e-3 - 5e-5, rel=1e-12)
+    assert paper.radial_clearance == pytest.approx(1e-3 - 5e-5, rel=1e-12)
     assert paper.pack_clearance == pytest.approx(1e-3 - 5e-5 - 3 * 0.176e-3 - 1e-6, rel=1e-12)
     assert case("plain_journal").pack_clearance == pytest.approx(14e-6, rel=1e-9)
 

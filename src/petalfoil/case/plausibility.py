@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from petalfoil.case import Case
+from petalfoil.case.definitions import Case
 from petalfoil.case.measured_shape import row_errors
 from petalfoil.units.writing import format_quantity
 

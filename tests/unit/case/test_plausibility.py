@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import petalfoil
-from petalfoil.case import Case
-from petalfoil.plausibility import warnings_of
+from petalfoil.case import Case, warnings_of
 from tests.cases import EXAMPLES, FAULTS, case
 
 PETALS, PLAIN = "paper_n8", "plain_journal"
