@@ -47,7 +47,7 @@ __all__ = [
     "arc_radius",
     "chordal_tilt",
     "package_of",
-    "warnings_of",
     "register_table",
     "unregister_table",
+    "warnings_of",
 ]
