@@ -54,7 +54,10 @@ _EXPLAINED = (
     (r"diameter", "Diameters are not read: give bearing.journal_radius and bearing.bushing_radius."),
     (r"clearance", "The radial clearance follows: give bearing.journal_radius and bearing.bushing_radius."),
     (r"overlap", "The overlap follows from petals.arc_length and petals.count."),
-    (r"tilt|misalign|slope", "Misalignment is not modelled: journal and bushing are parallel."),
+    (
+        r"tilt|misalign|slope",
+        "Misalignment is not modelled: journal and bushing are parallel; a rotor with a rotor.span tilts.",
+    ),
     (r"bump|compliant|foundation", "Bump foils are not modelled: [petals] or a plain rigid bushing bound the film."),
     (
         r"feed|supply|orifice|inlet|recess|porous",
