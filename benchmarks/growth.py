@@ -114,11 +114,11 @@ def factorisation(grid: Grid) -> float:
     x[: problem.layout.n_wall] = 0.0
     shift = 1.0 - np.minimum(problem.gaps(x), 0.0)
     with one_thread():
-        LinearSolver().factor(
-            problem.linearize(x, shift).matrix(problem.weight), problem.rank
-        )  # finds the elimination order
+        solver = LinearSolver()
+        order = solver.elimination(problem.elimination_key)
+        solver.factor(problem.linearize(x, shift).matrix(problem.weight), order)  # finds the elimination order
         start = time.process_time()
-        LinearSolver().factor(problem.linearize(x, shift).matrix(problem.weight), problem.rank)
+        solver.factor(problem.linearize(x, shift).matrix(problem.weight), order)
         return time.process_time() - start
 
 

@@ -18,10 +18,10 @@ from petalfoil.analysis.release import TOLERANCE, OrbitRequest
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
 from petalfoil.classic.kernels import Engine
+from petalfoil.dynamics.stage import StageOptions
 from petalfoil.dynamics.time_state import Instant
-from petalfoil.equilibrium.linear_response import Motion
-from petalfoil.solvers.constraints import tie
-from petalfoil.solvers.spanning import determining
+from petalfoil.equilibrium.linear_response import SmallMotion
+from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.build import build_problem
 
@@ -122,7 +122,7 @@ def rows(cases: tuple[OrbitCase, ...]) -> list[Row]:
 def followed(case: OrbitCase) -> Followed:
     """Compute a motion until its end or its time limit."""
     orbit = Orbit.begin(case.case(), OrbitRequest(initial="balance", revolutions=case.revolutions))
-    before, last, start = orbit.work.film.factorizations, deque([orbit.start], TURN + 2), time.process_time()
+    before, last, start = orbit.run.film.factorizations, deque([orbit.start], TURN + 2), time.process_time()
     for _ in orbit.advance():
         assert orbit.trace.last is not None  # a step has just been made
         last.append(orbit.trace.last)
@@ -130,7 +130,7 @@ def followed(case: OrbitCase) -> Followed:
             break
     seconds = time.process_time() - start
     last.pop()  # the last step of a motion may be shorter
-    return Followed(case, orbit, tuple(last), orbit.work.film.factorizations - before, seconds)
+    return Followed(case, orbit, tuple(last), orbit.run.film.factorizations - before, seconds)
 
 
 # ---------------------------------------------------------------------------------------------- petalfoil's steps
@@ -180,14 +180,13 @@ def own(motion: Followed) -> list[Row]:
 def factorisation(motion: Followed) -> dict[str, float]:
     """Time of assembly and factorisation of a stage, with a known and with a new elimination order [s]."""
     (begin, end), system = motion.turn[-2:], motion.orbit.system
-    stage = system.stage(begin.moving, end.tau, end.tau - begin.tau, begin)
+    stage = system.stage(begin.moving, end.tau, end.tau - begin.tau, begin, StageOptions())
     problem = stage.problem.at(displacement=end.e)
 
-    held = determining(problem.G, end.closed, problem.layout.wall.contacts.journal)
-    ties = tie(problem.G, held)
+    ties = constrain(problem.G, end.active, problem.layout.wall.contacts.journal)
 
-    def reduced() -> Motion:
-        return Motion(problem, problem.linearize(end.x), held, ties)
+    def reduced() -> SmallMotion:
+        return SmallMotion(problem, problem.linearize(end.x), ties)
 
     with one_thread():
         best = in_turn(

@@ -17,7 +17,6 @@ from plain_journal import Exact
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
-from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.system.build import build_problem
 
 GRID = (120, 40)
@@ -52,7 +51,7 @@ def row(package: str, module: str, repeats: int, measure: Callable[[ModuleType, 
 
 def own(case: Case) -> Callable[[], object]:
     """The package's solution of a plain bearing, mesh included."""
-    return lambda: solve_cold(build_problem(case), RunLog())
+    return lambda: solve_cold(build_problem(case))
 
 
 def porous(ab: ModuleType, repeats: int) -> tuple[float, str]:
@@ -84,7 +83,7 @@ def liquid(fluid_flow: ModuleType, repeats: int) -> tuple[float, str]:
     with one_thread():
         best = in_turn({"theirs": theirs, "ours": own(case)}, repeats)
         problem = build_problem(case)
-        ours = float(np.max(problem.pressure(solve_cold(problem, RunLog()).x))) - 1.0
+        ours = float(np.max(problem.pressure(solve_cold(problem).x))) - 1.0
     exact = yardstick.solve(480, 160, 2.0, STILL, EPS).peak - 1.0
     found = float(np.max(theirs().p_mat_numerical)) / gas.ambient_pressure  # type: ignore[attr-defined]
     errors = f"peak pressure {abs(found / exact - 1.0):.2%} off, petalfoil's {abs(ours / exact - 1.0):.2%}"

@@ -15,7 +15,6 @@ from petalfoil.analysis.session import one_thread
 from petalfoil.analysis.solve import solve
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
-from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.physics.forces import film_force
 from petalfoil.system.build import build_problem
 
@@ -99,7 +98,7 @@ def timed(exact: Exact, grid: Grid, repeats: int) -> dict[str, float]:
     calls = {
         "yardstick": lambda: by_yardstick(exact, grid),
         "petalfoil": lambda: solve.record(case),
-        "solution": lambda: solve_cold(build_problem(case), RunLog()),
+        "solution": lambda: solve_cold(build_problem(case)),
     }
     with one_thread():
         return in_turn(calls, repeats)
@@ -110,7 +109,7 @@ def solution(exact: Exact, grid: Grid) -> tuple[float, float]:
     case = exact.case(grid)
     problem = build_problem(case)
     with one_thread():
-        found = solve_cold(problem, RunLog())
+        found = solve_cold(problem)
     bearing, p_a = case.bearing, case.gas.ambient_pressure
     force = film_force(problem.layout.wall.film, bearing.journal_radius, (problem.pressure(found.x) - 1.0) * p_a)
     x, y = force / (p_a * bearing.length * 2.0 * bearing.journal_radius)

@@ -31,7 +31,6 @@ from measure import Row, Value, at_least, in_turn
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
-from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.errors import ConvergenceError
 from petalfoil.physics.forces import contact_force, film_force, node_area
 from petalfoil.system.build import build_problem
@@ -133,7 +132,7 @@ def raced(race: Race, limit: float, repeats: int) -> Row:
     """Time of the classic method over that of Newton's method, both from a cold start to the same solution."""
     problem = build_problem(race.case())
     with one_thread():
-        newton = in_turn({"newton": lambda: solve_cold(problem, RunLog())}, repeats)["newton"]
+        newton = in_turn({"newton": lambda: solve_cold(problem)}, repeats)["newton"]
     lines, stopped = alone(race, limit * race.patience)
     details: dict[str, Value] = {"seconds_newton": newton, "unknowns": problem.layout.n}
     stops = [line for line in lines if "stop" in line]
@@ -237,7 +236,7 @@ def run_classic(race: Race) -> None:
     from petalfoil.classic.relaxation import ClassicRun, relax
 
     problem = build_problem(race.case())
-    found = solve_cold(problem, RunLog())
+    found = solve_cold(problem)
     reference = compared_results(problem, found.x, found.lam)
     engine = Engine(race.engine)
     with contextlib.suppress(ConvergenceError):  # compiles the loops

@@ -17,7 +17,7 @@ from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.continuation import advance
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.build import build_problem
@@ -105,16 +105,16 @@ def cost(grid: Grid, points: int) -> list[Row]:
 def answer(grid: Grid) -> Solution:
     """A solution on the curve with active contacts."""
     problem = build_problem(grid.case(0.5 * FARTHEST))
-    known = solve_cold(problem, RunLog())
-    found, _ = advance(known, problem.at(displacement=1.02 * problem.displacement), RunLog())
-    if found.closed is None:
+    known = solve_cold(problem)
+    found, _ = advance(known, problem.at(displacement=1.02 * problem.displacement))
+    if found.contacts is None:
         raise RuntimeError("the point of the benchmark has no contact set")
     return found
 
 
 def saddle(found: Solution) -> sp.csc_array:
     """Tangent of the original unknowns in natural order, bordered by the active contacts and their multipliers."""
-    closed = found.in_contact
+    closed = found.active
     J, G = found.problem.linearize(found.x).matrix(np.zeros(len(closed))), found.problem.G[closed]
     bordered = sp.csc_array(sp.block_array([[J, -G.T], [G, None]], format="csc"))
     bordered.eliminate_zeros()  # places that petalfoil keeps for contacts and storage are no part of it
@@ -125,10 +125,11 @@ def factorisation(grid: Grid, repeats: int) -> list[Row]:
     """Rows of one factorisation of petalfoil against that of SciPy."""
     with one_thread():
         found = answer(grid)
-        assert found.closed is not None  # `answer` saw to it
-        ties, bordered = found.closed.ties, saddle(found)
+        assert found.contacts is not None  # `answer` saw to it
+        ties, bordered = found.contacts.constraints, saddle(found)
         tangent = found.problem.linearize(found.x).matrix(np.zeros(len(found.lam)))
-        reduced, order = ties.reduce(tangent), ties.rank(found.problem.rank)
+        reduced = ties.reduce(tangent)
+        order = ties.elimination_order(current_run().film_solver, found.problem.elimination_key)
         best = in_turn(
             {
                 "own": lambda: LinearSolver().factor(reduced, order),

@@ -11,7 +11,7 @@ from typing import Any
 
 import petalfoil.analysis.curve  # noqa: F401 - what it calls is watched
 from petalfoil.solvers import contact_newton
-from petalfoil.solvers.constraints import Ties
+from petalfoil.solvers.constraints import ContactConstraints
 from petalfoil.solvers.sparse_lu import Factor, LinearSolver
 from petalfoil.system.coupled import Linearization
 from petalfoil.system.package import PackageLinearization
@@ -20,7 +20,7 @@ Place = tuple[Any, str]
 
 PLACES: dict[str, tuple[Place, ...]] = {
     "factorisation": ((LinearSolver, "factor"),),
-    "assembly": ((Linearization, "matrix"), (PackageLinearization, "matrix"), (Ties, "reduce")),
+    "assembly": ((Linearization, "matrix"), (PackageLinearization, "matrix"), (ContactConstraints, "reduce")),
     "solves": ((Factor, "solve"),),
     "stability": ((sys.modules["petalfoil.analysis.curve"], "leading_eigenvalue"),),
     "contact_search": ((contact_newton, "search"),),

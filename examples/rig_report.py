@@ -24,7 +24,6 @@ from petalfoil.analysis.crossings import CONTACT_FRACTION, crossings
 from petalfoil.analysis.runup import runup
 from petalfoil.analysis.session import one_thread
 from petalfoil.analysis.speeds import SpeedLine
-from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.errors import ConvergenceError
 from petalfoil.plot import style
 from petalfoil.results.record import Record
@@ -70,7 +69,7 @@ def lift_off(case: Case, experiment: Experiment, share: float = CONTACT_FRACTION
     """Lift-off speed under the load of an experiment, looked for from the measured one on [rpm]."""
     near = case.replace(**{"operation.speed": experiment.speed * RPM})
     with one_thread():
-        return crossings(near, experiment.load, share, RunLog())[0] / RPM
+        return crossings(near, experiment.load, share)[0] / RPM
 
 
 # ------------------------------------------------------------------------------------------- tables
@@ -133,7 +132,7 @@ def in_space() -> str:
         "| rpm | contact fraction |",
         "|---:|---:|",
     ]
-    line = SpeedLine(case, (0.0, -first.load), RunLog())
+    line = SpeedLine(case, (0.0, -first.load))
     with one_thread():
         for rpm in (4000.0, 6000.0, 8800.0, 12000.0, 16000.0):
             lines.append(f"| {rpm:.0f} | {100.0 * line.contact_fraction(rpm * RPM):.1f} % |")

@@ -33,7 +33,6 @@ from petalfoil.analysis.crossings import CONTACT_FRACTION, crossing
 from petalfoil.analysis.session import one_thread
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case.package import MAX_ARC_ANGLE
-from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.errors import ConvergenceError, DefinitionError
 
 Array = NDArray[np.float64]
@@ -153,7 +152,7 @@ def lift_off(case: Case, load: float, near: float, share: float = CONTACT_FRACTI
     """Lift-off speed [rpm], looked for from the speed `near`; nan if it is far above."""
     omega = near * math.pi / 30.0
     with one_thread():
-        line = SpeedLine(case, (0.0, -load), RunLog())
+        line = SpeedLine(case, (0.0, -load))
         touching, known = line.contact_fraction(omega) > share, line.known
         if touching and line.contact_fraction(TOO_FAST * omega) > share:
             return math.nan

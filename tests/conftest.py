@@ -7,6 +7,7 @@ import pytest
 from hypothesis import settings
 
 from petalfoil.case import Case
+from petalfoil.equilibrium.run_context import RunContext, running
 from petalfoil.walls import register, unregister
 from tests.walls.elastic_foundation import ElasticFoundation
 
@@ -15,6 +16,13 @@ FOLDERS = ("unit", "contract", "verification", "validation", "regression", "docs
 
 settings.register_profile("petalfoil", derandomize=True, deadline=None, database=None)
 settings.load_profile("petalfoil")
+
+
+@pytest.fixture(autouse=True)
+def run() -> Iterator[RunContext]:
+    """Every test is a run of its own: none inherits counts or elimination orders."""
+    with running() as context:
+        yield context
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from petalfoil.solvers.cone import ConePoint
-from petalfoil.solvers.constraints import tie
+from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.interior_point import NewtonSystem
+from petalfoil.solvers.problem import PrimalDualPoint
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
@@ -32,7 +32,7 @@ def storage(problem: CoupledProblem, x: Array, shift: Array) -> Array:
     """Mass in the cells of the film."""
     layout = problem.layout
     stored = layout.balance.storage(problem.pressure(x), problem.film(x, shift), problem.bearing_number)
-    if layout.film_rows.content is not None:  # the gas inventory replaces the first balance
+    if layout.film_rows.inventory is not None:  # the gas inventory replaces the first balance
         stored[0] = 0.0
     return stored
 
@@ -68,7 +68,7 @@ def test_derivative_by_the_gaps_shift(name: str, rate: float) -> None:
     x, shift = open_state(problem, rng), random_shift(problem, rng)
     direction = rng.uniform(-1.0, 1.0, len(shift))
     start = (storage(problem, x, shift), rate)
-    change = problem.linearize(x, shift).by_shift(direction, rate)
+    change = problem.linearize(x, shift).slack_derivative(direction, rate)
     assert_tangent(lambda t: stepped_residual(problem, x, shift + t * direction, start), change, largest=2.0**-8)
 
 
@@ -99,7 +99,7 @@ SIDES_OF_THE_KINK = {
 """Powers of ten of slacks and reactions."""
 
 
-def cone_point(problem: CoupledProblem, side: str, rng: np.random.Generator) -> ConePoint:
+def cone_point(problem: CoupledProblem, side: str, rng: np.random.Generator) -> PrimalDualPoint:
     """A point of the interior-point method on one side of the kink of the gaps; none of its equations holds."""
     m = problem.G.shape[0]
     s_power, lam_power = SIDES_OF_THE_KINK[side]
@@ -109,7 +109,7 @@ def cone_point(problem: CoupledProblem, side: str, rng: np.random.Generator) -> 
     s, lam = rng.uniform(0.5, 2.0, m) * 10.0**s_powers, rng.uniform(0.5, 2.0, m) * 10.0**lam_powers
     x = open_state(problem, rng)
     x[: problem.layout.n_wall] *= 1e-3
-    return ConePoint(x, s, lam)
+    return PrimalDualPoint(x, s, lam)
 
 
 @pytest.mark.parametrize("rate", [0.0, 0.3])
@@ -153,7 +153,7 @@ def test_tangent_with_active_contacts(name: str, share: float) -> None:
     """Unknowns in active contact move together: the reduced matrix is the derivative of the merged equations."""
     problem, rng = build_problem(bearing(name)), np.random.default_rng(15)
     x = open_state(problem, rng)
-    ties = tie(problem.G, rng.random(problem.G.shape[0]) < share)
+    ties = constrain(problem.G, rng.random(problem.G.shape[0]) < share)
     direction = rng.uniform(-1.0, 1.0, ties.n_free)
     free_of_wall = np.unique(ties.group[problem.layout.n_wall :])
     change = ties.reduce(problem.linearize(x).matrix(np.zeros(problem.G.shape[0]))) @ direction

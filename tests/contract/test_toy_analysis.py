@@ -20,9 +20,9 @@ from petalfoil.analysis.operating_point import at
 from petalfoil.analysis.records import asked_position, geometry
 from petalfoil.analysis.registry import forget
 from petalfoil.analysis.runs import Points
-from petalfoil.analysis.session import Progress
 from petalfoil.case import Case
 from petalfoil.cli.app import app
+from petalfoil.equilibrium.run_context import Progress
 from petalfoil.errors import UnitError, UsageError
 from petalfoil.results.layout import Point, Series, at_speed
 from petalfoil.results.parts import Outcome, scalars_of

@@ -9,7 +9,7 @@ from petalfoil.analysis.curve import curve
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.package_at_rest import at_rest
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.run_context import running
 from petalfoil.system.build import build_problem
 from tests.cases import case
 
@@ -28,9 +28,9 @@ def cold(cells: int) -> list[int]:
     counts = []
     for name in PACKAGES:
         for e in DISPLACEMENTS:
-            work = RunLog()
-            solve_cold(build_problem(bearing(name, cells, e)), work)
-            counts.append(work.film.factorizations + work.package.factorizations)
+            with running() as run:
+                solve_cold(build_problem(bearing(name, cells, e)))
+            counts.append(run.film.factorizations + run.package.factorizations)
     return counts
 
 
@@ -86,6 +86,6 @@ def test_warm_points_cost_the_same_on_a_fine_grid() -> None:
 @pytest.mark.parametrize("cells", [32, 256])
 @pytest.mark.parametrize("name", PACKAGES)
 def test_package_from_nothing(name: str, cells: int) -> None:
-    work = RunLog()
-    assert at_rest(build_problem(bearing(name, cells)), work) is not None
-    assert work.package.factorizations <= 20
+    with running() as run:
+        assert at_rest(build_problem(bearing(name, cells))) is not None
+    assert run.package.factorizations <= 20

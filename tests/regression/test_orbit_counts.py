@@ -16,13 +16,13 @@ def counts(cells: int, revolutions: float) -> dict[str, int]:
     """Of the paper's 8 petals in 2-D at 8000 rad/s: 3 kg with an unbalance of 2 um, released at equilibrium."""
     bearing = case("paper_n8", rotor={"mass": 3.0, "unbalance": 2e-6}, **{"model.cells_per_pitch": cells})
     orbit = Orbit.begin(bearing, OrbitRequest(initial="balance", revolutions=revolutions))
-    before = orbit.work.film.factorizations
+    before = orbit.run.film.factorizations
     for _ in orbit.advance():
         pass
     told = orbit.record().scalars
     assert told["revolutions"] == pytest.approx(revolutions, rel=1e-9)
     names = ("steps", "failed_steps", "rejected_steps")
-    return {"factorisations": orbit.work.film.factorizations - before} | {name: int(told[name]) for name in names}
+    return {"factorisations": orbit.run.film.factorizations - before} | {name: int(told[name]) for name in names}
 
 
 def test_a_factorisation_serves_many_steps() -> None:

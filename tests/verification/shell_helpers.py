@@ -15,9 +15,10 @@ from petalfoil.mesh.axial import AxialGrid, axis_2d
 from petalfoil.mesh.pitch import petal_angles
 from petalfoil.mesh.quadrature import trapezoid
 from petalfoil.physics.shell import PetalShell
-from petalfoil.solvers.cone import ConePoint, ConeProblem
-from petalfoil.solvers.contact_newton import ActiveOptions, Closed, Outcome, active_set
-from petalfoil.solvers.interior_point import InteriorOptions, Step, interior_point
+from petalfoil.solvers.contact_equations import Outcome
+from petalfoil.solvers.contact_newton import ActiveContacts, solve_contacts
+from petalfoil.solvers.interior_point import InteriorOptions, InteriorStep, interior_point
+from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, ContactProblem, PrimalDualPoint
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.coupled import WALL_ROUNDING
 
@@ -110,7 +111,7 @@ class ElasticProblem:
         return len(self.force)
 
     @property
-    def rank(self) -> None:
+    def elimination_key(self) -> None:
         """The solver orders the elimination itself."""
 
     @property
@@ -146,18 +147,18 @@ class ElasticLine:
         return out
 
     @cached_property
-    def size(self) -> Array:
-        """What each row's residual is measured by."""
+    def row_scale(self) -> Array:
+        """What each row's residual is compared with."""
         rounding = WALL_ROUNDING * np.finfo(float).eps * (abs(self.problem.K) @ np.abs(self.x))
-        size: Array = np.maximum(1.0, rounding / ActiveOptions().tolerance)
-        return size
+        scale: Array = np.maximum(1.0, rounding / RESIDUAL_TOLERANCE)
+        return scale
 
-    def matrix(self, theta: Array, rate: float = 0.0) -> sp.csc_array:
-        """`K + G^T diag(theta) G`."""
+    def matrix(self, barrier_weight: Array, rate: float = 0.0) -> sp.csc_array:
+        """`K + G^T diag(barrier_weight) G`."""
         G = self.problem.G
-        return sp.csc_array(self.problem.K + G.T @ sp.diags_array(theta) @ G)
+        return sp.csc_array(self.problem.K + G.T @ sp.diags_array(barrier_weight) @ G)
 
-    def by_shift(self, shift: Array, rate: float = 0.0) -> Array:
+    def slack_derivative(self, change: Array, rate: float = 0.0) -> Array:
         """The residual does not depend on the gaps."""
         return np.zeros(len(self.x))
 
@@ -198,7 +199,7 @@ class Solved:
     ----------
     x, lam : array
         Unknowns and reactions.
-    closed : bool array
+    active : bool array
         Active contacts.
     steps : int
         Steps of the interior point down to the first barrier.
@@ -208,24 +209,24 @@ class Solved:
 
     x: Array
     lam: Array
-    closed: NDArray[np.bool_]
+    active: NDArray[np.bool_]
     steps: int
     polish: int
 
 
-def cold_point(problem: ConeProblem, n: int) -> ConePoint:
+def cold_point(problem: ContactProblem, n: int) -> PrimalDualPoint:
     """Undeformed, with slacks wide enough for every gap and reactions on the central path."""
     gaps = problem.gaps(np.zeros(n))
     width = max(1.0, -float(gaps.min()))
     slack = np.maximum(gaps, width)
-    return ConePoint(np.zeros(n), slack, 300.0 * width * problem.weight / slack)
+    return PrimalDualPoint(np.zeros(n), slack, 300.0 * width * problem.weight / slack)
 
 
-def follow(problem: ConeProblem, start: ConePoint, barrier: float = 1e-5) -> tuple[ConePoint, int]:
+def follow(problem: ContactProblem, start: PrimalDualPoint, barrier: float = 1e-5) -> tuple[PrimalDualPoint, int]:
     """Interior point from `start` until barrier, residual and infeasibility are small; the point and the steps."""
     solver = LinearSolver()
 
-    def watch(_: ConePoint, step: Step) -> bool:
+    def watch(_: PrimalDualPoint, step: InteriorStep) -> bool:
         return step.barrier < barrier and step.residual < 1e-4 and step.infeasibility < 1e-4
 
     point, done = interior_point(problem, start, solver, InteriorOptions(), watch)
@@ -233,10 +234,10 @@ def follow(problem: ConeProblem, start: ConePoint, barrier: float = 1e-5) -> tup
     return point, solver.counter.factorizations
 
 
-def polish(problem: ConeProblem, x: Array, closed: NDArray[np.bool_]) -> tuple[Closed | None, Outcome, int]:
-    """Active set from `x` and `closed`; the answer, how it ended, the factorisations."""
+def polish(problem: ContactProblem, x: Array, active: NDArray[np.bool_]) -> tuple[ActiveContacts | None, Outcome, int]:
+    """Newton from `x` and `active`; the answer, how it ended, the factorisations."""
     solver = LinearSolver()
-    answer, outcome = active_set(problem, x, closed, solver, ActiveOptions())
+    answer, outcome = solve_contacts(problem, (x, active), solver)
     return answer, outcome, solver.counter.factorizations
 
 
@@ -245,7 +246,7 @@ BARRIERS = (1e-5, 1e-8, 1e-11)
 fine grid it must start close."""
 
 
-def solve(problem: ConeProblem, n: int) -> Solved:
+def solve(problem: ContactProblem, n: int) -> Solved:
     """From nothing to exact zeros: interior point, then the active set from where it ends."""
     point, steps = cold_point(problem, n), 0
     outcome = Outcome.STEPS
@@ -254,7 +255,7 @@ def solve(problem: ConeProblem, n: int) -> Solved:
         steps = steps or more
         answer, outcome, count = polish(problem, point.x, point.lam / problem.weight > point.s)
         if answer is not None:
-            return Solved(answer.x, answer.lam, answer.closed, steps, count)
+            return Solved(answer.x, answer.lam, answer.active, steps, count)
     raise AssertionError(outcome.value)
 
 

@@ -13,8 +13,8 @@ from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.solve import solve
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
-from petalfoil.equilibrium.loaded import Balance, force_residual
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.run_context import running
+from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold, rebalance
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.record import Record
@@ -106,15 +106,16 @@ def run_random(count: int) -> tuple[list[Drawn], int]:
     """Balances of random bearings; and how many have no answer at their own position."""
     rng, found, without = np.random.default_rng(SEED), [], 0
     while len(found) + without < count:
-        drawn, work = random_case(rng), RunLog()
+        drawn = random_case(rng)
         try:
-            answer = solve_cold(build_problem(drawn), work)
+            with running() as run:
+                answer = solve_cold(build_problem(drawn))
         except ConvergenceError:
             without += 1
             continue
         pushed = Evaluation.of(drawn, answer).forces()
         load = -pushed.force_x, -pushed.force_y
-        spent = work.film.factorizations + work.package.factorizations
+        spent = run.film.factorizations + run.package.factorizations
         found.append(Drawn(drawn, spent, balance.record(drawn, load)))
     return found, without
 
@@ -174,17 +175,18 @@ def test_a_floating_journal_is_carried_by_the_film() -> None:
 def test_a_sweep_of_load_is_warm_and_agrees_with_cold_starts() -> None:
     problem = build_problem(case("paper_n8", **COARSE, **{"operation.eccentricity": (0.0, 0.0)}))
     unit = problem.layout.scales.force
-    known: Balance | None = None
+    known: Solution | None = None
     counts = []
     for load in np.linspace(10.0, 90.0, 17):
-        work, force = RunLog(), np.array([0.0, -load]) / unit
-        known = balance_cold(problem, force, work) if known is None else rebalance(known, problem, force, work)
-        counts.append(work.film.factorizations)
-        assert force_residual(known.answer, force) <= RESIDUAL
+        force = np.array([0.0, -load]) / unit
+        with running() as run:
+            known = balance_cold(problem, force) if known is None else rebalance(known, problem, force)
+        counts.append(run.film.factorizations)
+        assert known.force_residual <= RESIDUAL
         if len(counts) % 4:
             continue
-        cold = balance_cold(problem, force, RunLog())
-        assert_allclose(known.answer.problem.displacement, cold.answer.problem.displacement, rtol=0.0, atol=1e-8)
+        cold = balance_cold(problem, force)
+        assert_allclose(known.problem.displacement, cold.problem.displacement, rtol=0.0, atol=1e-8)
     assert np.median(counts[1:]) <= 8
 
 

@@ -15,11 +15,10 @@ from petalfoil.case import Case
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.equilibrium.branches import fingerprint
 from petalfoil.equilibrium.cold_start import solve_cold
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.continuation import settle
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.equilibrium.warm_start import settle
 from petalfoil.errors import ConvergenceError
-from petalfoil.solvers.constraints import tie
+from petalfoil.solvers.constraints import constrain
 from petalfoil.system.build import build_problem
 from tests.cases import case
 from tests.random_packages import random_case
@@ -37,7 +36,7 @@ def dense_leading(answer: Solution) -> complex:
     """Rightmost finite eigenvalue of `J u = -s M u` by the QZ algorithm on the reduced pencil."""
     problem = answer.problem
     line, none = problem.linearize(answer.x), np.zeros(len(problem.weight))
-    ties = tie(problem.G, answer.in_contact)
+    ties = constrain(problem.G, answer.active)
     J = ties.reduce(line.matrix(none)).toarray()
     M = ties.reduce((line.matrix(none, 1.0) - line.matrix(none)).tocsc()).toarray()
     s = la.eigvals(-J, M)
@@ -48,8 +47,8 @@ def dense_leading(answer: Solution) -> complex:
 @pytest.mark.parametrize("number", [0, 4, 8, 88])
 def test_the_leading_eigenvalue_is_the_rightmost(number: int) -> None:
     """Within 0.5 % of its magnitude; the dense spectrum tells. The cold start of case 88 is unstable."""
-    answer = solve_cold(build_problem(drawn(number)), RunLog())
-    exact, found = dense_leading(answer), leading_eigenvalue(answer, RunLog())
+    answer = solve_cold(build_problem(drawn(number)))
+    exact, found = dense_leading(answer), leading_eigenvalue(answer)
     assert (exact.real > 0.0) == (found.real > 0.0) == (number == 88)
     assert_allclose(found.real, exact.real, rtol=0.0, atol=5e-3 * abs(exact))
     assert_allclose(abs(found.imag), abs(exact.imag), rtol=0.0, atol=5e-2 * abs(exact))
@@ -60,26 +59,26 @@ def test_forty_leading_eigenvalues() -> None:
     """Signs are right in all, the rightmost is found within 2 %; half of them ask for 30 solves or fewer."""
     for number in range(40):
         try:
-            answer = solve_cold(build_problem(drawn(number).replace(**{"model.cells_per_pitch": 24})), RunLog())
+            answer = solve_cold(build_problem(drawn(number).replace(**{"model.cells_per_pitch": 24})))
         except ConvergenceError:
             continue
-        exact, found = dense_leading(answer), leading_eigenvalue(answer, RunLog())
+        exact, found = dense_leading(answer), leading_eigenvalue(answer)
         assert_allclose(found.real, exact.real, rtol=0.0, atol=2e-2 * abs(exact), err_msg=str(number))
 
 
 def test_a_stable_equilibrium_is_called_so() -> None:
-    answer = solve_cold(build_problem(case("paper_n8", **{"model.cells_per_pitch": 16})), RunLog())
+    answer = solve_cold(build_problem(case("paper_n8", **{"model.cells_per_pitch": 16})))
     assert dense_leading(answer).real < 0.0
-    assert leading_eigenvalue(answer, RunLog()).real < 0.0
+    assert leading_eigenvalue(answer).real < 0.0
 
 
 def test_an_unstable_equilibrium_is_left_for_a_stable_one() -> None:
     problem = build_problem(drawn(88))
-    unstable = solve_cold(problem, RunLog())
-    assert leading_eigenvalue(unstable, RunLog()).real > 0.0
-    rested = settle(unstable, RunLog())
+    unstable = solve_cold(problem)
+    assert leading_eigenvalue(unstable).real > 0.0
+    rested = settle(unstable)
     assert rested is not None
-    assert leading_eigenvalue(rested, RunLog()).real < 0.0
+    assert leading_eigenvalue(rested).real < 0.0
     before, after = fingerprint(unstable), fingerprint(rested)
     assert np.max(np.abs(after - before)) > 1e-3 * before[0]
 

@@ -14,12 +14,10 @@ from petalfoil.analysis.impedance import impedance
 from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.stability import stability
 from petalfoil.case import Case
-from petalfoil.equilibrium.linear_response import Motion
-from petalfoil.equilibrium.loaded import Balance, journal_force
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.continuation import follow
+from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold
-from petalfoil.equilibrium.warm_start import follow
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.record import Record
 from petalfoil.system.build import build_problem
@@ -94,13 +92,13 @@ def test_a_displacement_across_the_line_of_centres_turns_the_force() -> None:
     record = coefficients.record(bearing, [0.0])
     K = record.fields["stiffness"][0]
     answer = operating(bearing)
-    F = journal_force(problem, answer.x[problem.positive], answer.lam) * problem.layout.scales.force
+    F = problem.journal_force(answer.x, answer.lam) * problem.layout.scales.force
     turned = np.array([-F[1], F[0]]) / e
     assert_allclose(-K[:, 0], turned, rtol=0.0, atol=3e-4 * float(np.hypot(*turned)))
 
 
 def operating(bearing: Case) -> Solution:
-    answer = operating_point(bearing, None, RunLog()).answer
+    answer = operating_point(bearing, None).answer
     return answer
 
 
@@ -118,10 +116,10 @@ def test_centred_plain_journal_whirls_at_half_its_speed_however_light() -> None:
 PETALS = {"model.cells_per_pitch": 32}
 
 
-def balanced(speed: float, load: float) -> Balance:
+def balanced(speed: float, load: float) -> Solution:
     bearing = case("paper_n8", **PETALS, **{"operation.speed": speed, "operation.eccentricity": (0.0, 0.0)})
     problem = build_problem(bearing)
-    return balance_cold(problem, np.array([0.0, -load]) / problem.layout.scales.force, RunLog())
+    return balance_cold(problem, np.array([0.0, -load]) / problem.layout.scales.force)
 
 
 def differences(answer: Solution, step: float) -> Array:
@@ -132,10 +130,10 @@ def differences(answer: Solution, step: float) -> Array:
         for side in (-step, step):
             moved = answer.problem.displacement.copy()
             moved[k] += side
-            near = follow(answer, answer.problem.at(displacement=moved), RunLog())
+            near = follow(answer, answer.problem.at(displacement=moved))
             assert near is not None
-            assert np.array_equal(near.in_contact, answer.in_contact)
-            forces.append(journal_force(near.problem, near.x[near.problem.positive], near.lam))
+            assert np.array_equal(near.active, answer.active)
+            forces.append(near.problem.journal_force(near.x, near.lam))
         columns.append(-(forces[1] - forces[0]) / (2.0 * step))
     return np.column_stack(columns)
 
@@ -143,11 +141,11 @@ def differences(answer: Solution, step: float) -> Array:
 @pytest.mark.parametrize(("speed", "load", "touching"), [(8000.0, 20.0, False), (800.0, 20.0, True)])
 def test_stiffness_of_petals_is_the_slope_of_equilibria(speed: float, load: float, touching: bool) -> None:
     """Within 1e-5 of its size, with contacts of the journal closed and without; 4e-9 when this was written."""
-    answer = balanced(speed, load).answer
+    answer = balanced(speed, load)
     journal = answer.problem.layout.wall.contacts.journal
-    assert bool(answer.in_contact[journal].any()) == touching
+    assert bool(answer.active[journal].any()) == touching
     scales = answer.problem.layout.scales
-    K, _ = impedance(Motion.about(answer), 0.0, speed, RunLog())
+    K, _ = impedance(SmallMotion.about(answer), 0.0, speed)
     slope = differences(answer, 1e-4) * scales.force / scales.length
     assert_allclose(K, slope, rtol=0.0, atol=1e-5 * float(np.max(np.abs(slope))))
 
@@ -161,15 +159,15 @@ def test_impedance_of_petals_solves_the_equations_linearised_by_differences() ->
     bearing = case("paper_n8", **{"model.cells_per_pitch": 16, "operation.speed": 8000.0})
     bearing = bearing.replace(**{"operation.eccentricity": (0.0, -30e-6)})
     answer = operating(bearing)
-    assert not answer.in_contact[answer.problem.layout.wall.contacts.journal].any()
+    assert not answer.active[answer.problem.layout.wall.contacts.journal].any()
     nu = 0.7
-    K, C = impedance(Motion.about(answer), nu * 8000.0, 8000.0, RunLog())
+    K, C = impedance(SmallMotion.about(answer), nu * 8000.0, 8000.0)
     Z = by_differences(answer, nu) * answer.problem.layout.scales.force / answer.problem.layout.scales.length
     assert_allclose(K + 1j * nu * 8000.0 * C, Z, rtol=0.0, atol=1e-5 * float(np.max(np.abs(Z))))
 
 
 def by_differences(answer: Solution, nu: float, step: float = 1e-5) -> NDArray[np.complex128]:
-    problem, closed = answer.problem, answer.in_contact
+    problem, closed = answer.problem, answer.active
     G = problem.G.toarray()[closed]
     _, sizes, rows = np.linalg.svd(G)
     free = rows[int((sizes > 1e-10).sum()) :].T  # motions that keep closed gaps closed
@@ -200,10 +198,7 @@ def by_differences(answer: Solution, nu: float, step: float = 1e-5) -> NDArray[n
     for de in np.eye(2):
         dx = free @ np.linalg.solve(matrix, -(free.T @ slope(np.zeros(len(answer.x)), de)))
         dP = dx[problem.positive]
-        forces.append(
-            journal_force(problem, 1.0 + dP.real, answer.lam * 0.0)
-            + 1j * journal_force(problem, 1.0 + dP.imag, answer.lam * 0.0)
-        )
+        forces.append(problem.border.row_derivative @ dP)
     return -np.column_stack(forces)
 
 

@@ -80,7 +80,7 @@ def test_tip_reaction(grid: str) -> None:
         for cells in CELLS:
             _, lam, answer = at_wall(grid, cells, gap)
             errors.append(lam.sum() / reaction - 1.0)
-            assert answer.closed[:-1].sum() <= (1 if gap < 0.0139 else 0)  # at G = 1/72 the strip begins to lie down
+            assert answer.active[:-1].sum() <= (1 if gap < 0.0139 else 0)  # at G = 1/72 the strip begins to lie down
         assert abs(errors[1]) < 4e-3, gap
         assert orders(errors).min() > 1.9, gap
 
@@ -93,8 +93,8 @@ def test_line_contact(grid: str) -> None:
         for cells in CELLS:
             x, lam, answer = at_wall(grid, cells, gap)
             cell = float(np.diff(x).max())
-            first = int(np.argmax(answer.closed))
-            assert answer.closed[first:].all()
+            first = int(np.argmax(answer.active))
+            assert answer.active[first:].all()
             assert abs(x[first] - a) < cell
             # the first two touching nodes bear the line reaction and the pressure on their own share
             line = lam[first : first + 2].sum() - trapezoid(np.append(0.0, x))[1:][first : first + 2].sum()
@@ -231,7 +231,7 @@ def test_stacked_leaves() -> None:
         for cells in (20, 40, 80):
             problem, m = leaves_problem(cells, a, D2)
             answer = solve(problem, problem.n)
-            assert np.flatnonzero(answer.closed).tolist() == [m - 1]
+            assert np.flatnonzero(answer.active).tolist() == [m - 1]
             errors.append([answer.lam.sum() / cells / X - 1.0, answer.x[cells - 1] * UNIT / tip - 1.0])
         assert np.abs(errors[2]).max() < 1e-3
         assert orders(np.array(errors)).min() > 1.9
@@ -270,7 +270,7 @@ def test_interior_point_takes_as_many_steps_on_every_grid(gap: float) -> None:
 def test_active_set_is_quick_from_the_set_of_a_coarser_grid(gap: float) -> None:
     coarse = at_wall("uniform", 64, gap)[2]
     fine = wall_problem(uniform_grid(1.0, 128), gap)
-    closed = np.repeat(coarse.closed, 2)
+    closed = np.repeat(coarse.active, 2)
     start = np.interp(np.arange(1, 129) / 128.0, np.arange(65) / 64.0, np.append(0.0, coarse.x))
     answer, outcome, count = polish(fine, start, closed)
     assert outcome is Outcome.CONVERGED

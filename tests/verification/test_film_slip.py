@@ -15,7 +15,6 @@ from petalfoil.analysis.check import check
 from petalfoil.analysis.solve import solve
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
-from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.mesh.axial import axis_3d
 from petalfoil.physics.forces import viscous_torque
 from petalfoil.physics.mass_balance import FilmBalance
@@ -151,7 +150,7 @@ def test_the_middle_of_a_long_bearing_is_the_2d_model() -> None:
     for bearing in (long, short.replace(**{"model.kind": "2d"})):
         problem = build_problem(bearing)
         assert problem.layout.balance.knudsen == pytest.approx(bearing.gas.mean_free_path / 25e-6)
-        answer = solve_cold(problem, RunLog())
+        answer = solve_cold(problem)
         answers.append((problem, problem.pressure(answer.x)[0, :, -1]))
     (_, middle), (problem, P) = answers
     assert_allclose(middle, P, rtol=1e-6)

@@ -12,7 +12,8 @@ from petalfoil.analysis.static import static
 from petalfoil.equilibrium.friction_path import FrictionResult, slide
 from petalfoil.errors import UsageError
 from petalfoil.physics.dry_friction import Friction, halves, slopes
-from petalfoil.solvers.contact_newton import ActiveOptions, active_set
+from petalfoil.solvers.contact_equations import ContactOptions
+from petalfoil.solvers.contact_newton import solve_contacts
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.friction import FrictionState
 from tests.cases import case
@@ -35,25 +36,23 @@ WIDTH = 3e-4
 """Slip within which friction builds up [UNIT]; the slips of these tests are of the order of 1."""
 
 
-def start(
-    problem: ElasticProblem, friction: Friction, closed: NDArray[np.bool_]
-) -> tuple[Array, Array, NDArray[np.bool_], FrictionState]:
+def start(problem: ElasticProblem, friction: Friction, active: NDArray[np.bool_]) -> FrictionResult:
     """The equilibrium without friction, from which a path begins."""
-    found, outcome = active_set(problem, np.zeros(problem.n), closed, LinearSolver(), ActiveOptions(max_steps=40))
+    begin = np.zeros(problem.n), active
+    found, outcome = solve_contacts(problem, begin, LinearSolver(), ContactOptions(tangents=40))
     assert found is not None, outcome
-    return found.x, found.lam, found.closed, FrictionState.fresh(friction, found.x, found.lam)
+    fresh = FrictionState.fresh(friction, found.x, found.lam)
+    return FrictionResult(found.x, found.lam, found.active, found.state.residual, fresh, 0.0)
 
 
-def follow(
-    problems: list[ElasticProblem], friction: Friction, begin: tuple[Array, Array, NDArray[np.bool_], FrictionState]
-) -> list[FrictionResult]:
+def follow(problems: list[ElasticProblem], friction: Friction, begin: FrictionResult) -> list[FrictionResult]:
     """Each problem in turn, from where the one before ended."""
     states, before = [], begin
     for problem in problems:
         slid = slide(problem, friction, before, LinearSolver())
         assert slid is not None
         states.append(slid)
-        before = slid.x, slid.lam, slid.closed, slid.rubbed
+        before = slid
     return states
 
 

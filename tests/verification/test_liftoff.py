@@ -13,7 +13,7 @@ from petalfoil.analysis.crossings import CONTACT_FRACTION, PRECISION, crossings
 from petalfoil.analysis.liftoff import liftoff
 from petalfoil.analysis.runup import runup
 from petalfoil.analysis.speeds import SpeedLine
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.run_context import current_run
 from petalfoil.errors import UsageError
 from petalfoil.results.record import Record
 from tests.cases import case
@@ -49,7 +49,7 @@ def test_the_share_is_crossed_within_a_thousandth_of_the_speed(lifted: Record) -
 def test_a_heavier_load_lifts_off_later(lifted: Record) -> None:
     """Where load rules and not preload: above 10 N on the paper's eight petals."""
     near = BEARING.replace(**{"operation.speed": number(lifted, "liftoff_speed")})
-    lighter, heavier = (crossings(near, load, CONTACT_FRACTION, RunLog())[0] for load in (0.8 * LOAD, 1.25 * LOAD))
+    lighter, heavier = (crossings(near, load, CONTACT_FRACTION)[0] for load in (0.8 * LOAD, 1.25 * LOAD))
     assert lighter < number(lifted, "liftoff_speed") < heavier
 
 
@@ -57,7 +57,7 @@ def test_from_below_and_from_above_the_same_crossings_are_found(lifted: Record) 
     """The case touches at its own speed, so that `lifted` ascended first; a faster one descends first."""
     faster = BEARING.replace(**{"operation.speed": 1.3 * number(lifted, "liftoff_speed")})
     assert share(BEARING.operation.speed, LOAD) > CONTACT_FRACTION >= share(faster.operation.speed, LOAD)
-    found = crossings(faster, LOAD, CONTACT_FRACTION, RunLog())
+    found = crossings(faster, LOAD, CONTACT_FRACTION)
     wanted = [number(lifted, name) for name in ("liftoff_speed", "touchdown_speed")]
     assert_allclose(found, wanted, rtol=1.1 * PRECISION, atol=0.0)
 
@@ -67,7 +67,7 @@ def test_sensitivity_is_that_of_another_floor_and_share(lifted: Record) -> None:
     near = BEARING.replace(
         **{"operation.speed": up, "surface.contact_film_thickness": factor * BEARING.surface.contact_film_thickness}
     )
-    by_floor = math.log(crossings(near, LOAD, CONTACT_FRACTION, RunLog())[0] / up) / math.log(factor)
+    by_floor = math.log(crossings(near, LOAD, CONTACT_FRACTION)[0] / up) / math.log(factor)
     assert_allclose(number(lifted, "liftoff_by_contact_film_thickness"), by_floor, rtol=0.0, atol=0.05)
     assert -0.2 < number(lifted, "liftoff_by_contact_fraction") < 0.0  # a smaller share is reached later, if little
 
@@ -137,12 +137,12 @@ def test_the_way_down_returns_where_nothing_snaps(legs: dict[str, list[Record]])
 
 
 def test_a_line_of_speeds_is_warm() -> None:
-    work = RunLog()
-    line = SpeedLine(BEARING, (0.0, -20.0), work)
+    run = current_run()
+    line = SpeedLine(BEARING, (0.0, -20.0))
     line.at(3000.0)
     counts = []
     for speed in np.linspace(2950.0, 2500.0, 10):
-        before = work.film.factorizations
+        before = run.film.factorizations
         line.at(float(speed))
-        counts.append(work.film.factorizations - before)
+        counts.append(run.film.factorizations - before)
     assert np.median(counts) <= 6

@@ -18,9 +18,7 @@ from petalfoil.analysis.stability import stability
 from petalfoil.case import Case
 from petalfoil.dynamics.critical_mass import neutral_whirl, scan
 from petalfoil.dynamics.natural_modes import PEAK, Mode, natural_modes
-from petalfoil.equilibrium.linear_response import Motion
-from petalfoil.equilibrium.run_log import RunLog
-from petalfoil.system.loaded import FilmForce
+from petalfoil.equilibrium.linear_response import SmallMotion
 from tests.cases import case
 
 Complex = NDArray[np.complex128]
@@ -31,18 +29,17 @@ def plain(grid: tuple[int, int], e: tuple[float, float] = (0.0, 0.0)) -> Case:
     return case("plain_journal", **sizes, **{"operation.eccentricity": e})
 
 
-def at(bearing: Case, load: float = 0.0) -> tuple[Motion, RunLog]:
+def at(bearing: Case, load: float = 0.0) -> SmallMotion:
     """Small motions under a load along -y, or at the case's eccentricity."""
-    work = RunLog()
-    answer = operating_point(bearing, (0.0, -load) if load else None, work).answer
-    return elastic(bearing, answer, work), work
+    answer = operating_point(bearing, (0.0, -load) if load else None).answer
+    return elastic(bearing, answer)
 
 
 def modes_of(bearing: Case, masses: Sequence[float], load: float = 0.0) -> list[list[Mode]]:
     """The modes with each mass [kg]."""
-    motion, work = at(bearing, load)
-    scanned = scan(motion, work)
-    return [natural_modes(motion, mass * bearing.operation.speed**2, scanned, work) for mass in masses]
+    motion = at(bearing, load)
+    scanned = scan(motion)
+    return [natural_modes(motion, mass * bearing.operation.speed**2, scanned) for mass in masses]
 
 
 # ---------------------------------------------------------------------------------------------- plain journal
@@ -125,8 +122,8 @@ def test_without_a_mass_there_are_no_modes() -> None:
 )
 def test_at_the_critical_mass_a_mode_neither_grows_nor_dies_out(bearing: Case, load: float) -> None:
     """Its frequency is the whirl ratio's; a little more mass lets it grow, a little less lets it die out."""
-    motion, work = at(bearing, load)
-    threshold = neutral_whirl(motion, bearing.operation.speed, work)
+    motion = at(bearing, load)
+    threshold = neutral_whirl(motion, bearing.operation.speed)
     assert math.isfinite(threshold.mass)
     masses = [threshold.mass * by for by in (0.95, 1.0, 1.05)]
     lighter, neutral, heavier = (max((mode.s for mode in modes), key=real) for modes in modes_of(bearing, masses, load))
@@ -142,25 +139,24 @@ def real(s: complex) -> float:
 # ---------------------------------------------------------------------------------------------- the whole operator
 
 
-def whole_operator(motion: Motion, inertia: float) -> tuple[Complex, NDArray[np.float64]]:
+def whole_operator(motion: SmallMotion, inertia: float) -> tuple[Complex, NDArray[np.float64]]:
     """All finite eigenvalues of film, petals and journal, and the journal's share of each mode; dense.
 
     Unknowns: free motions `y`, position `e`, velocity `v`. With `N` the motion that keeps gaps closed when the journal
     moves, `x = S y + N e`; the force of the closed contacts on the journal is `-N^T` times what acts on the tied rows.
     """
-    problem, ties = motion.problem, motion.ties
+    problem, ties = motion.problem, motion.constraints
     scales, n = problem.layout.scales, len(ties.group)
     by_e = problem.layout.wall.contacts.by_e
     S = np.column_stack([ties.spread(unit) for unit in np.eye(ties.n_free)])
-    N = np.column_stack([ties.close(by_e[motion.closed, k]) for k in (0, 1)])
+    N = np.column_stack([ties.close(by_e[ties.held, k]) for k in (0, 1)])
     push = np.zeros((2, n))
-    push[:, problem.positive] = np.column_stack(
-        [FilmForce.of(problem).by_P @ unit for unit in np.eye(n)[problem.positive, problem.positive]]
-    )
+    push[:, problem.positive] = problem.border.row_derivative
     blocks = []
     for matrix, rate in ((motion.steady, 0.0), (motion.stored, 1.0)):
         full = matrix.toarray()
-        shift = [motion.line.by_shift(by_e[:, k], rate) - rate * motion.line.by_shift(by_e[:, k]) for k in (0, 1)]
+        by_slack = motion.linearized.slack_derivative
+        shift = [by_slack(by_e[:, k], rate) - rate * by_slack(by_e[:, k]) for k in (0, 1)]
         forced = full @ N + np.column_stack(shift)
         force = (0.0 if rate else push) - N.T @ full
         offset = -N.T @ np.column_stack(shift)
@@ -192,11 +188,11 @@ OPERATORS = {
 def test_modes_are_the_eigenvalues_of_the_whole_operator(name: str) -> None:
     """Each found mode is one, with its participation; and each one in which the rotor takes part is found."""
     bearing, load, masses = OPERATORS[name]
-    motion, work = at(bearing, load)
-    scanned = scan(motion, work)
+    motion = at(bearing, load)
+    scanned = scan(motion)
     for mass in masses:
         inertia = mass * bearing.operation.speed**2
-        modes = natural_modes(motion, inertia, scanned, work)
+        modes = natural_modes(motion, inertia, scanned)
         s, share = whole_operator(motion, inertia)
         assert modes
         for mode in modes:

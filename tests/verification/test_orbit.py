@@ -19,7 +19,6 @@ from petalfoil.analysis.stability import stability
 from petalfoil.case import Case
 from petalfoil.dynamics.adaptive_steps import MarchOptions, march
 from petalfoil.dynamics.time_state import Instant
-from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.results.record import Record
 from tests.cases import case
 from tests.verification.film_helpers import table
@@ -193,7 +192,7 @@ def equal_steps(bearing: Case, step: float, end: float) -> Orbit:
     """A motion in equal steps [units of time]."""
     orbit = Orbit.begin(bearing, OrbitRequest(duration=1.0))
     options = MarchOptions(tolerance=1e-5, first=step, longest=step, fixed=True)
-    for stepped in march(orbit.system, orbit.start, end, RunLog(), options):
+    for stepped in march(orbit.system, orbit.start, end, options):
         orbit.trace.add(stepped.end)
     return orbit
 

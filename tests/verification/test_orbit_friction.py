@@ -77,7 +77,7 @@ def test_a_restart_goes_on_with_the_friction_that_was_there() -> None:
     assert np.any(first["last_friction"].to_numpy())
     second, once = follow(bearing, half, first), follow(bearing, whole)
     begin = Orbit.begin(bearing, half, first).start
-    assert begin.rubbed is not None
-    assert np.array_equal(begin.rubbed.force, first["last_friction"].to_numpy())
+    assert begin.friction is not None
+    assert np.array_equal(begin.friction.force, first["last_friction"].to_numpy())
     for name in ("x", "y"):
         assert np.asarray(second.fields[name])[-1] == pytest.approx(np.asarray(once.fields[name])[-1], abs=1e-8)

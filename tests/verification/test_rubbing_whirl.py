@@ -16,17 +16,15 @@ from petalfoil.analysis.impedance import elastic, impedance, sliding_at
 from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.stability import stability
 from petalfoil.case import Case
-from petalfoil.dynamics.harmonic_balance import Cycle
-from petalfoil.equilibrium.friction_path import slide
-from petalfoil.equilibrium.linear_response import Motion
-from petalfoil.equilibrium.loaded import journal_force
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.dynamics.harmonic_balance import FrictionCycle
+from petalfoil.equilibrium.friction_path import FrictionResult, slide
+from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import UnitError, UsageError
+from petalfoil.physics.dry_friction import Friction
 from petalfoil.results.record import Record
 from petalfoil.solvers.sparse_lu import LinearSolver
-from petalfoil.system.friction import FrictionState, friction_of, held_together
-from petalfoil.system.loaded import FilmForce
+from petalfoil.system.friction import FrictionState, friction_of, friction_tangent, slips
 from tests.cases import case
 
 Array = NDArray[np.float64]
@@ -43,7 +41,7 @@ def bearing(friction: float = 0.3, width: float = 1e-9, speed: float = 8000.0) -
 @cache
 def answer_of(speed: float = 8000.0) -> Solution:
     """The equilibrium under the load; friction has no force there."""
-    answer = operating_point(bearing(speed=speed), LOAD, RunLog()).answer
+    answer = operating_point(bearing(speed=speed), LOAD).answer
     return answer
 
 
@@ -67,9 +65,9 @@ def assert_near(found: Complex, wanted: Complex, rtol: float) -> None:
 def test_stiffness_of_stuck_petals_is_the_slope_of_equilibria_with_friction(speed: float, touching: bool) -> None:
     """Within 1e-5 of its size; friction is strong and soft, so that nothing slips in a step of 1 nm."""
     rubs, answer = bearing(5.0, 5e-9 / 0.3, speed), answer_of(speed)
-    assert bool(answer.in_contact[answer.problem.layout.wall.contacts.journal].any()) == touching
-    K, _ = impedance(elastic(rubs, answer, RunLog()), 0.0, speed, RunLog())
-    free, _ = impedance(Motion.about(answer), 0.0, speed, RunLog())
+    assert bool(answer.active[answer.problem.layout.wall.contacts.journal].any()) == touching
+    K, _ = impedance(elastic(rubs, answer), 0.0, speed)
+    free, _ = impedance(SmallMotion.about(answer), 0.0, speed)
     slope = differences(rubs, answer, 1e-4)
     assert_allclose(K, slope, rtol=0.0, atol=1e-5 * float(np.max(np.abs(slope))))
     assert K[0, 0] > 2.0 * free[0, 0]
@@ -80,7 +78,7 @@ def differences(rubs: Case, answer: Solution, step: float) -> Array:
     layout = answer.problem.layout
     friction, columns = friction_of(rubs, layout), []
     assert friction is not None
-    before = answer.x, answer.lam, answer.in_contact, FrictionState.fresh(friction, answer.x, answer.lam)
+    before = unslid(answer, friction)
     for k in (0, 1):
         forces = []
         for side in (-step, step):
@@ -89,8 +87,8 @@ def differences(rubs: Case, answer: Solution, step: float) -> Array:
             problem = answer.problem.at(displacement=moved)
             near = slide(problem, friction, before, LinearSolver())
             assert near is not None
-            assert np.array_equal(near.closed, answer.in_contact)
-            forces.append(journal_force(problem, near.x[problem.positive], near.lam))
+            assert np.array_equal(near.active, answer.active)
+            forces.append(problem.journal_force(near.x, near.lam))
         columns.append(-(forces[1] - forces[0]) / (2.0 * step))
     return np.column_stack(columns) * layout.scales.force / layout.scales.length
 
@@ -101,11 +99,11 @@ def test_natural_modes_are_those_of_stuck_petals(monkeypatch: pytest.MonkeyPatch
     mass, bearings = 0.05, [bearing(mu).replace(**{"model.cells_per_pitch": 12}) for mu in (0.3, 0.0)]
     stuck, free = (stability.record(one, load=LOAD, mass=mass).fields for one in bearings)
     assert np.all(stuck["natural_frequency"][-1] > 1.3 * free["natural_frequency"])
-    answer = operating_point(bearings[0], LOAD, RunLog()).answer
+    answer = operating_point(bearings[0], LOAD).answer
     scales = answer.problem.layout.scales
     s = (stuck["mode_growth_rate"] + 1j * stuck["natural_frequency"]) / 8000.0
     for value in s:
-        gradient = elastic(bearings[0], answer, RunLog()).growing(value, LinearSolver()).force_gradient()
+        gradient = elastic(bearings[0], answer).growing(value, LinearSolver()).force_gradient
         inertia = mass * (8000.0 * value) ** 2 * np.eye(2)
         sizes = np.linalg.svd(inertia - gradient * scales.force / scales.length, compute_uv=False)
         assert sizes[1] < 1e-6 * abs(inertia[0, 0])
@@ -114,15 +112,15 @@ def test_natural_modes_are_those_of_stuck_petals(monkeypatch: pytest.MonkeyPatch
 # ------------------------------------------------------------------------------------------ cycles
 
 
-def cycle(amplitude: float, nu: float = 0.7) -> tuple[Cycle, Complex]:
+def cycle(amplitude: float, nu: float = 0.7) -> tuple[FrictionCycle, Complex]:
     """A cycle at a whirl ratio, and its slips by a unit displacement along x, (k,)."""
     answer = answer_of()
     sliding = sliding_at(bearing(), answer)
     assert sliding is not None
-    response = Motion.about(answer).respond(nu, LinearSolver())
-    whirl = Cycle(sliding, response, amplitude / answer.problem.layout.scales.length)
-    free = sliding.slips(response.unit(0)[0])
-    return whirl, whirl.settled(free, whirl.compliance(), RunLog())
+    response = SmallMotion.about(answer).respond(nu, LinearSolver())
+    whirl = FrictionCycle(sliding, response, amplitude / answer.problem.layout.scales.length)
+    free = slips(sliding.friction, response.tangent.units[:, 0])
+    return whirl, whirl.settled(free, whirl.compliance())
 
 
 @pytest.mark.parametrize("amplitude", [0.6e-6, 1e-6, 3e-6, 30e-6])
@@ -133,11 +131,10 @@ def test_cycles_are_motions_with_their_equivalent_stiffness_in_the_tangent(ampli
     assert (np.mean(stiffness.imag > 0.0) > 0.6) == (amplitude > 2e-6)
     assert np.any(stiffness.imag > 0.0)
     n = len(answer_of().x)
-    held = held_together(whirl.sliding.friction, stiffness, n)
-    whole = replace(whirl.response.motion, held=held).respond(0.7, LinearSolver())
-    change, reactions = whole.unit(0)
-    assert_near(whirl.sliding.slips(change), slip, 1e-9)
-    assert_near(whirl.force_gradient(RunLog())[:, 0], whole.force(change, reactions), 1e-9)
+    sticking = friction_tangent(whirl.sliding.friction, stiffness, n)
+    whole = replace(whirl.response.motion, sticking=sticking).respond(0.7, LinearSolver())
+    assert_near(slips(whirl.sliding.friction, whole.tangent.units[:, 0]), slip, 1e-9)
+    assert_near(whirl.force_gradient()[:, 0], whole.force_gradient[:, 0], 1e-9)
 
 
 def test_what_a_cycle_takes_is_the_area_of_its_loops_and_the_work_of_the_film() -> None:
@@ -147,14 +144,14 @@ def test_what_a_cycle_takes_is_the_area_of_its_loops_and_the_work_of_the_film() 
     size = np.abs(slip) * a
     loops = np.sum(4.0 * sliding.limit * np.maximum(size - sliding.limit / sliding.friction.stiffness, 0.0))
     n, layout = len(answer_of().x), problem.layout
-    held = held_together(sliding.friction, sliding.equivalent(slip, a)[0], n)
-    change, reactions = replace(whirl.response.motion, held=held).respond(0.7, LinearSolver()).unit(0)
+    sticking = friction_tangent(sliding.friction, sliding.equivalent(slip, a)[0], n)
+    whole = replace(whirl.response.motion, sticking=sticking).respond(0.7, LinearSolver())
+    change = whole.tangent.units[:, 0]
     w, P = change[: layout.n_wall], change[problem.positive]
-    film = -np.pi * a**2 * np.imag(np.conj(w) @ (layout.push @ P) + (FilmForce.of(problem).by_P @ P)[0])
-    taken = -np.pi * a**2 * whirl.force_gradient(RunLog())[0, 0].imag
+    film = -np.pi * a**2 * np.imag(np.conj(w) @ (layout.push @ P) + (problem.border.row_derivative @ P)[0])
+    taken = -np.pi * a**2 * whirl.force_gradient()[0, 0].imag
     assert loops > 0.5 * taken > 0.0
     assert_allclose(taken, loops + film, rtol=1e-9)
-    assert len(reactions) == int(answer_of().in_contact.sum())
 
 
 @pytest.mark.parametrize("amplitude", [1e-6, 3e-6])
@@ -164,10 +161,16 @@ def test_cycles_are_near_those_that_the_bearing_is_led_through(amplitude: float)
     scales, sliding = answer.problem.layout.scales, sliding_at(rubs, answer)
     assert sliding is not None
     a = amplitude / scales.length
-    balanced = Cycle(sliding, Motion.about(answer).respond(1e-6, LinearSolver()), a).force_gradient(RunLog())[0, 0]
+    balanced = FrictionCycle(sliding, SmallMotion.about(answer).respond(1e-6, LinearSolver()), a).force_gradient()[0, 0]
     led = slow_cycle(rubs, answer, a)
     assert led.real == pytest.approx(balanced.real, rel=2e-2)
     assert led.imag == pytest.approx(balanced.imag, rel=1.2e-1)
+
+
+def unslid(answer: Solution, friction: Friction) -> FrictionResult:
+    """The equilibrium before its petals slide."""
+    fresh = FrictionState.fresh(friction, answer.x, answer.lam)
+    return FrictionResult(answer.x, answer.lam, answer.active, answer.residual, fresh, 0.0)
 
 
 def slow_cycle(rubs: Case, answer: Solution, a: float, steps: int = 32) -> complex:
@@ -175,13 +178,13 @@ def slow_cycle(rubs: Case, answer: Solution, a: float, steps: int = 32) -> compl
     friction, forces = friction_of(rubs, answer.problem.layout), []
     assert friction is not None
     phase = 2.0 * np.pi * np.arange(1, 2 * steps + 1) / steps
-    before = answer.x, answer.lam, answer.in_contact, FrictionState.fresh(friction, answer.x, answer.lam)
+    before = unslid(answer, friction)
     for angle in phase:
         problem = answer.problem.at(displacement=answer.problem.displacement + np.array([a * np.sin(angle), 0.0]))
         near = slide(problem, friction, before, LinearSolver())
         assert near is not None
-        before = near.x, near.lam, near.closed, near.rubbed
-        forces.append(journal_force(problem, near.x[problem.positive], near.lam)[0])
+        before = near
+        forces.append(problem.journal_force(near.x, near.lam)[0])
     return complex(2j / steps * np.exp(-1j * phase[steps:]) @ np.array(forces[steps:]) / a)
 
 

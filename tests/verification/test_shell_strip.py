@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.interpolate import CubicSpline
 
 from petalfoil.physics.shell import PetalShell, bending_stress
-from petalfoil.solvers.contact_newton import Closed
+from petalfoil.solvers.contact_newton import ActiveContacts
 from tests.verification.shell_helpers import (
     GRIDS,
     UNIT,
@@ -56,7 +56,7 @@ def turned(phi: Array, k: float) -> Array:
     return bend(strip_shell(phi, k), force)[:, 0]
 
 
-def propped(phi: Array, k: float, *, clamped: bool) -> Closed:
+def propped(phi: Array, k: float, *, clamped: bool) -> ActiveContacts:
     """The tip held by a contact whose gap is zero: the active set alone knows that."""
     shell = strip_shell(phi, k, clamped=clamped)
     n = len(phi) - 1

@@ -9,10 +9,9 @@ from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.operating_point import ForceResidual, applied_load, at, under_load
 from petalfoil.analysis.records import effort, position, solution_record
-from petalfoil.analysis.session import Clock, Progress, telling_work
 from petalfoil.case import Case
-from petalfoil.equilibrium.loaded import Balance
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.run_context import Progress, running
+from petalfoil.equilibrium.solution import Solution
 from petalfoil.results.layout import Point
 from petalfoil.results.parts import AppliedLoad
 from petalfoil.results.record import Record
@@ -45,16 +44,16 @@ def balance(case: Case, load: Load = None, *, speed: Speed = None, progress: Pro
         No position was found.
     """
     case, wanted = at(case, speed, (0.0, 0.0)), applied_load(case, load)
-    clock, work = Clock(), telling_work(progress, "balance")
-    found, known = under_load(case, wanted, work)
-    return balance_record("balance", case, found, AppliedLoad.of(wanted), known, effort(work, clock.seconds), work=work)
+    with running(progress, "balance") as run:
+        found, known = under_load(case, wanted)
+        return balance_record("balance", case, found, AppliedLoad.of(wanted), known, effort(run.seconds))
 
 
-def balance_record(analysis: str, case: Case, found: Balance, *parts: object, work: RunLog) -> Record:
+def balance_record(analysis: str, case: Case, found: Solution, *parts: object) -> Record:
     """The record of a balance, at the position found."""
-    evaluated = Evaluation.of(case, found.answer)
-    own = (position(case, found.answer), ForceResidual(found.force_residual), carrier(evaluated.contact_fraction))
-    return solution_record(analysis, evaluated, *own, *parts, work=work)
+    evaluated = Evaluation.of(case, found)
+    own = (position(case, found), ForceResidual(found.force_residual), carrier(evaluated.contact_fraction))
+    return solution_record(analysis, evaluated, *own, *parts)
 
 
 def carrier(contact_fraction: float) -> CarriedBy:

@@ -30,11 +30,11 @@ def mass_balance(answer: Solution, fluxes: Fluxes) -> float:
 def reaction_balance(answer: Solution) -> float:
     """Largest error of a petal's loads against its support, in motions that bend nothing (S4), over the loads [1]."""
     layout = answer.problem.layout
-    w, P = answer.x[: layout.n_wall], answer.x[layout.n_wall :]
+    w, P = answer.deflection, answer.x[answer.problem.positive]
     wall, unit = layout.wall, layout.scales.length / layout.scales.force
     loads = layout.push @ (P - 1.0) + wall.contacts.G.T @ answer.lam
     parts = layout.push @ np.abs(P - 1.0) + abs(wall.contacts.G.T) @ answer.lam
-    error = wall.free_motions.T @ loads + unit * (wall.support @ w + wall.support @ answer.state.fine)
+    error = wall.free_motions.T @ loads + unit * (wall.support @ w + wall.support @ answer.state.low_order)
     scale = abs(wall.free_motions.T) @ parts
     return float(np.max(np.abs(error) / np.maximum(scale, np.finfo(float).tiny), initial=0.0))
 

@@ -8,8 +8,8 @@ from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.fields import coordinates, wall_state
 from petalfoil.analysis.records import asked_position, geometry, record_of
 from petalfoil.case import Case, ModelKind
-from petalfoil.equilibrium.ascent import rest
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.continuation import rest
+from petalfoil.equilibrium.run_context import running
 from petalfoil.errors import ConvergenceError
 from petalfoil.results.layout import Point
 from petalfoil.results.record import Record
@@ -43,16 +43,17 @@ def check(case: Case) -> Record:
     ConvergenceError
         The package did not settle.
     """
-    kind, work = wall_kind(case), RunLog()
+    kind = wall_kind(case)
     derived = (*geometry(case), asked_position(case), bearing_numbers(case), kind.check_scalars(case))
     if not kind.can(Capability.PACK):
-        return record_of("check", case, *derived, work=work)
+        return record_of("check", case, *derived, history=[])
     slow = case.replace(**{"model.kind": ModelKind.TWO_D, "operation.speed": 0.0})
-    answer = rest(build_problem(slow), work)
+    with running() as run:
+        answer = rest(build_problem(slow))
     if answer is None:
-        raise ConvergenceError("the package did not settle at rest", history=work.history, advice="check its geometry")
+        raise ConvergenceError("the package did not settle at rest", history=run.history, advice="check its geometry")
     section = kind.cross_section(slow, wall_state(answer).deflection)
-    return record_of("check", case, *derived, work=RunLog(), fields=dict(section), coords=coordinates(slow, answer))
+    return record_of("check", case, *derived, fields=dict(section), coords=coordinates(slow, answer), history=[])
 
 
 def bearing_numbers(case: Case) -> BearingNumbers:

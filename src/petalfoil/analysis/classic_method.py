@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from petalfoil.analysis.session import TYPICAL_STEPS
 from petalfoil.case import Case, Method
 from petalfoil.classic import ClassicRun, ClassicState, assembled, relax
 from petalfoil.classic.relaxation import HistoryRow
-from petalfoil.equilibrium.run_log import RunLog
-from petalfoil.equilibrium.solution import RefinedState, Solution, total_residual
+from petalfoil.equilibrium.run_context import TYPICAL_STEPS, current_run
+from petalfoil.equilibrium.solution import Solution, unrefined
 from petalfoil.errors import UsageError
 from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.unknowns import DEFLECTION, PRESSURE
 
 TYPICAL_OUTER = 150.0
 """Outer iterations of a typical run."""
@@ -42,7 +40,7 @@ def newton_only(case: Case) -> None:
         )
 
 
-def by_classic(problem: CoupledProblem, work: RunLog, known: Solution | None = None) -> Solution:
+def by_classic(problem: CoupledProblem, known: Solution | None = None) -> Solution:
     """The equilibrium that film and package relax to, from the assembled package or from a `known` neighbour.
 
     Raises
@@ -50,12 +48,12 @@ def by_classic(problem: CoupledProblem, work: RunLog, known: Solution | None = N
     ConvergenceError
         A number of steps was used up.
     """
-    reached = relax(telling_run(problem, work), None if known is None else start_from(known))
+    reached = relax(telling_run(problem), None if known is None else start_from(known))
     way = "the assembled package" if known is None else "the neighbouring point"
     return answer_of(problem, reached, f"film and package relaxed in turn from {way}, {reached.outer} times")
 
 
-def rest_by_classic(problem: CoupledProblem, work: RunLog) -> Solution:
+def rest_by_classic(problem: CoupledProblem) -> Solution:
     """The assembled package with its film at rest, by gradient descent.
 
     Raises
@@ -64,31 +62,31 @@ def rest_by_classic(problem: CoupledProblem, work: RunLog) -> Solution:
         A number of steps was used up.
     """
     still = problem.at(bearing_number=0.0)
-    reached = assembled(telling_run(still, work))
-    work.note("classic", pack_steps=reached.pack_steps)
+    reached = assembled(telling_run(still))
+    current_run().note("classic", pack_steps=reached.pack_steps)
     return answer_of(still, reached, "assembled package at rest, by gradient descent")
 
 
-def telling_run(problem: CoupledProblem, work: RunLog) -> ClassicRun:
-    """A run that writes the history of `work`."""
+def telling_run(problem: CoupledProblem) -> ClassicRun:
+    """A run of the classic method that writes the history of the current run."""
+    run = current_run()
 
     def tell(row: HistoryRow) -> None:
-        work.note("classic", **row)
+        run.note("classic", **row)
 
     def pulse() -> None:
-        if work.tell is not None:
-            work.tell("classic")
+        if run.tell is not None:
+            run.tell("classic")
 
     return ClassicRun(problem, tell=tell, pulse=pulse)
 
 
 def start_from(known: Solution) -> ClassicState:
     """A known neighbour as a start."""
-    n = known.problem.layout.n_wall
-    return ClassicState(known.x[:n], known.x[n:], known.lam, 0, 0, 0)
+    return ClassicState(known.deflection, known.x[known.problem.positive], known.lam, 0, 0, 0)
 
 
 def answer_of(problem: CoupledProblem, reached: ClassicState, way: str) -> Solution:
     """Where the method came to rest, as an answer; its residual is what it is, some 1e-6."""
-    state = RefinedState(np.concatenate([reached.w, reached.P]), np.zeros(len(reached.w)), reached.lam)
-    return Solution(problem, state, total_residual(problem, state), way)
+    x = problem.layout.unknowns.join({DEFLECTION: reached.w, PRESSURE: reached.P})
+    return unrefined(problem, x, reached.lam, way)

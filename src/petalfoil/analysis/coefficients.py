@@ -16,9 +16,9 @@ from petalfoil.analysis.impedance import Array, cycle_impedance, elastic, impeda
 from petalfoil.analysis.operating_point import OperatingPoint, Vector, at, operating_point
 from petalfoil.analysis.records import effort, failed_record, geometry, position, record_of
 from petalfoil.analysis.runs import Points
-from petalfoil.analysis.session import Clock, Progress, part, telling_work
+from petalfoil.analysis.session import part
 from petalfoil.case import Case
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.run_context import Progress, current_run, running
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.export import LEAST_POINTS
 from petalfoil.results.layout import ArrayTable, Cell, Point, Series, at_speed
@@ -161,7 +161,8 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
     check_amplitude(case, asked)
     cases = [at(case, omega) for omega in turn]
     if speeds is None:
-        return point(cases[0], asked, load, telling_work(progress, "coefficients"))
+        with running(progress, "coefficients"):
+            return point(cases[0], asked, load)
     return Points(_points(cases, asked, load, progress), len(cases))
 
 
@@ -187,16 +188,17 @@ def check_amplitude(case: Case, asked: Asked) -> None:
 
 def _points(cases: list[Case], asked: Asked, load: Vector | None, progress: Progress | None) -> Iterator[Record]:
     for number, case in enumerate(cases):
-        work = telling_work(part(progress, number, len(cases)), "coefficients")
-        try:
-            yield point(case, asked, load, work)
-        except ConvergenceError as failure:
-            given = load if load is not None else case.operation.load
-            applied = () if given is None else (AppliedLoad.of(given),)
-            yield failed_record("coefficients", case, failure, *applied, Amplitudes(asked.amplitude), work=work)
+        with running(part(progress, number, len(cases)), "coefficients"):
+            try:
+                record = point(case, asked, load)
+            except ConvergenceError as failure:
+                given = load if load is not None else case.operation.load
+                applied = () if given is None else (AppliedLoad.of(given),)
+                record = failed_record("coefficients", case, failure, *applied, Amplitudes(asked.amplitude))
+        yield record
 
 
-def point(case: Case, asked: Asked, load: Vector | None, work: RunLog) -> Record:
+def point(case: Case, asked: Asked, load: Vector | None) -> Record:
     """The record of one operating point.
 
     Raises
@@ -204,15 +206,15 @@ def point(case: Case, asked: Asked, load: Vector | None, work: RunLog) -> Record
     ConvergenceError
         The operating point was not found, or the pack is bottomed out.
     """
-    clock, speed = Clock(), case.operation.speed
-    found = operating_point(case, load, work)
-    motion, sliding = elastic(case, found.answer, work), sliding_at(case, found.answer)
+    speed = case.operation.speed
+    found = operating_point(case, load)
+    motion, sliding = elastic(case, found.answer), sliding_at(case, found.answer)
     if asked.amplitude is None or sliding is None:
-        pairs = [impedance(motion, frequency, speed, work) for frequency in asked.frequencies]
+        pairs = [impedance(motion, frequency, speed) for frequency in asked.frequencies]
     else:
-        free, rubs = replace(motion, held=None), (sliding, asked.amplitude)
-        pairs = [cycle_impedance(free, frequency, speed, rubs, work) for frequency in asked.frequencies]
-    cost = effort(work, clock.seconds)
+        free, rubs = replace(motion, sticking=None), (sliding, asked.amplitude)
+        pairs = [cycle_impedance(free, frequency, speed, rubs) for frequency in asked.frequencies]
+    cost = effort(current_run().seconds)
     return record_of(
         "coefficients",
         case,
@@ -220,7 +222,6 @@ def point(case: Case, asked: Asked, load: Vector | None, work: RunLog) -> Record
         Amplitudes(asked.amplitude),
         Outcome(residual=found.answer.residual),
         cost,
-        work=work,
         fields={"stiffness": np.array([K for K, _ in pairs]), "damping": np.array([C for _, C in pairs])},
         coords={"whirl_frequency": asked.frequencies, "row": np.arange(2), "column": np.arange(2)},
     )

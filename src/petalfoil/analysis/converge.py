@@ -9,9 +9,9 @@ from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.grid_study import MOST_LEVELS, grid_records, grids, parts, table
 from petalfoil.analysis.operating_point import at
 from petalfoil.analysis.runs import Points
-from petalfoil.analysis.session import Progress
 from petalfoil.analysis.solve import point
 from petalfoil.case import Case
+from petalfoil.equilibrium.run_context import Progress
 from petalfoil.mesh.pitch import COARSEST_FAMILY
 from petalfoil.results.study import GridStudy
 

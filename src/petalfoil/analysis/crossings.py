@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
-from petalfoil.equilibrium.loaded import Balance
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 
 PRECISION = 1e-3
@@ -53,10 +53,10 @@ class Bracket:
     far: float
     at_near: float
     at_far: float
-    known: Balance
+    known: Solution
 
 
-def crossings(case: Case, load: float, limit: float, work: RunLog) -> tuple[float, float]:
+def crossings(case: Case, load: float, limit: float) -> tuple[float, float]:
     """Lift-off speed and touchdown speed [rad/s]; infinite where it never lifts off, zero where it always has.
 
     Raises
@@ -65,7 +65,7 @@ def crossings(case: Case, load: float, limit: float, work: RunLog) -> tuple[floa
         A balance on the way was not found.
     """
     start = min(max(case.operation.speed, 10.0 * SLOWEST), fastest(case))
-    line = SpeedLine(case, (0.0, -load), work)
+    line = SpeedLine(case, (0.0, -load))
     touching = line.contact_fraction(start) > limit
     found = crossing(line, start, limit, upward=touching)
     if found is None:
@@ -131,14 +131,14 @@ def aim(near: tuple[float, float], far: tuple[float, float], limit: float) -> fl
     return near[0] + min(max(part, least), 1.0 - least) * (far[0] - near[0])
 
 
-def sensitivity(case: Case, load: float, at: tuple[float, float], work: RunLog) -> tuple[float, float]:
+def sensitivity(case: Case, load: float, at: tuple[float, float]) -> tuple[float, float]:
     """Logarithmic derivatives of the lift-off speed by contact film thickness and limit [1]; nan where not found."""
     limit, up = at
     thick = case.replace(
         **{"surface.contact_film_thickness": case.surface.contact_film_thickness * (1.0 + SENSITIVITY)}
     )
-    by_film = slope(up, rising(thick, load, limit, up, work), 1.0 + SENSITIVITY)
-    return by_film, slope(up, rising(case, load, 0.5 * limit, up, work), 0.5)
+    by_film = slope(up, rising(thick, load, limit, up), 1.0 + SENSITIVITY)
+    return by_film, slope(up, rising(case, load, 0.5 * limit, up), 0.5)
 
 
 def slope(before: float, after: float | None, factor: float) -> float:
@@ -148,15 +148,15 @@ def slope(before: float, after: float | None, factor: float) -> float:
     return math.log(after / before) / math.log(factor)
 
 
-def rising(case: Case, load: float, limit: float, near: float, work: RunLog) -> float | None:
+def rising(case: Case, load: float, limit: float, near: float) -> float | None:
     """Lift-off speed of a bearing like the one that lifts off at `near` [rad/s]; None if it is not found."""
     if not 0.0 < near < math.inf:
         return None
-    line, start = SpeedLine(case, (0.0, -load), work), near / FACTOR
+    line, start = SpeedLine(case, (0.0, -load)), near / FACTOR
     try:
         while line.contact_fraction(start) <= limit and start > SLOWEST:
             start /= FACTOR
         return crossing(line, start, limit, upward=True)
     except ConvergenceError as failure:
-        work.note("sensitivity", outcome=str(failure))
+        current_run().note("sensitivity", outcome=str(failure))
         return None

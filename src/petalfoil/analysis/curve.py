@@ -19,11 +19,11 @@ from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.operating_point import OperatingPoint, at_position, relaxed
 from petalfoil.analysis.records import asked_position, branch, effort, failed_record, solution_record
 from petalfoil.analysis.runs import Points
-from petalfoil.analysis.session import Clock, Progress, part, telling_work
+from petalfoil.analysis.session import part
 from petalfoil.case import Case
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.equilibrium.continuation import advance
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 from petalfoil.results.layout import Series
@@ -61,23 +61,22 @@ def _points(cases: list[Case], progress: Progress | None) -> Iterator[Record]:
     before: Solution | None = None
     base = build_problem(cases[0])
     for number, case in enumerate(cases):
-        clock, work = Clock(), telling_work(part(progress, number, len(cases)), "curve", typical_steps(case))
         problem = base.at(displacement=np.array(case.operation.eccentricity) / base.layout.scales.length)
-        try:
-            found = _point(case, problem, before, work)
-        except ConvergenceError as failure:
-            before = None
-            yield failed_record("curve", case, failure, work=work)
-            continue
-        before = found.answer
-        own = (asked_position(case), found.branch, effort(work, clock.seconds))
-        yield solution_record("curve", Evaluation.of(case, before), *own, work=work)
+        with running(part(progress, number, len(cases)), "curve", typical_steps(case)) as run:
+            try:
+                found = _point(case, problem, before)
+                before = found.answer
+                own = (asked_position(case), found.branch, effort(run.seconds))
+                record = solution_record("curve", Evaluation.of(case, before), *own)
+            except ConvergenceError as failure:
+                before, record = None, failed_record("curve", case, failure)
+        yield record
 
 
-def _point(case: Case, problem: CoupledProblem, before: Solution | None, work: RunLog) -> OperatingPoint:
+def _point(case: Case, problem: CoupledProblem, before: Solution | None) -> OperatingPoint:
     if before is None or is_classic(case):
-        found = relaxed(case, problem, work, before) if is_classic(case) else at_position(case, work)
+        found = relaxed(case, problem, before) if is_classic(case) else at_position(case)
         return replace(found, branch=replace(found.branch, jump=False))
-    answer, jump = advance(before, problem, work)
-    rate = leading_eigenvalue(answer, work)
-    return OperatingPoint(answer, branch(rate, case, 2 if jump else 1, answer.way, jump))
+    answer, jump = advance(before, problem)
+    rate = leading_eigenvalue(answer)
+    return OperatingPoint(answer, branch(rate, case, 2 if jump else 1, answer.solution_path, jump))

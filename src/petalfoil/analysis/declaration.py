@@ -22,8 +22,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias, get_type_hints
 from petalfoil.analysis.arguments import Argument
 from petalfoil.analysis.registry import register
 from petalfoil.analysis.runs import Run, Single
-from petalfoil.analysis.session import Progress, one_thread
+from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
+from petalfoil.equilibrium.run_context import Progress, new_run
 from petalfoil.errors import UsageError
 from petalfoil.results.layout import Answer, Layout
 from petalfoil.results.record import Record
@@ -164,7 +165,7 @@ class Analysis:
     def advance(self, run: Run, progress: Progress | None = None) -> Iterator[None]:
         """Compute on, piece by piece."""
         with one_thread():
-            for part, text in run.advance():
+            for part, text in new_run().during(run.advance()):
                 if progress is not None:
                     progress(part, f"{self.verb}: {text}")
                 yield

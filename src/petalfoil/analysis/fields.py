@@ -23,7 +23,7 @@ def film_fields(found: Evaluation) -> Named:
 def wall_state(answer: Solution) -> WallState:
     """Deflections [m] and contact pressures [Pa] of a solution."""
     layout = answer.problem.layout
-    deflection = answer.x[: layout.n_wall] * layout.scales.length
+    deflection = answer.deflection * layout.scales.length
     return WallState(deflection, answer.lam * layout.scales.force / layout.wall.contacts.area)
 
 

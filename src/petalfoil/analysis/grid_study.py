@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 
 from petalfoil.analysis.records import failed_record
 from petalfoil.analysis.richardson import richardson
-from petalfoil.analysis.session import Progress
 from petalfoil.case import Case, ModelKind
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import ConvergenceError
 from petalfoil.results.estimate import Estimate
 from petalfoil.results.record import Record
@@ -177,9 +176,9 @@ def _record(case: Case, point: Point, progress: Progress) -> Record:
     try:
         record = point(case, progress)
     except ConvergenceError as failure:
-        work = RunLog()
-        work.history.extend(failure.history)
-        record = failed_record("solve", case, failure, work=work)
+        with running() as run:
+            run.history.extend(failure.history)
+            record = failed_record("solve", case, failure)
     return _labelled(record, case)
 
 

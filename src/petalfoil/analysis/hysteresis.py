@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.analysis.session import Clock
 from petalfoil.case import Case
 from petalfoil.equilibrium.friction_path import FrictionResult, slide
 from petalfoil.equilibrium.package_at_rest import at_rest, unloaded
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.run_context import RunContext, current_run, running
 from petalfoil.equilibrium.solution import RefinedState, Solution
 from petalfoil.physics.dry_friction import Friction
-from petalfoil.solvers.contact_newton import ActiveOptions, active_set
+from petalfoil.solvers.contact_newton import solve_contacts
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.friction import FrictionState, friction_of
@@ -23,7 +22,6 @@ from petalfoil.system.package import PackageProblem
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-Before = tuple[Array, Array, Mask, FrictionState]
 
 HALVINGS = 8
 """Times that a way between two points may be halved before there is no answer."""
@@ -46,15 +44,15 @@ class Point:
         The package there; None if it was not found.
     lost : float
         Energy lost to friction from the start up to here [J].
-    work, seconds
-        What it cost.
+    run, seconds
+        The run that found it, and its wall time [s].
     """
 
     case: Case
     leg: str
     answer: Solution | None
     lost: float
-    work: RunLog
+    run: RunContext
     seconds: float
 
 
@@ -72,58 +70,58 @@ def follow(way: list[tuple[str, Case]]) -> Iterator[Point]:
     friction = friction_of(way[0][1], base.layout)
     if friction is None:
         raise ValueError("without friction the way does not matter")
-    before: tuple[CoupledProblem, Before] | None = None
+    before: tuple[CoupledProblem, FrictionResult] | None = None
     total, unit = 0.0, base.layout.scales.force * base.layout.scales.length
     for leg, case in way:
-        clock, work = Clock(), RunLog()
         problem = base.at(displacement=np.array(case.operation.eccentricity) / base.layout.scales.length)
-        slid = moved(friction, before, problem, work) if before else assembled(friction, problem, work)
+        with running() as run:
+            slid = moved(friction, before, problem) if before else assembled(friction, problem)
         if slid is None:
-            yield Point(case, leg, None, total * unit, work, clock.seconds)
+            yield Point(case, leg, None, total * unit, run, run.seconds)
             continue
         total += slid.lost
-        before = problem, (slid.x, slid.lam, slid.closed, slid.rubbed)
-        yield Point(case, leg, answer_of(problem, slid), total * unit, work, clock.seconds)
+        before = problem, slid
+        yield Point(case, leg, answer_of(problem, slid), total * unit, run, run.seconds)
 
 
-def assembled(friction: Friction, problem: CoupledProblem, work: RunLog) -> FrictionResult | None:
+def assembled(friction: Friction, problem: CoupledProblem) -> FrictionResult | None:
     """The package as it is assembled: no friction yet; None if it did not settle."""
-    found = at_rest(problem, work)
+    found = at_rest(problem)
     if found is None:
         return None
-    closed, _ = active_set(unloaded(problem), *found, work.package_solver, ActiveOptions())
-    if closed is None:
+    contacts, _ = solve_contacts(unloaded(problem), (found.x, found.active), current_run().package_solver)
+    if contacts is None:
         return None
-    rubbed = FrictionState.fresh(friction, closed.x, closed.lam)
-    return FrictionResult(closed.x, closed.lam, closed.closed, closed.residual, rubbed, 0.0)
+    fresh = FrictionState.fresh(friction, contacts.x, contacts.lam)
+    return FrictionResult(contacts.x, contacts.lam, contacts.active, contacts.state.residual, fresh, 0.0)
 
 
 def moved(
-    friction: Friction, before: tuple[CoupledProblem, Before], problem: CoupledProblem, work: RunLog
+    friction: Friction, before: tuple[CoupledProblem, FrictionResult], problem: CoupledProblem
 ) -> FrictionResult | None:
     """The package after the journal has moved on to `problem`, in halves where a step is too long; None if it fails."""
     begin, state = before
-    parts, lost, done, residual = [1.0], 0.0, 0.0, 0.0
+    parts, lost, done = [1.0], 0.0, 0.0
     start, end = begin.displacement, problem.displacement
     while parts:
         there = done + parts[-1]
         here = problem.at(displacement=start + there * (end - start))
         package = PackageProblem(here, np.zeros(problem.layout.n_wall))
-        slid = slide(package, friction, state, work.package_solver)
-        work.note("friction", share=there, outcome="found" if slid is not None else "halved")
+        slid = slide(package, friction, state, current_run().package_solver)
+        current_run().note("friction", share=there, outcome="found" if slid is not None else "halved")
         if slid is None:
             if len(parts) > HALVINGS:
                 return None
             parts = [*parts[:-1], 0.5 * parts[-1], 0.5 * parts[-1]]
             continue
         parts.pop()
-        done, lost, residual = there, lost + slid.lost, slid.residual
-        state = slid.x, slid.lam, slid.closed, slid.rubbed
-    return FrictionResult(*state[:3], residual, state[3], lost)
+        done, lost = there, lost + slid.lost
+        state = slid
+    return replace(state, lost=lost)
 
 
 def answer_of(problem: CoupledProblem, slid: FrictionResult) -> Solution:
     """The state as the package's, under a film at rest."""
     still = problem.at(bearing_number=0.0)
-    x = np.concatenate([slid.x, np.ones(problem.layout.n - problem.layout.n_wall)])
-    return Solution(still, RefinedState(x, np.zeros(problem.layout.n_wall), slid.lam), slid.residual, WAY)
+    state = RefinedState(problem.layout.ambient(slid.x), np.zeros(problem.layout.n_wall), slid.lam)
+    return Solution(still, state, slid.residual, WAY)

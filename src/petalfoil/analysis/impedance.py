@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
-from petalfoil.dynamics.harmonic_balance import Cycle, Sliding
-from petalfoil.equilibrium.linear_response import Motion
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
+from petalfoil.equilibrium.linear_response import SmallMotion
+from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 from petalfoil.system.friction import friction_of
@@ -19,13 +19,13 @@ SLOW = 1e-6
 """Whirl ratio that stands for zero: stiffness depends on its square."""
 
 
-def sliding_at(case: Case, answer: Solution) -> Sliding | None:
+def sliding_at(case: Case, answer: Solution) -> SlidingContacts | None:
     """Contacts that slide under load, if petals have friction."""
     friction = friction_of(case, answer.problem.layout)
-    return None if friction is None else Sliding.at(friction, answer)
+    return None if friction is None else SlidingContacts.at(friction, answer)
 
 
-def elastic(case: Case, answer: Solution, work: RunLog) -> Motion:
+def elastic(case: Case, answer: Solution) -> SmallMotion:
     """Small motions about `answer`, if the bearing gives way there; petals with friction stick.
 
     Raises
@@ -34,29 +34,29 @@ def elastic(case: Case, answer: Solution, work: RunLog) -> Motion:
         The pack is bottomed out: the journal cannot move without bending what has no clearance to bend.
     """
     sliding = sliding_at(case, answer)
-    motion = Motion.about(answer, None if sliding is None else sliding.stuck(len(answer.x)))
-    if not motion.ties.determinate:
+    motion = SmallMotion.about(answer, None if sliding is None else sliding.sticking(len(answer.x)))
+    if not motion.constraints.determinate:
         raise ConvergenceError(
             "no coefficients: the journal is on a bottomed-out pack, its stiffness has no bound",
-            history=work.history,
+            history=current_run().history,
             advice="lower the load, or ask `balance` what part of it the contacts carry",
         )
     return motion
 
 
-def impedance(motion: Motion, frequency: float, speed: float, work: RunLog) -> tuple[Array, Array]:
+def impedance(motion: SmallMotion, frequency: float, speed: float) -> tuple[Array, Array]:
     """`K` [N/m] and `C` [N s/m] at one whirl frequency [rad/s], each (2, 2); one factorisation.
 
     At a frequency of zero, `C` is the limit of small ones.
     """
     scales = motion.problem.layout.scales
     nu = max(frequency / speed, SLOW)
-    Z = -motion.respond(nu, work.probe_solver).force_gradient() * scales.force / scales.length
+    Z = -motion.respond(nu, current_run().probe_solver).force_gradient * scales.force / scales.length
     return Z.real, Z.imag / (nu * speed)
 
 
 def cycle_impedance(
-    motion: Motion, frequency: float, speed: float, rubs: tuple[Sliding, float], work: RunLog
+    motion: SmallMotion, frequency: float, speed: float, rubs: tuple[SlidingContacts, float]
 ) -> tuple[Array, Array]:
     """The same where contacts rub in a whirl of an amplitude [m]; `motion` is without their friction.
 
@@ -66,6 +66,8 @@ def cycle_impedance(
         Slips and friction did not agree.
     """
     scales, (sliding, amplitude) = motion.problem.layout.scales, rubs
-    cycle = Cycle(sliding, motion.respond(frequency / speed, work.probe_solver), amplitude / scales.length)
-    Z = -cycle.force_gradient(work) * scales.force / scales.length
+    cycle = FrictionCycle(
+        sliding, motion.respond(frequency / speed, current_run().probe_solver), amplitude / scales.length
+    )
+    Z = -cycle.force_gradient() * scales.force / scales.length
     return Z.real, Z.imag / frequency

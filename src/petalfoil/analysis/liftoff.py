@@ -18,8 +18,9 @@ from petalfoil.analysis.crossings import CONTACT_FRACTION, LiftoffSpeeds, crossi
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.records import effort, geometry, record_of
 from petalfoil.analysis.runs import Points
-from petalfoil.analysis.session import Clock, Progress, part, telling_work
+from petalfoil.analysis.session import part
 from petalfoil.case import Case
+from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import ConvergenceError
 from petalfoil.results.layout import Columns, load_of, of_load
 from petalfoil.results.parts import AppliedLoad, Outcome
@@ -96,15 +97,16 @@ def liftoff(
 
 def _points(case: Case, loads: list[float], limit: float, progress: Progress | None) -> Iterator[Record]:
     for number, load in enumerate(loads):
-        clock, work = Clock(), telling_work(part(progress, number, len(loads)), f"liftoff {load:g} N")
-        try:
-            up, down = crossings(case, load, limit, work)
-            found: tuple[object, ...] = (LiftoffSpeeds(up, down, *sensitivity(case, load, (limit, up), work)),)
-            ended = Outcome(status=in_words(case, up))
-        except ConvergenceError as failure:
-            found, ended = (), Outcome(converged=False, status=f"not converged: {failure}")
-        asked = (*geometry(case), AppliedLoad.of((0.0, -load)), FractionLimit(limit))
-        yield record_of("liftoff", case, *asked, *found, effort(work, clock.seconds), ended, work=work)
+        with running(part(progress, number, len(loads)), f"liftoff {load:g} N") as run:
+            try:
+                up, down = crossings(case, load, limit)
+                found: tuple[object, ...] = (LiftoffSpeeds(up, down, *sensitivity(case, load, (limit, up))),)
+                ended = Outcome(status=in_words(case, up))
+            except ConvergenceError as failure:
+                found, ended = (), Outcome(converged=False, status=f"not converged: {failure}")
+            asked = (*geometry(case), AppliedLoad.of((0.0, -load)), FractionLimit(limit))
+            record = record_of("liftoff", case, *asked, *found, effort(run.seconds), ended)
+        yield record
 
 
 def in_words(case: Case, up: float) -> str:

@@ -14,13 +14,12 @@ from petalfoil.analysis.operating_point import at
 from petalfoil.analysis.records import effort, geometry, record_of
 from petalfoil.analysis.release import OrbitRequest, at_rest, first_position, system_of
 from petalfoil.analysis.restart import continued, end_coordinates, end_state, instant_of
-from petalfoil.analysis.session import Clock
 from petalfoil.analysis.trace import Trace
 from petalfoil.case import Case
 from petalfoil.dynamics.adaptive_steps import MarchOptions, march
 from petalfoil.dynamics.time_state import Instant
-from petalfoil.dynamics.tr_bdf2 import System
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.dynamics.tr_bdf2 import RotorBearing
+from petalfoil.equilibrium.run_context import RunContext, new_run
 from petalfoil.results.motion import figures_of
 from petalfoil.results.parts import Outcome
 from petalfoil.results.record import Record
@@ -65,23 +64,22 @@ class Orbit:
         A bearing with its rotor.
     request : OrbitRequest
         How it moves.
-    system : System
+    system : RotorBearing
         Both in the units of the problem.
     start : Instant
         Where it begins.
     end : float
         Where it ends [s].
-    work : RunLog
+    run : RunContext
         Counts of the start and of all steps.
     """
 
     case: Case
     request: OrbitRequest
-    system: System
+    system: RotorBearing
     start: Instant
     end: float
-    work: RunLog
-    clock: Clock = field(default_factory=Clock)
+    run: RunContext
     trace: Trace = field(init=False)
     taken: int = 0
     residual: float = 0.0
@@ -104,16 +102,17 @@ class Orbit:
             No equilibrium was found to start from.
         """
         newton_only(case)
-        clock, work, schedule = Clock(), RunLog(), request.schedule(case)
+        run, schedule = new_run(), request.schedule(case)
         if restart is None:
-            placed = at(case, eccentricity=first_position(case, request, work))
-            system, time = system_of(placed, schedule, request.load), 0.0
-            start = at_rest(placed, system, request, work)
+            with run.active():
+                placed = at(case, eccentricity=first_position(case, request))
+                system, time = system_of(placed, schedule, request.load), 0.0
+                start = at_rest(placed, system, request)
         else:
             placed, time = case, continued(case, schedule, restart)
             system = system_of(placed, schedule, request.load)
             start = instant_of(restart, system, time * system.rotor.clock.rate)
-        return cls(placed, request, system, start, time + request.lasts(schedule, time), work, clock)
+        return cls(placed, request, system, start, time + request.lasts(schedule, time), run)
 
     def advance(self) -> Iterator[tuple[float, str]]:
         """Take the steps; give the part of the motion that is done.
@@ -125,7 +124,7 @@ class Orbit:
         """
         options = MarchOptions(tolerance=self.request.tolerance, longest=self.request.longest)
         begin, end = self.start.tau, self.end * self.system.rotor.clock.rate
-        for stepped in march(self.system, self.start, end, self.work, options):
+        for stepped in self.run.during(march(self.system, self.start, end, options)):
             self.trace.add(stepped.end)
             self.taken += 1
             self.residual = max(self.residual, stepped.residual)
@@ -157,9 +156,9 @@ class Orbit:
             self._summary(time, over),
             self.trace.audits(over),
             self._stepping(),
-            effort(self.work, self.clock.seconds),
+            effort(self.run.seconds, self.run),
             Outcome(status=status, residual=float(self.residual)),
-            work=RunLog(),
+            history=[],
             fields={**over, **pictures, **end_state(last, self.system)},
             coords={"time": time, **coords, **end_coordinates(last)},
         )
@@ -174,7 +173,7 @@ class Orbit:
         )
 
     def _stepping(self) -> Stepping:
-        refused = [row.get("outcome") for row in self.work.history if row["phase"] == "motion"]
+        refused = [row.get("outcome") for row in self.run.history if row["phase"] == "motion"]
         return Stepping(
             tolerance=self.request.tolerance,
             steps=self.taken,

@@ -14,14 +14,12 @@ from petalfoil.analysis.records import branch
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case, ModelKind
 from petalfoil.dynamics.film_stability import leading_eigenvalue
-from petalfoil.equilibrium.ascent import ascend
 from petalfoil.equilibrium.branches import distinct, probe
 from petalfoil.equilibrium.cold_start import nothing_found, solve_cold
-from petalfoil.equilibrium.loaded import Balance
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.continuation import ascend, settle
+from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold
-from petalfoil.equilibrium.warm_start import settle
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.parts import AppliedLoad, Branch
 from petalfoil.system.build import build_problem
@@ -60,7 +58,7 @@ class OperatingPoint:
     loaded: tuple[object, ...] = ()
 
 
-def operating_point(case: Case, load: Vector | None, work: RunLog) -> OperatingPoint:
+def operating_point(case: Case, load: Vector | None) -> OperatingPoint:
     """The equilibrium under a load [N] where one is given, else at the case's eccentricity.
 
     Raises
@@ -69,10 +67,10 @@ def operating_point(case: Case, load: Vector | None, work: RunLog) -> OperatingP
         None was found.
     """
     if load is None and case.operation.load is None:
-        return at_position(case, work)
+        return at_position(case)
     wanted = applied_load(case, load)
-    found, known = under_load(at(case, eccentricity=(0.0, 0.0)), wanted, work)
-    return OperatingPoint(found.answer, known, (AppliedLoad.of(wanted), ForceResidual(found.force_residual)))
+    found, known = under_load(at(case, eccentricity=(0.0, 0.0)), wanted)
+    return OperatingPoint(found, known, (AppliedLoad.of(wanted), ForceResidual(found.force_residual)))
 
 
 def at(case: Case, speed: float | None = None, eccentricity: Vector | None = None) -> Case:
@@ -93,7 +91,7 @@ def applied_load(case: Case, load: Vector | None) -> Vector:
     return wanted
 
 
-def under_load(case: Case, load: Vector, work: RunLog) -> tuple[Balance, Branch]:
+def under_load(case: Case, load: Vector) -> tuple[Solution, Branch]:
     """The balance to report: if the first one found is unstable, the one that is followed from rest under the load.
 
     Raises
@@ -102,23 +100,23 @@ def under_load(case: Case, load: Vector, work: RunLog) -> tuple[Balance, Branch]
         No position was found.
     """
     problem = build_problem(case)
-    found = balance_cold(problem, np.array(load) / problem.layout.scales.force, work)
-    rate = leading_eigenvalue(found.answer, work)
-    alone = branch(rate, case, 1, found.answer.way)
+    found = balance_cold(problem, np.array(load) / problem.layout.scales.force)
+    rate = leading_eigenvalue(found)
+    alone = branch(rate, case, 1, found.solution_path)
     if not rate.real > 0.0:
         return found, alone
     try:
-        risen = SpeedLine(case, load, work).climb(case.operation.speed)
+        risen = SpeedLine(case, load).climb(case.operation.speed)
     except ConvergenceError as failure:
-        work.note("climb", outcome=str(failure))
+        current_run().note("climb", outcome=str(failure))
         return found, alone
-    other = leading_eigenvalue(risen.answer, work)
+    other = leading_eigenvalue(risen)
     if other.real > 0.0:
         return found, alone
     return risen, branch(other, case, 2, "followed from rest under the load; another balance is unstable")
 
 
-def at_position(case: Case, work: RunLog) -> OperatingPoint:
+def at_position(case: Case) -> OperatingPoint:
     """The equilibrium to report at the case's eccentricity.
 
     Raises
@@ -127,24 +125,24 @@ def at_position(case: Case, work: RunLog) -> OperatingPoint:
         Neither a cold start nor the way up from rest found one.
     """
     problem = build_problem(case)
-    found = from_nothing(problem, work)
-    rates = [leading_eigenvalue(answer, work) for answer in found]
+    found = from_nothing(problem)
+    rates = [leading_eigenvalue(answer) for answer in found]
     several = wall_kind(case).can(Capability.SEVERAL_EQUILIBRIA)
-    known = probe(build_problem(coarse(case)), work) if several else 1
+    known = probe(build_problem(coarse(case))) if several else 1
     path = ""
     if known > 1 or not found or rates[0].real > 0.0:
-        risen, jumps = ascend(problem, work)
+        risen, jumps = ascend(problem)
         if risen is not None:
-            found, rates = [risen, *found], [leading_eigenvalue(risen, work), *rates]
+            found, rates = [risen, *found], [leading_eigenvalue(risen), *rates]
             path = ascent_text(jumps)
     if not found:
-        raise nothing_found(work)
+        raise nothing_found()
     if rates[0].real > 0.0:
-        found, rates, path = settled(found, rates, path, work)
-    return OperatingPoint(found[0], branch(rates[0], case, max(known, distinct(found)), path or found[0].way))
+        found, rates, path = settled(found, rates, path)
+    return OperatingPoint(found[0], branch(rates[0], case, max(known, distinct(found)), path or found[0].solution_path))
 
 
-def relaxed(case: Case, problem: CoupledProblem, work: RunLog, neighbour: Solution | None = None) -> OperatingPoint:
+def relaxed(case: Case, problem: CoupledProblem, neighbour: Solution | None = None) -> OperatingPoint:
     """The equilibrium that the paper's method comes to rest at, from nothing or from a neighbouring point.
 
     Raises
@@ -152,33 +150,31 @@ def relaxed(case: Case, problem: CoupledProblem, work: RunLog, neighbour: Soluti
     ConvergenceError
         A number of steps was used up.
     """
-    answer = by_classic(problem, work, neighbour)
-    return OperatingPoint(answer, branch(leading_eigenvalue(answer, work), case, 1, answer.way))
+    answer = by_classic(problem, neighbour)
+    return OperatingPoint(answer, branch(leading_eigenvalue(answer), case, 1, answer.solution_path))
 
 
-def from_nothing(problem: CoupledProblem, work: RunLog) -> list[Solution]:
+def from_nothing(problem: CoupledProblem) -> list[Solution]:
     """The answer of a cold start, if there is one."""
     try:
-        return [solve_cold(problem, work)]
+        return [solve_cold(problem)]
     except ConvergenceError as failure:
-        work.note("film", outcome=str(failure))
+        current_run().note("film", outcome=str(failure))
         return []
 
 
-def settled(
-    found: list[Solution], rates: list[complex], path: str, work: RunLog
-) -> tuple[list[Solution], list[complex], str]:
+def settled(found: list[Solution], rates: list[complex], path: str) -> tuple[list[Solution], list[complex], str]:
     """Put first where the unstable equilibrium at the head of `found` goes, if that is stable."""
     stable = [k for k, rate in enumerate(rates) if not rate.real > 0.0]
-    rested = None if stable else settle(found[0], work)
+    rested = None if stable else settle(found[0])
     if rested is not None:
-        found, rates = [*found, rested], [*rates, leading_eigenvalue(rested, work)]
+        found, rates = [*found, rested], [*rates, leading_eigenvalue(rested)]
         stable = [] if rates[-1].real > 0.0 else [len(found) - 1]
     if not stable:
         return found, rates, path
     first = stable[0]
     order = [first, *(k for k in range(len(found)) if k != first)]
-    text = f"{found[first].way}; the branch from rest has lost its stability below this speed"
+    text = f"{found[first].solution_path}; the branch from rest has lost its stability below this speed"
     return [found[k] for k in order], [rates[k] for k in order], text
 
 

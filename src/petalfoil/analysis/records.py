@@ -7,14 +7,14 @@ import math
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.fields import all_fields, coordinates
 from petalfoil.case import Case
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.run_context import HistoryRow, RunContext, current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.results.parts import Branch, Effort, Geometry, Outcome, Position, scalars_of
 from petalfoil.results.record import Array, Record
 from petalfoil.walls import wall_kind
 
 
-def solution_record(analysis: str, found: Evaluation, *parts: object, work: RunLog) -> Record:
+def solution_record(analysis: str, found: Evaluation, *parts: object) -> Record:
     """The record of an equilibrium: its film, forces, balances and fields, and what its analysis adds."""
     case, answer = found.case, found.answer
     fields = all_fields(found)
@@ -26,27 +26,26 @@ def solution_record(analysis: str, found: Evaluation, *parts: object, work: RunL
         *film,
         *parts,
         Outcome(),
-        work=work,
         fields=dict(fields),
         coords=coordinates(case, answer),
     )
 
 
-def failed_record(analysis: str, case: Case, reason: object, *parts: object, work: RunLog) -> Record:
+def failed_record(analysis: str, case: Case, reason: object, *parts: object) -> Record:
     """The record of a point without a solution: what was asked, what it cost, and why there is none."""
     ended = Outcome(converged=False, status=f"not converged: {reason}", residual=math.nan)
-    return record_of(analysis, case, *geometry(case), asked_position(case), *parts, effort(work), ended, work=work)
+    return record_of(analysis, case, *geometry(case), asked_position(case), *parts, effort(), ended)
 
 
 def record_of(
     analysis: str,
     case: Case,
     *parts: object,
-    work: RunLog,
     fields: dict[str, Array] | None = None,
     coords: dict[str, Array] | None = None,
+    history: list[HistoryRow] | None = None,
 ) -> Record:
-    """A record from its parts."""
+    """A record from its parts, with the history of the current run unless another is given."""
     return Record(
         analysis=analysis,
         scalars=scalars_of(*parts),
@@ -54,7 +53,7 @@ def record_of(
         coords=coords or {},
         case_toml=case.to_toml(),
         title=case.title,
-        history=list(work.history),
+        history=list(current_run().history if history is None else history),
     )
 
 
@@ -82,13 +81,14 @@ def position(case: Case, answer: Solution) -> Position:
     return Position(speed=case.operation.speed, eccentricity_x=float(e[0]), eccentricity_y=float(e[1]))
 
 
-def effort(work: RunLog, wall_time: float | None = None) -> Effort:
-    """What a run cost."""
+def effort(wall_time: float | None = None, run: RunContext | None = None) -> Effort:
+    """What a run cost, by default the current one."""
+    run = run or current_run()
     return Effort(
-        iterations=sum("residual" in row or row["phase"] in ("contacts", "classic") for row in work.history),
-        factorizations=work.film.factorizations,
-        pack_iterations=work.package.factorizations,
-        probe_factorizations=work.probes.factorizations,
+        iterations=sum("residual" in row or row["phase"] in ("contacts", "classic") for row in run.history),
+        factorizations=run.film.factorizations,
+        pack_iterations=run.package.factorizations,
+        probe_factorizations=run.probes.factorizations,
         wall_time=wall_time,
     )
 

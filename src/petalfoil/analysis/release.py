@@ -14,16 +14,13 @@ from petalfoil.dynamics.adaptive_steps import MarchOptions
 from petalfoil.dynamics.rotor import RotorMotion, constant_load
 from petalfoil.dynamics.speed_schedule import Schedule
 from petalfoil.dynamics.time_state import Instant, TimeState
-from petalfoil.dynamics.tr_bdf2 import System
+from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.equilibrium.cold_start import solve_cold
-from petalfoil.equilibrium.loaded import journal_force
-from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.errors import UsageError
 from petalfoil.system.build import build_pair, build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.friction import FrictionState, friction_of
-from petalfoil.system.loaded import FilmForce
 from petalfoil.system.time_step import StepProblem
 
 Array = NDArray[np.float64]
@@ -88,7 +85,7 @@ class OrbitRequest:
         return end - start
 
 
-def first_position(case: Case, request: OrbitRequest, work: RunLog) -> Vector | None:
+def first_position(case: Case, request: OrbitRequest) -> Vector | None:
     """Where the journal is released [m]; None where the case says so.
 
     Raises
@@ -102,22 +99,22 @@ def first_position(case: Case, request: OrbitRequest, work: RunLog) -> Vector | 
     if case.rotor is not None and case.rotor.span:
         load = (0.5 * load[0], 0.5 * load[1])  # the bearings share it
     there = at(case, request.schedule(case).speed(0.0), (0.0, 0.0))
-    found, _ = under_load(there, load, work)
-    x, y = found.answer.problem.displacement * found.answer.problem.layout.scales.length
+    found, _ = under_load(there, load)
+    x, y = found.problem.displacement * found.problem.layout.scales.length
     return float(x) - (0.0 if case.rotor is None else case.rotor.unbalance), float(y)
 
 
-def system_of(case: Case, schedule: Schedule, load: Vector | None) -> System:
+def system_of(case: Case, schedule: Schedule, load: Vector | None) -> RotorBearing:
     """The bearing of `case` and its rotor in the units of the problem."""
     problem = build_pair(case) if case.rotor is not None and case.rotor.span else build_problem(case)
-    if problem.layout.film_rows.content is not None and len(problem.displacement) > 2:
+    if problem.layout.film_rows.inventory is not None and len(problem.displacement) > 2:
         raise UsageError("two 2-D films without ends hold no gas of their own: take the 3-D model or ambient edges")
     rotor = RotorMotion.of(case, problem.layout.scales, schedule, load)
     still = StepProblem(problem.layout, 0.0, problem.displacement, rotor.clock.bearing_number)
-    return System(still, rotor, FilmForce.of(problem), friction_of(case, problem.layout))
+    return RotorBearing(still, rotor, friction_of(case, problem.layout))
 
 
-def at_rest(case: Case, system: System, request: OrbitRequest, work: RunLog) -> Instant:
+def at_rest(case: Case, system: RotorBearing, request: OrbitRequest) -> Instant:
     """The journal held where it is, film and petals in equilibrium, and released at time zero.
 
     From a balance its mass centre rests, and the shaft turns about that: a start without a blow.
@@ -128,28 +125,28 @@ def at_rest(case: Case, system: System, request: OrbitRequest, work: RunLog) -> 
     if rotor is not None and request.initial == "balance":
         off[:2] = [-rotor.unbalance / scales.length, 0.0]
     if rotor is None or len(place) == 2:
-        answer = at_position(at(case, speed), work).answer
+        answer = at_position(at(case, speed)).answer
     else:
         place = place + rotor.lever / scales.length * np.array([0.0, 0.0, *request.slope])
         both = system.problem.at(bearing_number=system.rotor.bearing_number(0.0), displacement=place)
-        answer = solve_cold(CoupledProblem(both.layout, both.bearing_number, both.displacement), work)
+        answer = solve_cold(CoupledProblem(both.layout, both.bearing_number, both.displacement))
     turning = np.zeros_like(place)
     turning[:2] = np.array([-off[1], off[0]]) * speed / system.rotor.clock.rate
-    return released(system, 0.0, (answer.x, answer.lam, answer.in_contact), (place, turning))
+    return released(system, 0.0, (answer.x, answer.lam, answer.active), (place, turning))
 
 
 def released(
-    system: System, tau: float, state: tuple[Array, Array, NDArray[np.bool_]], moving: tuple[Array, Array]
+    system: RotorBearing, tau: float, state: tuple[Array, Array, NDArray[np.bool_]], moving: tuple[Array, Array]
 ) -> Instant:
     """An instant from unknowns, reactions and closed gaps, position and velocity: its rates by the equations."""
     (x, lam, closed), (e, v), rotor = state, moving, system.rotor
     problem = system.problem.at(displacement=e, bearing_number=rotor.bearing_number(tau))
     film = FilmState(problem.layout.film_rows, problem.pressure(x), problem.film(x), problem.bearing_number)
     outflow = film.residual.copy()
-    if problem.layout.film_rows.content is not None:
-        outflow[0] = 0.0  # the content stands in place of this balance
-    force = journal_force(problem, x[problem.positive], lam) + rotor.outside(tau) - rotor.gyroscopic(tau) @ v
+    if problem.layout.film_rows.inventory is not None:
+        outflow[0] = 0.0  # the gas inventory replaces this balance
+    force = problem.journal_force(x, lam) + rotor.outside(tau) - rotor.gyroscopic(tau) @ v
     speeding = np.asarray(np.linalg.solve(rotor.inertia, force), dtype=np.float64)
     change = TimeState(-outflow, v, speeding)
-    rubbed = None if system.friction is None else FrictionState.fresh(system.friction, x, lam)
-    return Instant(tau, x, lam, closed, TimeState(problem.stored(x), e, v), change, rubbed)
+    friction = None if system.friction is None else FrictionState.fresh(system.friction, x, lam)
+    return Instant(tau, x, lam, closed, TimeState(problem.stored(x), e, v), change, friction)

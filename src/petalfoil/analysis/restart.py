@@ -12,7 +12,7 @@ from petalfoil.analysis.release import released
 from petalfoil.case import Case
 from petalfoil.dynamics.speed_schedule import Schedule
 from petalfoil.dynamics.time_state import Instant
-from petalfoil.dynamics.tr_bdf2 import System
+from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.errors import UsageError
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ SAME = 1e-6
 """Relative difference that speed and angle of the shaft may have where one motion goes on from another."""
 
 
-def end_state(last: Instant, system: System) -> dict[str, Array]:
+def end_state(last: Instant, system: RotorBearing) -> dict[str, Array]:
     """The state at the end, from which a motion can go on."""
     length, rate = system.problem.layout.scales.length, system.rotor.clock.rate
     return {
@@ -32,26 +32,26 @@ def end_state(last: Instant, system: System) -> dict[str, Array]:
         "last_reactions": last.lam,
         "last_position": last.moving.e * length,
         "last_velocity": last.moving.v * length * rate,
-        "last_friction": np.zeros(0) if last.rubbed is None else last.rubbed.force,
+        "last_friction": np.zeros(0) if last.friction is None else last.friction.force,
     }
 
 
 def end_coordinates(last: Instant) -> dict[str, NDArray[np.generic]]:
     """Coordinates of the state at the end."""
-    slides = 0 if last.rubbed is None else len(last.rubbed.force)
+    slides = 0 if last.friction is None else len(last.friction.force)
     sizes = {"unknown": len(last.x), "gap": len(last.lam), "axis": len(last.e), "slide": slides}
     return {name: np.arange(size) for name, size in sizes.items()}
 
 
-def instant_of(result: xr.Dataset, system: System, tau: float) -> Instant:
+def instant_of(result: xr.Dataset, system: RotorBearing, tau: float) -> Instant:
     """The end of a motion, to go on from."""
     length, rate = system.problem.layout.scales.length, system.rotor.clock.rate
     x, lam = result["last_state"].to_numpy(), result["last_reactions"].to_numpy()
     e, v = result["last_position"].to_numpy() / length, result["last_velocity"].to_numpy() / (length * rate)
     start = released(system, tau, (x, lam, lam > 0.0), (e, v))
-    if start.rubbed is None:
+    if start.friction is None:
         return start
-    return replace(start, rubbed=replace(start.rubbed, force=result["last_friction"].to_numpy()))
+    return replace(start, friction=replace(start.friction, force=result["last_friction"].to_numpy()))
 
 
 def continued(case: Case, schedule: Schedule, result: xr.Dataset) -> float:

@@ -14,9 +14,10 @@ from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.operating_point import applied_load, at
 from petalfoil.analysis.records import effort, failed_record
 from petalfoil.analysis.runs import Points
-from petalfoil.analysis.session import Clock, Progress, part, telling_work
+from petalfoil.analysis.session import part
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
+from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import ConvergenceError
 from petalfoil.results.layout import Series, at_speed
 from petalfoil.results.parts import AppliedLoad, Branch
@@ -72,16 +73,15 @@ def _points(
 ) -> Iterator[Record]:
     line: SpeedLine | None = None
     for number, (leg, speed) in enumerate(way):
-        clock, work = Clock(), telling_work(part(progress, number, len(way)), f"runup {leg}")
         here = at(case, speed, (0.0, 0.0))
-        line = line or SpeedLine(here, load, work)
-        line.work = work
+        line = line or SpeedLine(here, load)
         asked = (AppliedLoad.of(load), Leg(leg))
-        try:
-            found = line.at(speed)
-        except ConvergenceError as failure:
-            line.known = None
-            yield failed_record("runup", here, failure, *asked, work=work)
-            continue
-        own = (*asked, Branch(solution_path=found.answer.way), effort(work, clock.seconds))
-        yield balance_record("runup", here, found, *own, work=work)
+        with running(part(progress, number, len(way)), f"runup {leg}") as run:
+            try:
+                found = line.at(speed)
+                own = (*asked, Branch(solution_path=found.solution_path), effort(run.seconds))
+                record = balance_record("runup", here, found, *own)
+            except ConvergenceError as failure:
+                line.known = None
+                record = failed_record("runup", here, failure, *asked)
+        yield record

@@ -12,8 +12,8 @@ from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.grid_study import error_bars
 from petalfoil.analysis.operating_point import at, at_position, relaxed
 from petalfoil.analysis.records import asked_position, effort, solution_record
-from petalfoil.analysis.session import Clock, Progress, telling_work
 from petalfoil.case import Case
+from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import ConvergenceError
 from petalfoil.results.layout import Point
 from petalfoil.results.record import Record
@@ -51,10 +51,10 @@ def solve(
 
 def point(case: Case, progress: Progress | None = None) -> Record:
     """The record of the case's position, on its grid."""
-    clock, work = Clock(), telling_work(progress, "solve", typical_steps(case))
-    found = relaxed(case, build_problem(case), work) if is_classic(case) else at_position(case, work)
-    own = (asked_position(case), found.branch, effort(work, clock.seconds))
-    return solution_record("solve", Evaluation.of(case, found.answer), *own, work=work)
+    with running(progress, "solve", typical_steps(case)) as run:
+        found = relaxed(case, build_problem(case)) if is_classic(case) else at_position(case)
+        own = (asked_position(case), found.branch, effort(run.seconds))
+        return solution_record("solve", Evaluation.of(case, found.answer), *own)
 
 
 def with_error_bars(record: Record, progress: Progress | None) -> Record:

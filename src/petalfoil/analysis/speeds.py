@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.case import Case
-from petalfoil.equilibrium.loaded import Balance
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold, rebalance
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
@@ -31,20 +30,17 @@ class SpeedLine:
         The bearing.
     load : (x, y)
         Load on the journal [N].
-    work : RunLog
-        Counts of all balances.
     """
 
     case: Case
     load: tuple[float, float]
-    work: RunLog
-    known: Balance | None = None
+    known: Solution | None = None
     base: CoupledProblem = field(init=False)
 
     def __post_init__(self) -> None:
         self.base = build_problem(self.case.replace(**{"operation.eccentricity": (0.0, 0.0)}))
 
-    def at(self, speed: float) -> Balance:
+    def at(self, speed: float) -> Solution:
         """The balance at `speed` [rad/s], followed from the last one.
 
         Raises
@@ -56,12 +52,12 @@ class SpeedLine:
         number = scales.bearing_number(self.case.gas.viscosity, speed, R_j)
         problem, load = self.base.at(bearing_number=number), np.array(self.load) / scales.force
         if self.known is None:
-            self.known = balance_cold(problem, load, self.work)
+            self.known = balance_cold(problem, load)
         else:
-            self.known = rebalance(self.known, problem, load, self.work)
+            self.known = rebalance(self.known, problem, load)
         return self.known
 
-    def climb(self, speed: float) -> Balance:
+    def climb(self, speed: float) -> Solution:
         """The balance at `speed` on the branch that the loaded package takes from rest.
 
         Raises
@@ -76,4 +72,4 @@ class SpeedLine:
 
     def contact_fraction(self, speed: float) -> float:
         """Contact fraction at `speed` [1]."""
-        return Evaluation.of(self.case, self.at(speed).answer).contact_fraction
+        return Evaluation.of(self.case, self.at(speed)).contact_fraction

@@ -16,14 +16,14 @@ from petalfoil.analysis.impedance import elastic
 from petalfoil.analysis.operating_point import OperatingPoint, Vector, applied_load, at, operating_point
 from petalfoil.analysis.records import branch, effort, failed_record, record_of
 from petalfoil.analysis.runs import Points
-from petalfoil.analysis.session import Clock, Progress, part, telling_work
+from petalfoil.analysis.session import part
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.analysis.threshold import rotor_mass, threshold_speed
 from petalfoil.case import Case
 from petalfoil.dynamics.critical_mass import Whirl, neutral_whirl, scan
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.dynamics.natural_modes import Mode, natural_modes
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.grid import Grid
 from petalfoil.results.layout import ArrayTable, Point
@@ -122,18 +122,18 @@ def point(case: Case, load: Vector | None, mass: float | None, progress: Progres
     Without `mass` that of the case's rotor is taken, without one the load over gravity; without a load there are no
     threshold speed (nan) and no modes.
     """
-    clock, work = Clock(), telling_work(progress, "stability")
-    found = operating_point(case, load, work)
-    motion = elastic(case, found.answer, work)
-    scanned = scan(motion, work)
-    whirl = neutral_whirl(motion, case.operation.speed, work, scanned)
-    rotor = rotor_mass(case, load, mass)
-    inertia = rotor * case.operation.speed**2
-    modes = None if math.isnan(rotor) else natural_modes(motion, inertia, scanned, work)
-    threshold, ended = threshold_speed(case, load, (rotor, whirl), work)
-    parts = (Rotor(rotor, threshold), *whirl_parts(case, found, whirl, ended), effort(work, clock.seconds))
-    fields, coords = ({}, {}) if modes is None else mode_fields(modes, case.operation.speed)
-    return record_of("stability", case, *parts, work=work, fields=fields, coords=coords)
+    with running(progress, "stability") as run:
+        found = operating_point(case, load)
+        motion = elastic(case, found.answer)
+        scanned = scan(motion)
+        whirl = neutral_whirl(motion, case.operation.speed, scanned)
+        rotor = rotor_mass(case, load, mass)
+        inertia = rotor * case.operation.speed**2
+        modes = None if math.isnan(rotor) else natural_modes(motion, inertia, scanned)
+        threshold, ended = threshold_speed(case, load, (rotor, whirl))
+        parts = (Rotor(rotor, threshold), *whirl_parts(case, found, whirl, ended), effort(run.seconds))
+        fields, coords = ({}, {}) if modes is None else mode_fields(modes, case.operation.speed)
+        return record_of("stability", case, *parts, fields=fields, coords=coords)
 
 
 def whirl_parts(case: Case, found: OperatingPoint, whirl: Whirl, ended: str) -> tuple[object, ...]:
@@ -162,22 +162,21 @@ def _points(cases: list[Case], loads: list[Vector], progress: Progress | None) -
         line: SpeedLine | None = None
         for column, case in enumerate(cases):
             here = part(progress, row * len(cases) + column, len(loads) * len(cases))
-            clock, work = Clock(), telling_work(here, "stability")
-            line = line or SpeedLine(case, load, work)
-            line.work = work
-            try:
-                found, whirl = _followed(line, case, work)
-            except ConvergenceError as failure:
-                line.known = None
-                yield failed_record("stability", case, failure, AppliedLoad.of(load), work=work)
-                continue
-            parts = (*whirl_parts(case, found, whirl, ""), effort(work, clock.seconds))
-            yield record_of("stability", case, *parts, work=work)
+            line = line or SpeedLine(case, load)
+            with running(here, "stability") as run:
+                try:
+                    found, whirl = _followed(line, case)
+                    parts = (*whirl_parts(case, found, whirl, ""), effort(run.seconds))
+                    record = record_of("stability", case, *parts)
+                except ConvergenceError as failure:
+                    line.known = None
+                    record = failed_record("stability", case, failure, AppliedLoad.of(load))
+            yield record
 
 
-def _followed(line: SpeedLine, case: Case, work: RunLog) -> tuple[OperatingPoint, Whirl]:
+def _followed(line: SpeedLine, case: Case) -> tuple[OperatingPoint, Whirl]:
     """The balance at the case's speed and its critical mass."""
-    answer = line.at(case.operation.speed).answer
-    whirl = neutral_whirl(elastic(case, answer, work), case.operation.speed, work)
-    known = branch(leading_eigenvalue(answer, work), case, 1, answer.way)
+    answer = line.at(case.operation.speed)
+    whirl = neutral_whirl(elastic(case, answer), case.operation.speed)
+    known = branch(leading_eigenvalue(answer), case, 1, answer.solution_path)
     return OperatingPoint(answer, known, (AppliedLoad.of(line.load),)), whirl

@@ -18,10 +18,9 @@ from petalfoil.analysis.fields import coordinates, wall_fields
 from petalfoil.analysis.hysteresis import follow, legs
 from petalfoil.analysis.records import asked_position, effort, failed_record, geometry, record_of
 from petalfoil.analysis.runs import Points
-from petalfoil.analysis.session import Clock, Progress, telling_work
 from petalfoil.case import Case
-from petalfoil.equilibrium.ascent import rest
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.continuation import rest
+from petalfoil.equilibrium.run_context import Progress, current_run, running
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.layout import Series
@@ -101,40 +100,43 @@ def _with_friction(way: list[tuple[str, Case]], progress: Progress | None) -> It
     for number, point in enumerate(follow(way)):
         if progress is not None:
             progress(number / len(way), f"static: {point.leg}")
-        if point.answer is None:
-            reason = "the package did not settle on the way"
-            yield failed_record("static", point.case, reason, Leg(point.leg), work=point.work)
-        else:
-            own = (Leg(point.leg, point.lost), effort(point.work, point.seconds))
-            yield static_record(point.case, point.answer, *own, work=point.work)
+        with point.run.active():
+            if point.answer is None:
+                reason = "the package did not settle on the way"
+                record = failed_record("static", point.case, reason, Leg(point.leg))
+            else:
+                own = (Leg(point.leg, point.lost), effort(point.seconds))
+                record = static_record(point.case, point.answer, *own)
+        yield record
 
 
 def _without_friction(cases: list[Case], progress: Progress | None) -> Iterator[Record]:
     base = build_problem(cases[0])
     for number, case in enumerate(cases):
-        clock, work = Clock(), telling_work(None, "static")
         if progress is not None:
             progress(number / len(cases), "static")
         problem = base.at(displacement=np.array(case.operation.eccentricity) / base.layout.scales.length)
-        answer = at_rest(case, problem, work)
-        if answer is None:
-            yield failed_record("static", case, "the package did not settle", work=work)
-        else:
-            yield static_record(case, answer, effort(work, clock.seconds), work=work)
+        with running() as run:
+            answer = at_rest(case, problem)
+            if answer is None:
+                record = failed_record("static", case, "the package did not settle")
+            else:
+                record = static_record(case, answer, effort(run.seconds))
+        yield record
 
 
-def at_rest(case: Case, problem: CoupledProblem, work: RunLog) -> Solution | None:
+def at_rest(case: Case, problem: CoupledProblem) -> Solution | None:
     """The assembled package by the method of `case`; None, and why in the history, if it did not settle."""
     if not is_classic(case):
-        return rest(problem, work)
+        return rest(problem)
     try:
-        return rest_by_classic(problem, work)
+        return rest_by_classic(problem)
     except ConvergenceError as failure:
-        work.note("classic", outcome=str(failure))
+        current_run().note("classic", outcome=str(failure))
         return None
 
 
-def static_record(case: Case, answer: Solution, *parts: object, work: RunLog) -> Record:
+def static_record(case: Case, answer: Solution, *parts: object) -> Record:
     """The record of a package at rest: its reactions; there is no film to speak of."""
     forces, fields = Evaluation.of(case, answer).forces(), wall_fields(case, answer)
     torque = case.surface.friction_coefficient * case.bearing.journal_radius * forces.contact_normal_force
@@ -146,10 +148,9 @@ def static_record(case: Case, answer: Solution, *parts: object, work: RunLog) ->
         forces,
         Torque(torque, torque),
         wall_kind(case).scalars(fields),
-        Branch(solution_path=answer.way, stable=True, known_equilibria=1),
+        Branch(solution_path=answer.solution_path, stable=True, known_equilibria=1),
         Outcome(residual=answer.residual),
         *parts,
-        work=work,
         fields=dict(fields),
         coords=coordinates(case, answer),
     )

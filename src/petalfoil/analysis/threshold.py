@@ -14,7 +14,7 @@ from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
 from petalfoil.dynamics.critical_mass import Whirl, neutral_whirl
 from petalfoil.dynamics.rotor import GRAVITY
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.run_context import current_run
 from petalfoil.errors import ConvergenceError
 
 RANGE, FACTOR = 16.0, 1.3
@@ -47,7 +47,7 @@ NEVER = 50.0
 """Margin of a bearing on which a rotor of any mass is stable."""
 
 
-def threshold_speed(case: Case, load: Vector | None, start: tuple[float, Whirl], work: RunLog) -> Threshold:
+def threshold_speed(case: Case, load: Vector | None, start: tuple[float, Whirl]) -> Threshold:
     """Speed at which a rotor of the mass becomes unstable, within the range.
 
     Upward from a stable bearing, downward from an unstable one. A speed without an equilibrium ends the search.
@@ -55,7 +55,7 @@ def threshold_speed(case: Case, load: Vector | None, start: tuple[float, Whirl],
     mass, whirl = start
     if math.isnan(mass):
         return math.nan, "no threshold speed: give a mass or a load"
-    margin_at = margins(case, load, mass, work)
+    margin_at = margins(case, load, mass)
     known, here = case.operation.speed, margin(whirl, mass)
     factor = FACTOR if here > 0.0 else 1.0 / FACTOR
     first, last = sorted((known, known * RANGE if here > 0.0 else known / RANGE))
@@ -67,27 +67,27 @@ def threshold_speed(case: Case, load: Vector | None, start: tuple[float, Whirl],
                 return float(brentq(margin_at, min(known, ahead), max(known, ahead), rtol=PRECISION)), ""
             known, here = ahead, there
     except ConvergenceError as failure:
-        work.note("threshold", outcome=str(failure))
+        current_run().note("threshold", outcome=str(failure))
         return math.nan, f"no threshold speed: no operating point beyond {in_rpm(known)}"
     if here > 0.0:
         return math.nan, f"no threshold speed: the rotor is stable up to {in_rpm(known)}"
     return math.nan, f"no threshold speed: the rotor is unstable down to {in_rpm(known)}"
 
 
-def margins(case: Case, load: Vector | None, mass: float, work: RunLog) -> Callable[[float], float]:
+def margins(case: Case, load: Vector | None, mass: float) -> Callable[[float], float]:
     """The margin over speed [rad/s], under the load or at the case's position."""
     if load is None and case.operation.load is None:
 
         def in_place(speed: float) -> float:
-            answer = operating_point(at(case, speed), None, work).answer
-            return margin(neutral_whirl(elastic(case, answer, work), speed, work), mass)
+            answer = operating_point(at(case, speed), None).answer
+            return margin(neutral_whirl(elastic(case, answer), speed), mass)
 
         return in_place
-    line = SpeedLine(case, applied_load(case, load), work)
+    line = SpeedLine(case, applied_load(case, load))
 
     def under_load(speed: float) -> float:
-        answer = line.at(speed).answer
-        return margin(neutral_whirl(elastic(case, answer, work), speed, work), mass)
+        answer = line.at(speed)
+        return margin(neutral_whirl(elastic(case, answer), speed), mass)
 
     return under_load
 

@@ -14,10 +14,11 @@ from petalfoil.analysis.evaluation import contact_fraction, smallest_film
 from petalfoil.analysis.extremes import highest, lowest
 from petalfoil.case import Case
 from petalfoil.dynamics.time_state import Instant
-from petalfoil.dynamics.tr_bdf2 import System
+from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.physics.forces import node_area, viscous_torque
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.friction import energy_lost
+from petalfoil.system.unknowns import DEFLECTION
 from petalfoil.walls import wall_kind
 
 Array = NDArray[np.float64]
@@ -74,7 +75,7 @@ class Trace:
     """
 
     case: Case
-    system: System
+    system: RotorBearing
     rows: list[dict[str, float]] = field(default_factory=list)
     frames: deque[Instant] = field(default_factory=lambda: deque(maxlen=FRAMES))
     last: Instant | None = None
@@ -110,7 +111,7 @@ class Trace:
         length, _, force, rate = self._units
         layout, rotor = self.system.problem.layout, self.system.rotor
         t, (e, v) = instant.tau / rate, (instant.moving.e * length, instant.moving.v * length * rate)
-        w = instant.x[: layout.n_wall]
+        w = instant.x[layout.unknowns[DEFLECTION]]
         kinetic = 0.5 * float(instant.moving.v @ rotor.inertia @ instant.moving.v) * force * length
         tilt = self._tilt(e)
         return {
@@ -135,7 +136,7 @@ class Trace:
         p, h, omega = P * ambient, H * length, self.system.rotor.schedule.speed(instant.tau / self._units[3])
         touching = float(instant.lam[contacts.journal].sum()) * force
         lift = float(np.sum((p - ambient) * self._area))
-        pushed = (self.system.film.at(instant.x[problem.positive]) + contacts.by_e.T @ instant.lam) * force
+        pushed = problem.journal_force(instant.x, instant.lam) * force
         shear = (case.gas.viscosity, omega * case.bearing.journal_radius)
         rubbing = case.surface.friction_coefficient * case.bearing.journal_radius * touching
         viscous = viscous_torque(mesh, case.bearing.journal_radius, (p, h), shear, case.slip_length * ambient)
@@ -159,14 +160,14 @@ class Trace:
             return {"film_step": 0.0, "load_step": 0.0, "petals_step": 0.0}
         length, _, force, _ = self._units
         layout, system = self.system.problem.layout, self.system
-        kept, n = system.problem.positive, layout.n_wall
-        by_film = 0.5 * (system.film.at(before.x[kept]) + system.film.at(instant.x[kept]))
+        kept, wall = system.problem.positive, layout.unknowns[DEFLECTION]
+        by_film = 0.5 * (system.problem.film_force(before.x) + system.problem.film_force(instant.x))
         pushed = 0.5 * layout.push @ (before.x[kept] + instant.x[kept] - 2.0)
         loads = 0.5 * (system.rotor.outside(before.tau) + system.rotor.outside(instant.tau))
-        moved, bent = instant.e - before.e, instant.x[:n] - before.x[:n]
+        moved, bent = instant.e - before.e, instant.x[wall] - before.x[wall]
         unit, friction, worn = force * length, system.friction, 0.0
-        if friction is not None and before.rubbed is not None and instant.rubbed is not None:
-            worn = energy_lost(friction.in_step(before.lam), before.rubbed, instant.rubbed)
+        if friction is not None and before.friction is not None and instant.friction is not None:
+            worn = energy_lost(friction.in_step(before.lam), before.friction, instant.friction)
         done = float(by_film @ moved + pushed @ bent)
         return {"film_step": done * unit, "load_step": float(loads @ moved) * unit, "petals_step": worn * unit}
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
+from scipy.optimize import brentq, linear_sum_assignment
 
-from petalfoil.equilibrium.linear_response import Motion
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.linear_response import SmallMotion
+from petalfoil.equilibrium.run_context import current_run
 
 Complex = NDArray[np.complex128]
 
@@ -34,59 +34,58 @@ class Whirl:
     ratio: float
 
 
-def neutral_whirl(motion: Motion, speed: float, work: RunLog, scanned: Complex | None = None) -> Whirl:
+def neutral_whirl(motion: SmallMotion, speed: float, scanned: Complex | None = None) -> Whirl:
     """Find the smallest whirling mass about the state of `motion`; `scanned` if the impedances of `scan` are known.
 
-    For a mass at the threshold the two eigenvalues of `Z(i Omega)` include a real one, `m Omega^2`: the branches of
+    For a mass at the threshold the eigenvalues of `Z(i Omega)` include a real one, `m Omega^2`: the branches of
     their imaginary part are followed over whirl ratio and their zeros bracketed.
     """
     roots: list[Whirl] = []
-    values = list(np.linalg.eigvals(scan(motion, work) if scanned is None else scanned))
+    values = list(np.linalg.eigvals(scan(motion) if scanned is None else scanned))
     for k in range(len(SCAN) - 1):
         ahead = matched(values[k], values[k + 1])
-        for branch in (0, 1):
+        for branch in range(len(ahead)):
             if np.sign(values[k][branch].imag) != np.sign(ahead[branch].imag):
-                roots += crossing(motion, (SCAN[k], SCAN[k + 1]), values[k][branch], speed, work)
+                roots += crossing(motion, (SCAN[k], SCAN[k + 1]), values[k][branch], speed)
         values[k + 1] = ahead
     return min(roots, key=lambda root: root.mass, default=Whirl(np.inf, np.nan))
 
 
-def scan(motion: Motion, work: RunLog) -> Complex:
-    """Impedances at the whirl ratios of `SCAN`, (n, 2, 2) [N/m]."""
-    return np.array([whirl_impedance(motion, nu, work) for nu in SCAN])
+def scan(motion: SmallMotion) -> Complex:
+    """Impedances at the whirl ratios of `SCAN`, (n, d, d) [N/m]."""
+    return np.array([whirl_impedance(motion, nu) for nu in SCAN])
 
 
-def whirl_impedance(motion: Motion, nu: float, work: RunLog) -> Complex:
-    """`Z` at whirl ratio `nu`, (2, 2) [N/m]; one factorisation."""
+def whirl_impedance(motion: SmallMotion, nu: float) -> Complex:
+    """`Z` at whirl ratio `nu`, (d, d) [N/m]; one factorisation."""
     scales = motion.problem.layout.scales
-    gradient = motion.respond(float(nu), work.probe_solver).force_gradient()
+    gradient = motion.respond(float(nu), current_run().probe_solver).force_gradient
     return np.asarray(-gradient * scales.force / scales.length, dtype=np.complex128)
 
 
-def eigenvalues(motion: Motion, nu: float, work: RunLog) -> Complex:
-    """Eigenvalues of the impedance at whirl ratio `nu`, (2,) [N/m]."""
-    return np.asarray(np.linalg.eigvals(whirl_impedance(motion, nu, work)), dtype=np.complex128)
+def eigenvalues(motion: SmallMotion, nu: float) -> Complex:
+    """Eigenvalues of the impedance at whirl ratio `nu`, (d,) [N/m]."""
+    return np.asarray(np.linalg.eigvals(whirl_impedance(motion, nu)), dtype=np.complex128)
 
 
 def matched(before: Complex, after: Complex) -> Complex:
     """`after`, ordered so that each eigenvalue continues its own branch."""
-    straight = np.abs(after - before).sum()
-    crossed = np.abs(after[::-1] - before).sum()
-    return after if straight <= crossed else after[::-1]
+    out: Complex = after[linear_sum_assignment(np.abs(before[:, None] - after[None, :]))[1]]
+    return out
 
 
-def crossing(motion: Motion, between: tuple[float, float], start: complex, speed: float, work: RunLog) -> list[Whirl]:
+def crossing(motion: SmallMotion, between: tuple[float, float], start: complex, speed: float) -> list[Whirl]:
     """The neutral whirl in a bracket of whirl ratios, if it belongs to a positive mass."""
     nearest = start
 
     def imaginary(nu: float) -> float:
-        values = eigenvalues(motion, nu, work)
+        values = eigenvalues(motion, nu)
         return float(values[np.argmin(np.abs(values - nearest))].imag)
 
     low, high = imaginary(between[0]), imaginary(between[1])
     if np.sign(low) == np.sign(high):
         return []
     nu = float(brentq(imaginary, *between, xtol=1e-6, rtol=1e-8))
-    values = eigenvalues(motion, nu, work)
+    values = eigenvalues(motion, nu)
     mass = float(values[np.argmin(np.abs(values.imag))].real) / (nu * speed) ** 2
     return [Whirl(mass, nu)] if mass > 0.0 else []

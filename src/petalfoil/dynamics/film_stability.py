@@ -1,6 +1,6 @@
 """Is an equilibrium stable at a fixed journal position?
 
-The wall has no mass; the film has. With the contacts that carry load kept closed, small disturbances obey
+The wall has no mass; the film has. With the contacts that carry load kept active, small disturbances obey
 `J u + s M u = 0` (E1) in `exp(s tau)`, `tau = omega t`: stable if every `s` has a negative real part.
 """
 
@@ -8,23 +8,29 @@ from __future__ import annotations
 
 import numpy as np
 
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.solvers.constraints import tie
+from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.eigenvalues import Pencil, rightmost
+from petalfoil.system.unknowns import DEFLECTION
 
 TIME_STEP = 0.15
 """Radians of rotation a step of the eigenvalue's time map: what grows or dies out in a few of them is seen first."""
 
 
-def leading_eigenvalue(answer: Solution, work: RunLog) -> complex:
+def leading_eigenvalue(solution: Solution) -> complex:
     """Leading eigenvalue in radians of rotation; nan for a shaft at rest, whose film does not move."""
-    problem = answer.problem
+    problem = solution.problem
     if problem.bearing_number == 0.0:
         return complex(np.nan, np.nan)
-    line, none = problem.linearize(answer.x), np.zeros(len(problem.weight))
-    steady = line.matrix(none)
-    ties = answer.closed.ties if answer.closed is not None else tie(problem.G, answer.in_contact)
-    first = int(ties.group[: problem.layout.n_wall].max(initial=-1)) + 1
-    pencil = Pencil(ties.reduce(steady), ties.reduce(line.stored), first, ties.rank(problem.rank))
-    return rightmost(pencil, TIME_STEP, work.probe_solver)
+    linearized = problem.linearize(solution.x)
+    steady = linearized.matrix(np.zeros(len(problem.weight)))
+    contacts = solution.contacts
+    constraints = constrain(problem.G, solution.active) if contacts is None else contacts.constraints
+    wall = constraints.group[problem.layout.unknowns[DEFLECTION]]
+    first = int(wall.max(initial=-1)) + 1
+    solver = current_run().probe_solver
+    order = constraints.elimination_order(solver, problem.elimination_key)
+    return rightmost(
+        Pencil(constraints.reduce(steady), constraints.reduce(linearized.stored), first, order), TIME_STEP, solver
+    )

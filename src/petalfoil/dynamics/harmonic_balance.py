@@ -12,18 +12,17 @@ by Newton's method, in as many unknowns as contacts slide under load.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.linear_response import Response
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.linear_response import LinearResponse
+from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 from petalfoil.physics.dry_friction import Friction, equivalent_stiffness
-from petalfoil.system.friction import held_together
+from petalfoil.system.friction import against_slip, friction_tangent, slips
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -49,7 +48,7 @@ AT_ONCE = 32
 
 
 @dataclass(frozen=True)
-class Sliding:
+class SlidingContacts:
     """Contacts that slide and carry load.
 
     Attributes
@@ -64,31 +63,18 @@ class Sliding:
     limit: Array
 
     @classmethod
-    def at(cls, friction: Friction, answer: Solution) -> Sliding:
+    def at(cls, friction: Friction, solution: Solution) -> SlidingContacts:
         """Those of an equilibrium."""
-        normal = friction.normal(answer.lam)
+        normal = friction.normal(solution.lam)
         kept = np.flatnonzero(normal > 0.0)
         slip, share = friction.slip[kept], friction.reaction_share[kept]
-        stick = friction.in_step(answer.lam).stiffness[kept]
+        stick = friction.in_step(solution.lam).stiffness[kept]
         law = Friction(friction.coefficient, stick, slip, share, friction.width)
         return cls(law, law.coefficient * normal[kept])
 
-    def slips(self, change: NDArray[Any]) -> NDArray[Any]:
-        """Slips by a change of the unknowns (n,) or (n, j)."""
-        B = self.friction.slip
-        out: NDArray[Any] = B @ change[: B.shape[1]]
-        return out
-
-    def against(self, force: NDArray[Any], n: int) -> NDArray[Any]:
-        """`B^T T` among all `n` unknowns."""
-        B = self.friction.slip
-        out = np.zeros(n, dtype=force.dtype)
-        out[: B.shape[1]] = B.T @ force
-        return out
-
-    def stuck(self, n: int) -> sp.csc_array:
+    def sticking(self, n: int) -> sp.csc_array:
         """What adds to the tangent where all of them stick, (n, n)."""
-        return held_together(self.friction, self.friction.stiffness, n)
+        return friction_tangent(self.friction, self.friction.stiffness, n)
 
     def equivalent(self, slip: Complex, amplitude: float) -> tuple[Complex, Complex]:
         """Equivalent stiffness and its derivative by the logarithm of the slip; `slip` is by unit displacement."""
@@ -96,25 +82,25 @@ class Sliding:
 
 
 @dataclass(frozen=True)
-class Cycle:
+class FrictionCycle:
     """A whirl of one frequency along one axis and then the other, with friction.
 
     Attributes
     ----------
-    sliding : Sliding
+    sliding : SlidingContacts
         The contacts.
-    response : Response
+    response : LinearResponse
         Linear response without friction.
     amplitude : float
         Of the journal, over the reference length [1].
     """
 
-    sliding: Sliding
-    response: Response
+    sliding: SlidingContacts
+    response: LinearResponse
     amplitude: float
 
-    def force_gradient(self, work: RunLog) -> Complex:
-        """`dF/de` of film and contacts on the journal, (2, 2), over unit of force and length [1].
+    def force_gradient(self) -> Complex:
+        """`dF/de` of film and contacts on the journal over unit of force and length [1].
 
         Raises
         ------
@@ -122,28 +108,28 @@ class Cycle:
             Slips and friction did not agree.
         """
         compliance = self.compliance()
-        columns = []
-        for axis in (0, 1):
-            change, reactions = self.response.unit(axis)
-            slip = self.settled(self.sliding.slips(change), compliance, work)
-            rubbed = self.sliding.equivalent(slip, self.amplitude)[0] * slip
-            by_friction = self.response.pushed(-self.sliding.against(rubbed, len(change)))
-            columns.append(self.response.force(change + by_friction[0], reactions + by_friction[1]))
+        units = self.response.tangent.units
+        n, columns = len(units), []
+        for unit, force in zip(units.T, self.response.force_gradient.T, strict=True):
+            slip = self.settled(slips(self.sliding.friction, unit), compliance)
+            friction = self.sliding.equivalent(slip, self.amplitude)[0] * slip
+            columns.append(force + self.response.forced(-against_slip(self.sliding.friction, friction, n))[1])
         return np.column_stack(columns)
 
     def compliance(self) -> Complex:
         """`R`, slips against unit friction forces, (k, k)."""
-        B, motion, factor = self.sliding.friction.slip, self.response.motion, self.response.factor
-        out = np.zeros((B.shape[0], B.shape[0]), dtype=complex)
-        for first in range(0, B.shape[0], AT_ONCE):
-            some = B[first : first + AT_ONCE].toarray()
-            unit = np.hstack([some, np.zeros((len(some), motion.problem.layout.n - B.shape[1]))])
-            forces = np.column_stack([motion.ties.gather(row) for row in unit])
-            moved = [motion.ties.spread(column) for column in factor.solve(forces.astype(complex)).T]
-            out[:, first : first + AT_ONCE] = self.sliding.slips(np.column_stack(moved))
+        friction, tangent = self.sliding.friction, self.response.tangent.tangent
+        n, count = self.response.motion.problem.layout.n, friction.slip.shape[0]
+        out = np.zeros((count, count), dtype=complex)
+        for first in range(0, count, AT_ONCE):
+            unit_forces = np.eye(min(AT_ONCE, count - first), count, first)
+            pushes = [tangent.constraints.gather(against_slip(friction, force, n)) for force in unit_forces]
+            forces = np.column_stack(pushes)
+            moved = [tangent.constraints.spread(column) for column in tangent.factor.solve(forces.astype(complex)).T]
+            out[:, first : first + AT_ONCE] = slips(friction, np.column_stack(moved))
         return out
 
-    def settled(self, free: Complex, compliance: Complex, work: RunLog) -> Complex:
+    def settled(self, free: Complex, compliance: Complex) -> Complex:
         """Slips by a unit displacement (k,) that agree with their friction, from those without it.
 
         Contacts much stiffer than what they hold leave Newton's method little way between sticking and slipping: they
@@ -161,17 +147,17 @@ class Cycle:
         sticking = np.eye(len(free)) + compliance * here.sliding.friction.stiffness
         slip = np.asarray(np.linalg.solve(sticking, free), dtype=np.complex128)
         while True:
-            slip, count = here.solved(slip, (free, compliance), (AGREE if softer == 1.0 else NEAR) * largest, work)
+            slip, count = here.solved(slip, (free, compliance), (AGREE if softer == 1.0 else NEAR) * largest)
             steps += count
             slipping = here.slipping(slip)
             if softer == 1.0:
-                work.note("harmonic balance", steps=steps, contacts=len(slip), slipping=int(np.sum(slipping)))
+                current_run().note("harmonic balance", steps=steps, contacts=len(slip), slipping=int(np.sum(slipping)))
                 return slip
             ahead = max(1.0, softer / STIFFEN)
             slip = np.where(slipping, slip, slip * ahead / softer)  # what sticks holds with about the same force
             softer, here = ahead, self.softened(ahead)
 
-    def softened(self, times: float) -> Cycle:
+    def softened(self, times: float) -> FrictionCycle:
         """The same with softer sticks."""
         friction = replace(self.sliding.friction, stiffness=self.sliding.friction.stiffness / times)
         return replace(self, sliding=replace(self.sliding, friction=friction))
@@ -183,9 +169,7 @@ class Cycle:
         )
         return slipping
 
-    def solved(
-        self, slip: Complex, system: tuple[Complex, Complex], enough: float, work: RunLog
-    ) -> tuple[Complex, int]:
+    def solved(self, slip: Complex, system: tuple[Complex, Complex], enough: float) -> tuple[Complex, int]:
         """Slips whose residual is at most `enough`, and the steps it took from `slip`.
 
         Raises
@@ -200,7 +184,7 @@ class Cycle:
             slip, left = self.improved(slip, left, system)
         raise ConvergenceError(
             f"friction between petals does not agree with their slips in {STEPS} steps",
-            history=work.history,
+            history=current_run().history,
             advice="ask for another amplitude, or for the stuck limit without one; a wider friction_width is smoother",
         )
 

@@ -14,9 +14,9 @@ import scipy.linalg as la
 from numpy.typing import NDArray
 
 from petalfoil.dynamics.critical_mass import SCAN, Complex, whirl_impedance
-from petalfoil.equilibrium.linear_response import Motion
-from petalfoil.equilibrium.run_log import RunLog
-from petalfoil.solvers.rational import Rational
+from petalfoil.equilibrium.linear_response import SmallMotion
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.solvers.reduced_model import Rational
 
 PEAK = 1.0 / math.sqrt(2.0)
 """Damping ratio from which on a mode shows no resonance: those are not told."""
@@ -54,29 +54,27 @@ class Mode:
         return -self.s.real / abs(self.s)
 
 
-def natural_modes(motion: Motion, inertia: float, scanned: Complex, work: RunLog) -> list[Mode]:
+def natural_modes(motion: SmallMotion, inertia: float, scanned: Complex) -> list[Mode]:
     """Find the modes that show a resonance or grow, by frequency.
 
     Parameters
     ----------
-    motion : Motion
+    motion : SmallMotion
         Small motions about the operating point.
     inertia : float
         Rotor's mass times the square of the speed [N/m].
-    scanned : (n, 2, 2) complex array
+    scanned : (n, d, d) complex array
         Impedances of `whirl.scan` [N/m].
-    work : RunLog
-        Counts the factorisations.
     """
-    ratios, values = reaching(motion, inertia, scanned, work)
+    ratios, values = reaching(motion, inertia, scanned)
     points, both = np.concatenate([1j * ratios, -1j * ratios]), np.concatenate([values, values.conj()])
     found: list[Mode] = []
     for start in Rational.fit(points, both).modes(inertia):
         if start.imag < -APART * abs(start) or abs(start) > 2.0 * ratios[-1] or not shows(start):
             continue
-        mode = polished(motion, inertia, complex(start), work)
+        mode = polished(motion, inertia, complex(start))
         if mode is None:
-            work.note("modes", outcome=f"no mode near {start:.4g}")
+            current_run().note("modes", outcome=f"no mode near {start:.4g}")
         elif abs(mode.s) <= ratios[-1] and shows(mode.s) and not any(same(mode, other) for other in found):
             found.append(mode)
     return sorted(found, key=lambda mode: mode.s.imag)
@@ -92,21 +90,21 @@ def same(one: Mode, other: Mode) -> bool:
     return abs(one.s - other.s) <= APART * abs(one.s)
 
 
-def reaching(motion: Motion, inertia: float, scanned: Complex, work: RunLog) -> tuple[NDArray[np.float64], Complex]:
+def reaching(motion: SmallMotion, inertia: float, scanned: Complex) -> tuple[NDArray[np.float64], Complex]:
     """Whirl ratios and impedances of the scan, continued to 1.5 times where the rotor resonates at the latest."""
     ratios, values = list(SCAN), list(scanned)
     while ratios[-1] < 1.5 * math.sqrt(np.linalg.norm(values[-1], 2) / inertia):
         ratios.append(ratios[-1] * FARTHER)
-        values.append(whirl_impedance(motion, ratios[-1], work))
+        values.append(whirl_impedance(motion, ratios[-1]))
     return np.array(ratios), np.array(values)
 
 
-def polished(motion: Motion, inertia: float, s: complex, work: RunLog) -> Mode | None:
+def polished(motion: SmallMotion, inertia: float, s: complex) -> Mode | None:
     """The mode near `s`, by successive linear problems `D v = step D' v`, `D = m s^2 + Z`; None if they do not end."""
-    scales, one = motion.problem.layout.scales, np.eye(2)
+    scales, one = motion.problem.layout.scales, np.eye(motion.problem.layout.n_position)
     for _ in range(STEPS):
-        response = motion.growing(s, work.probe_solver)
-        D = inertia * s**2 * one - response.force_gradient() * scales.force / scales.length
+        response = motion.growing(s, current_run().probe_solver)
+        D = inertia * s**2 * one - response.force_gradient * scales.force / scales.length
         slope = 2.0 * inertia * s * one - response.slope() * scales.force / scales.length
         steps, left, right = la.eig(D, slope, left=True)
         k = int(np.argmin(np.abs(steps)))
@@ -125,4 +123,4 @@ def upper(s: complex) -> complex:
 
 def orbit(v: Complex) -> float:
     """Direction of the ellipse `Re(v exp(i tau))`: areas with the rotation over those of circles of its size."""
-    return float(-2.0 * (v[0].conj() * v[1]).imag / np.linalg.norm(v) ** 2)
+    return float(-2.0 * (v[::2].conj() @ v[1::2]).imag / np.linalg.norm(v) ** 2)

@@ -5,62 +5,79 @@ Every stage of the scheme asks for a state whose rates lead to it from a base: w
     film     net outflow + rate (m - m_base) = 0                         (O2)
     rotor    M rate^2 (e - e_base - v_base / rate) = F + loads           (O3)
 
-and wall and contacts as at rest. One factorisation, with both displacements of the journal bordered, serves as many
-corrections, stages and steps as it contracts.
+and wall and contacts as at rest. The journal's position is bordered. One factorisation serves as many corrections,
+stages and steps as it contracts; unlike an equilibrium, a stage therefore ends by the size of its correction, not by
+its residual.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.dynamics.stage_tangent import Tangent, tangent_of
 from petalfoil.dynamics.time_state import TimeState
-from petalfoil.solvers.cone import scaled_residual
-from petalfoil.solvers.contact_newton import ActiveOptions, ContactState, revise, searched
-from petalfoil.solvers.interior_point import room
-from petalfoil.solvers.lcp import solve_lcp
-from petalfoil.solvers.sparse_lu import LinearSolver
-from petalfoil.system.friction import FrictionState
-from petalfoil.system.loaded import FilmForce
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.solvers.contact_equations import (
+    ContactEquations,
+    ContactOptions,
+    ContactState,
+    Correction,
+    Step,
+    Verdict,
+)
+from petalfoil.solvers.contact_newton import contact_newton
+from petalfoil.solvers.problem import Border, ContactProblem, fraction_to_boundary
+from petalfoil.solvers.tangent import BorderedTangent
+from petalfoil.system.friction import FrictionProblem, FrictionState, FrictionStep
 from petalfoil.system.time_step import StepProblem
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-SIGNS = ActiveOptions()
-"""How far gaps and reactions may miss zero."""
-
-RENEWALS, RENEWALS_RUBBING = 3, 20
+TANGENTS, TANGENTS_SLIDING = 3, 20
 """Tangents with one contact set; where petals stick and slip, the tangent changes with them."""
 
-CYCLING = 2
-"""Tangents after which sticking and slipping may come back to where they were: secants take the derivatives' place."""
+CYCLING = 3
+"""Tangents with one contact set after which sticking and slipping may recur in turns: secants replace derivatives."""
 
-PATIENCE = 2
-"""Times that all gaps of wrong sign change at once before the set is searched for."""
+FILM_FRACTION = 0.95
+"""Fraction of the way to a closed film that a step may go."""
+
+DIVERGING = 2.0
+"""Growth of the correction past which the iteration diverges."""
+
+CONTACTS = ContactOptions(
+    tangents=24,
+    tangents_per_set=TANGENTS,
+    steps=8,
+    deepest=-np.inf,
+    revise_early=False,
+    tangent_at_entry=True,
+    borrow=True,
+)
+"""A step that would pierce the film ends short of that, to have the gaps closed that it ran into."""
+
+CONTACTS_SLIDING = replace(CONTACTS, tangents=160, tangents_per_set=TANGENTS_SLIDING)
+"""The same with friction between petals."""
 
 
 @dataclass(frozen=True)
 class StageOptions:
-    """Numbers of the method."""
+    """Numbers of a stage."""
 
     accuracy: float = 1e-6
     """Correction after which a stage is done [reference films, ambient pressures]."""
-    corrections: int = 8
-    """Most corrections with one contact set."""
     slow: float = 0.2
     """Contraction past which the tangent is renewed."""
-    slow_rubbing: float = 0.6
+    slow_sliding: float = 0.6
     """The same with friction, whose limits follow the reactions a correction late."""
-    sets: int = 8
-    """Most contact sets tried in a stage."""
 
 
 @dataclass(frozen=True)
-class Stage:
+class Stage(ContactEquations):
     """What a stage asks for.
 
     Attributes
@@ -71,10 +88,14 @@ class Stage:
         Where the rates lead from.
     inertia, gyroscopic : (d, d) array
         `M`, and what turns velocities across [1].
-    outside : (2,) array
+    outside : (d,) array
         Loads at the stage's time over the unit of force [1].
-    film : FilmForce
-        Force of the film on the journal.
+    options : StageOptions
+        Numbers of the stage.
+    friction : FrictionStep or None
+        Friction between the petals.
+    tangents : int
+        Tangents made so far with the contact set at hand.
     """
 
     problem: StepProblem
@@ -82,206 +103,101 @@ class Stage:
     inertia: Array
     gyroscopic: Array
     outside: Array
-    film: FilmForce
+    options: StageOptions
+    friction: FrictionStep | None = None
+    tangents: int = 0
 
     @property
     def rate(self) -> float:
         """One over the implicit part of the step."""
         return self.problem.rate
 
-    def left(self, P: Array, reaction: Array, e: Array) -> Array:
-        """Force that is left over for acceleration at `e` (O3), (2,) [1]; `reaction` is the contacts' force."""
-        reached = e - self.base.e - self.base.v / self.rate
-        turned = self.gyroscopic @ (self.rate * (e - self.base.e))
-        force: Array = self.film.at(P) + reaction + self.outside - self.inertia @ (self.rate**2 * reached) - turned
-        return force
+    @property
+    def border(self) -> Border:
+        """How the journal's position enters."""
+        return self.problem.border
 
-    def pressed(self, lam: Array) -> Stage:
-        """The same stage with friction limited by the reactions `lam` (m,)."""
-        rubbing = self.problem.rubbing
-        if rubbing is None:
+    @property
+    def border_stiffness(self) -> Array:
+        """Inertia and gyroscopic terms of an implicit step."""
+        return self.inertia * self.rate**2 + self.gyroscopic * self.rate
+
+    @property
+    def stops(self) -> slice | None:
+        """The journal alone can open contacts that close a chain between journal and bushing."""
+        return self.problem.layout.wall.contacts.journal
+
+    def at(self, b: Array) -> ContactProblem:
+        """Film and wall at a displacement, friction included."""
+        problem = self.problem.at(displacement=b)
+        return problem if self.friction is None else FrictionProblem(problem, self.friction)
+
+    def imbalance(self, x: Array, lam: Array, b: Array) -> Array:
+        """Force left over for acceleration at displacement `b` (O3), (d,) [1]."""
+        reached = b - self.base.e - self.base.v / self.rate
+        turned = self.gyroscopic @ (self.rate * (b - self.base.e))
+        force = self.problem.journal_force(x, lam) + self.outside
+        return np.asarray(force - self.inertia @ (self.rate**2 * reached) - turned)
+
+    def step_length(self, state: ContactState, correction: Correction) -> float:
+        """Pressures and film stay positive."""
+        film = self.problem.at(displacement=state.b).film(state.x)
+        ahead = self.problem.at(displacement=state.b + correction.b).film(state.x + correction.x)
+        return min(super().step_length(state, correction), FILM_FRACTION * fraction_to_boundary(film, ahead - film))
+
+    def lagged(self, state: ContactState) -> Self:
+        """Friction limited by the reactions of `state`."""
+        return self if self.friction is None else replace(self, friction=self.friction.limited(state.lam))
+
+    def renewed(self, state: ContactState, before: ContactState, count: int) -> Self:
+        """The same; after some tangents with secants of the friction."""
+        if self.friction is None or not (count or self.tangents):
             return self
-        normal = replace(rubbing, normal=rubbing.friction.normal(lam))
-        return replace(self, problem=replace(self.problem, rubbing=normal))
+        friction = self.friction.limited(state.lam)
+        secant = friction.between(state.x, before.x) if count >= CYCLING else friction
+        return replace(self, friction=secant, tangents=count)
 
-    def between(self, state: ContactState, x: Array) -> Stage:
-        """The same with secants of the friction between a state and the iterate `x` before it."""
-        pressed = self.pressed(state.lam)
-        rubbing = pressed.problem.rubbing
-        if rubbing is None:
-            return self
-        return replace(pressed, problem=replace(pressed.problem, rubbing=rubbing.between(state.x, x)))
+    def verdict(self, step: Step, options: ContactOptions) -> Verdict:
+        """By the size of the correction, and how fast it falls."""
+        sliding = self.friction is not None
+        if step.size > DIVERGING * step.last_size:
+            return Verdict.REJECT if sliding else Verdict.FAIL
+        if step.after is None:
+            return Verdict.FAIL
+        contraction = step.size / step.last_size if step.number else self.options.slow
+        error = step.size * min(1.0, contraction / max(1.0 - contraction, 0.1))
+        if step.length < 1.0:
+            return Verdict.RENEW
+        if error <= self.options.accuracy:
+            return Verdict.CONVERGED
+        slow = self.options.slow_sliding if sliding else self.options.slow
+        one_step = sliding and self.tangents >= CYCLING - 1
+        return Verdict.RENEW if one_step or (step.number and contraction > slow) else Verdict.GO_ON
 
-    def rubbed(self, state: ContactState) -> FrictionState | None:
-        """Slip and friction at a state."""
-        pressed = self.pressed(state.lam).problem.rubbing
-        return None if pressed is None else pressed.after(state.x)
-
-    def moving(self, stored: Array, e: Array) -> TimeState:
+    def moving(self, x: Array, e: Array) -> TimeState:
         """Gas, position and velocity of a state of this stage."""
+        stored = self.problem.at(displacement=e).stored(x)
         return TimeState(stored, e, self.rate * (e - self.base.e))
 
 
 @dataclass(frozen=True)
-class Solved:
-    """A stage's answer, and the tangent that found it."""
+class StageSolution:
+    """What a stage reaches, and the tangent that found it."""
 
-    x: Array
-    lam: Array
-    closed: Mask
+    state: ContactState
     moving: TimeState
-    residual: float
-    tangent: Tangent
-    rubbed: FrictionState | None
+    tangent: BorderedTangent
+    friction: FrictionState | None
 
 
 def solve_stage(
-    stage: Stage, start: tuple[Array, Array, Mask], tangent: Tangent | None, solver: LinearSolver, options: StageOptions
-) -> Solved | None:
-    """Find the stage's state from `start`: unknowns, displacement, closed gaps; None if there is none near it."""
-    x, e, closed = start
-    doubt = np.zeros(len(closed), dtype=bool)
-    for count in range(options.sets):
-        found = with_set(stage, (x, e, closed), tangent, solver, options)
-        if found is None:
-            return None
-        state, e, tangent, done = found
-        wanted = revise(stage.problem, state, SIGNS)
-        if done and np.array_equal(wanted, state.closed):
-            stored = stage.problem.at(displacement=e).stored(state.x)
-            rubbed = stage.rubbed(state)
-            return Solved(state.x, state.lam, state.closed, stage.moving(stored, e), state.residual, tangent, rubbed)
-        doubt |= wanted != state.closed
-        x, closed = state.x, wanted
-        if count >= PATIENCE:
-            sought = searched(stage.problem.at(displacement=e), state, doubt, solver)
-            if isinstance(sought, ContactState):
-                x, closed = sought.x, sought.closed
-    return None
-
-
-def with_set(
-    stage: Stage, start: tuple[Array, Array, Mask], tangent: Tangent | None, solver: LinearSolver, options: StageOptions
-) -> tuple[ContactState, Array, Tangent, bool] | None:
-    """Newton with the contact set given, the tangent renewed where it does not contract; None if that fails.
-
-    Where a step would pierce the film it ends short of that, to have the gaps closed that it ran into.
-    """
-    x, e, closed = start
-    if tangent is not None and not tangent.serves(closed):
-        tangent = tangent.exchanged(closed)
-    usable = tangent is not None
-    for renewal in range(RENEWALS if stage.problem.rubbing is None else RENEWALS_RUBBING):
-        if not usable or tangent is None:
-            tangent = tangent_of(stage.problem.at(displacement=e), x, closed, solver)
-            if tangent is None:
-                return None
-        once = stage.problem.rubbing is not None and renewal >= CYCLING
-        reached = contract(stage, (x, e), tangent, replace(options, corrections=1) if once else options)
-        if reached is not None:
-            state, e, done = reached
-            if done or np.any(state.gaps < -SIGNS.sign):
-                return state, e, tangent, done
-            stage = stage.between(state, x) if renewal >= CYCLING else stage.pressed(state.lam)
-            x = state.x
-        elif renewal and not usable:
-            return None
-        usable = False
-    return None
-
-
-def contract(
-    stage: Stage, start: tuple[Array, Array], tangent: Tangent, options: StageOptions
-) -> tuple[ContactState, Array, bool] | None:
-    """Corrections with one tangent: state, displacement, and whether they are an answer; None if they diverge."""
-    (x, e), last, push = start, np.inf, np.zeros(len(tangent.stops))
-    slow = options.slow if stage.problem.rubbing is None else options.slow_rubbing
-    for _ in range(options.corrections):
-        state = evaluate(stage, (x, e), push, tangent)
-        if state is None:
-            return None
-        stage = stage.pressed(state.lam)
-        found = eliminated(stage, state, tangent, e)
-        if found is None:
-            return None
-        change, de, push = found
-        size, reach = measure(change, de), open_share(stage, (state.x, e), (change, de))
-        if size > 2.0 * last:
-            return None if stage.problem.rubbing is None else (state, e, False)
-        slope = size / last if np.isfinite(last) else options.slow
-        x, e = state.x + reach * change, e + reach * de
-        done = size * min(1.0, slope / max(1.0 - slope, 0.1)) <= options.accuracy and reach == 1.0
-        if done or reach < 1.0 or (np.isfinite(last) and slope > slow):
-            break
-        last = size
-    end = evaluate(stage, (x, e), push, tangent)
-    return None if end is None else (end, e, done)
-
-
-def evaluate(stage: Stage, at: tuple[Array, Array], push: Array, tangent: Tangent) -> ContactState | None:
-    """Close the closed gaps exactly and evaluate the equations; None where the film is not open."""
-    (x, e), ties, closed = at, tangent.ties, tangent.closed.copy()
-    problem = stage.problem.at(displacement=e)
-    if np.any(closed):
-        x = x + ties.close(problem.gaps(x)[closed])
-    if not problem.admits(x) or np.min(x[problem.positive], initial=1.0) <= 0.0 or not np.all(np.isfinite(x)):
+    stage: Stage, start: tuple[Array, Array, Mask], tangent: BorderedTangent | None
+) -> StageSolution | None:
+    """Find the stage's state from `start`: unknowns, displacement, active contacts; None if there is none near it."""
+    options = CONTACTS if stage.friction is None else CONTACTS_SLIDING
+    contacts, _ = contact_newton(stage, start, current_run().film_solver, options, tangent)
+    if contacts is None:
         return None
-    line = problem.linearize(x)
-    lam = np.zeros(len(closed))
-    lam[tangent.stops] = push
-    back = problem.G.T
-    lam[closed] = ties.reactions(line.residual - back @ lam if len(push) else line.residual)
-    residual = scaled_residual(line, back @ lam)
-    closed[tangent.stops] = push > 0.0
-    return ContactState(x, lam, closed, residual, ties, line, problem.gaps(x))
-
-
-def freely(stage: Stage, residual: Array, tangent: Tangent, at: tuple[Array, Array]) -> tuple[Array, Array, Array]:
-    """Film, wall and ties settle against `residual`; the rotor follows the force that is left over, stops apart.
-
-    Parameters
-    ----------
-    at : (P, e)
-        Pressure unknowns and displacement.
-
-    Returns
-    -------
-    settle, de, stiffness
-        Change of the unknowns at a journal that stays (n,), of the displacement (2,), and what resists it (2, 2).
-    """
-    (P, e), (settle, lam) = at, tangent.settle(residual)
-    reaction = stage.problem.layout.wall.contacts.by_e.T @ lam
-    left = stage.left(P + settle[stage.problem.positive], reaction, e)
-    stiffness: Array = stage.inertia * stage.rate**2 + stage.gyroscopic * stage.rate - tangent.gradient
-    return settle, np.asarray(np.linalg.solve(stiffness, left), dtype=np.float64), stiffness
-
-
-def eliminated(stage: Stage, state: ContactState, tangent: Tangent, e: Array) -> tuple[Array, Array, Array] | None:
-    """Change of the unknowns (n,), of the displacement (2,), and reactions of the stops (k,); None if they contradict.
-
-    Stops hold the journal alone, whatever film and wall do: a complementarity problem of their own.
-    """
-    settle, de, stiffness = freely(stage, state.line.residual, tangent, (state.x[stage.problem.positive], e))
-    if not len(tangent.stops):
-        return settle + tangent.units @ de, de, np.zeros(0)
-    arm = stage.problem.layout.wall.contacts.by_e[tangent.stops] + stage.problem.G[tangent.stops] @ tangent.units
-    give = np.linalg.solve(stiffness, arm.T)
-    push = solve_lcp(arm @ give, state.gaps[tangent.stops] + arm @ de, np.zeros(len(arm), dtype=bool))
-    if push is None:
-        return None
-    de = de + give @ push
-    return settle + tangent.units @ de, de, push
-
-
-def measure(change: Array, de: Array) -> float:
-    """Size of a correction: displacement and deflections in reference films, pressures in ambient ones."""
-    return float(max(np.max(np.abs(change), initial=0.0), np.max(np.abs(de))))
-
-
-def open_share(stage: Stage, at: tuple[Array, Array], step: tuple[Array, Array]) -> float:
-    """Share of a step of unknowns and displacement that leaves pressures and film positive, at most 1."""
-    (x, e), (change, de), problem = at, step, stage.problem
-    pressure = room(x[problem.positive], change[problem.positive])
-    film = problem.at(displacement=e).film(x)
-    ahead = problem.at(displacement=e + de).film(x + change)
-    return float(min(1.0, 0.8 * pressure, 0.95 * room(film, ahead - film)))
+    state = contacts.state
+    friction = None if stage.friction is None else stage.friction.limited(state.lam).after(state.x)
+    return StageSolution(state, stage.moving(state.x, state.b), contacts.tangent, friction)

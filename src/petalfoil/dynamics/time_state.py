@@ -1,4 +1,4 @@
-"""What is known of film, wall, contacts and rotor at an instant."""
+"""State of film, wall, contacts and rotor at an instant."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class TimeState:
-    """What time changes: gas in each cell, position and velocity of the journal. A point, or a rate of change.
+    """Gas in each cell, position and velocity of the journal: a state in time, or its rate of change.
 
     Attributes
     ----------
     mass : (n_film,) array
         Gas in the cell of each pressure unknown [1].
-    e, v : (2,) array
+    e, v : (d,) array
         Displacement over the reference length and its change per unit of time [1].
     """
 
@@ -55,25 +55,25 @@ class Instant:
         Deflections and pressures [1].
     lam : (m,) array
         Contact reactions over the unit of nodal force [1].
-    closed : (m,) bool array
-        Gaps that carry load.
+    active : (m,) bool array
+        Contacts that carry load.
     moving : TimeState
         Gas, position, velocity.
     change : TimeState
         Their rates of change.
-    rubbed : FrictionState or None
+    friction : FrictionState or None
         Slip and friction of the petals.
     """
 
     tau: float
     x: Array
     lam: Array
-    closed: Mask
+    active: Mask
     moving: TimeState
     change: TimeState
-    rubbed: FrictionState | None = None
+    friction: FrictionState | None = None
 
     @property
     def e(self) -> Array:
-        """Displacement over the reference length, (2,) [1]."""
+        """Displacement over the reference length, (d,) [1]."""
         return self.moving.e

@@ -1,32 +1,32 @@
 """A step of TR-BDF2: trapezium to an inner instant, backward differences from there.
 
-Second order, one-step, L-stable, both stages with the same implicit part, so that one factorisation serves both; the
-third-order combination of its three rates estimates the error (Bank et al. 1985, doi:10.1109/T-ED.1985.22232;
-Hosea & Shampine 1996, doi:10.1016/0168-9274(95)00115-8). What is stepped is the gas in the cells, not pressure
-and film: none gets lost.
+The scheme is of second order, one-step and L-stable. Both stages have the same implicit part, so that one factorisation
+serves both. The third-order combination of its three rates estimates the error (Bank et al. 1985,
+doi:10.1109/T-ED.1985.22232; Hosea & Shampine 1996, doi:10.1016/0168-9274(95)00115-8). The gas in the cells is stepped,
+not pressure and film: no gas is lost.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.dynamics.rotor import RotorMotion
-from petalfoil.dynamics.stage import Solved, Stage, StageOptions, freely, solve_stage
-from petalfoil.dynamics.stage_tangent import Tangent
+from petalfoil.dynamics.stage import Stage, StageOptions, StageSolution, solve_stage
 from petalfoil.dynamics.time_state import Instant, TimeState
 from petalfoil.physics.dry_friction import Friction
-from petalfoil.solvers.sparse_lu import LinearSolver
+from petalfoil.solvers.contact_newton import border_change
+from petalfoil.solvers.tangent import BorderedTangent
 from petalfoil.system.friction import FrictionStep
-from petalfoil.system.loaded import FilmForce
 from petalfoil.system.time_step import StepProblem
+from petalfoil.system.unknowns import PRESSURE
 
 Array = NDArray[np.float64]
 
 GAMMA = 2.0 - np.sqrt(2.0)
-"""Inner instant, as a share of the step."""
+"""Inner instant, as a fraction of the step."""
 IMPLICIT = GAMMA / 2.0
 """Weight of a stage's own rate."""
 WEIGHT = np.sqrt(2.0) / 4.0
@@ -36,89 +36,77 @@ ERROR = ((4.0 * WEIGHT - 1.0) / 3.0, -1.0 / 3.0, 2.0 * IMPLICIT / 3.0)
 
 
 @dataclass(frozen=True)
-class System:
+class RotorBearing:
     """A bearing and the rotor in it."""
 
     problem: StepProblem
     rotor: RotorMotion
-    film: FilmForce
     friction: Friction | None = None
 
-    def stage(self, base: TimeState, tau: float, step: float, begin: Instant) -> Stage:
+    def stage(self, base: TimeState, tau: float, step: float, begin: Instant, options: StageOptions) -> Stage:
         """The implicit stage at `tau` from `base` in a step from `begin`; friction goes on from there."""
-        rubbing = None
-        if self.friction is not None and begin.rubbed is not None:
-            rubbing = FrictionStep(self.friction.in_step(begin.lam), begin.rubbed, self.friction.normal(begin.lam))
+        rotor, friction = self.rotor, None
+        if self.friction is not None and begin.friction is not None:
+            friction = FrictionStep.beginning(self.friction, begin.friction, begin.lam)
         problem = StepProblem(
             self.problem.layout,
-            self.rotor.bearing_number(tau),
+            rotor.bearing_number(tau),
             base.e,
-            self.problem.clock,
+            self.problem.time_number,
             1.0 / (IMPLICIT * step),
             base.mass,
-            rubbing,
         )
-        rotor = self.rotor
-        return Stage(problem, base, rotor.inertia, rotor.gyroscopic(tau), rotor.outside(tau), self.film)
+        return Stage(problem, base, rotor.inertia, rotor.gyroscopic(tau), rotor.outside(tau), options, friction)
 
 
 @dataclass(frozen=True)
-class Stepped:
+class AcceptedStep:
     """A step: where it leads, its inner instant, its estimated error, and the tangent at hand."""
 
     inner: Instant
     end: Instant
     error: float
     residual: float
-    tangent: Tangent
+    tangent: BorderedTangent
 
 
 def take_step(
-    system: System, path: list[Instant], step: float, tangent: Tangent | None, work: tuple[LinearSolver, StageOptions]
-) -> Stepped | None:
-    """One step from the last instant of `path`; None if a stage has no answer.
+    bearing: RotorBearing, path: list[Instant], step: float, tangent: BorderedTangent | None, options: StageOptions
+) -> AcceptedStep | None:
+    """One step from the last instant of `path`; None if a stage has no solution.
 
-    `path` is where the motion came from, latest last: the guesses of both stages go on from it.
+    `path` is where the motion came from, latest last: the guesses of both stages extrapolate it. `tangent` is that of a
+    step of the same length.
     """
     now = path[-1]
     base = now.moving.plus(step, (IMPLICIT, now.change))
-    inner = advance(system, path, base, (GAMMA, step), tangent, work)
+    inner = advance(
+        bearing.stage(base, now.tau + GAMMA * step, step, now, options), now.tau + GAMMA * step, path, tangent
+    )
     if inner is None:
         return None
-    between, solved = inner
+    between, first = inner
     base = now.moving.plus(step, (WEIGHT, now.change), (WEIGHT, between.change))
-    outer = advance(system, [*path[-2:], between], base, (1.0, step), solved.tangent, work)
+    last_stage = bearing.stage(base, now.tau + step, step, now, options)
+    outer = advance(last_stage, now.tau + step, [*path[-2:], between], first.tangent)
     if outer is None:
         return None
-    end, solved = outer
-    error = estimate(system, (now, between, end), step, solved.tangent)
-    return Stepped(between, end, error, max(solved.residual, inner[1].residual), solved.tangent)
+    end, second = outer
+    error = estimate(bearing, (now, between, end), step, second.tangent)
+    return AcceptedStep(between, end, error, max(first.state.residual, second.state.residual), second.tangent)
 
 
 def advance(
-    system: System,
-    path: list[Instant],
-    base: TimeState,
-    share: tuple[float, float],
-    tangent: Tangent | None,
-    work: tuple[LinearSolver, StageOptions],
-) -> tuple[Instant, Solved] | None:
-    """The stage at a share of the step from `base`; None if it has no answer."""
-    part, step = share
-    begin = path[-1] if part == GAMMA else path[-2]
-    tau = begin.tau + part * step
-    stage = system.stage(base, tau, step, begin)
-    usable = tangent if tangent is not None and abs(tangent.rate / stage.rate - 1.0) < 1e-9 else None
-    latest = path[-1]
-    solved = None
+    stage: Stage, tau: float, path: list[Instant], tangent: BorderedTangent | None
+) -> tuple[Instant, StageSolution] | None:
+    """The instant at `tau` that a stage leads to; None if it has no solution."""
     for x, e in guesses(path, tau):
-        solved = solve_stage(stage, (x, e, latest.closed), usable, *work)
-        if solved is not None:
-            break
-    if solved is None:
-        return None
-    change = solved.moving.minus(base, stage.rate)
-    return Instant(tau, solved.x, solved.lam, solved.closed, solved.moving, change, solved.rubbed), solved
+        solution = solve_stage(stage, (x, e, path[-1].active), tangent)
+        if solution is not None:
+            state, moving = solution.state, solution.moving
+            change = moving.minus(stage.base, stage.rate)
+            return Instant(tau, state.x, state.lam, state.active, moving, change, solution.friction), solution
+    return None
 
 
 def guesses(path: list[Instant], tau: float) -> list[tuple[Array, Array]]:
@@ -143,27 +131,22 @@ def lagrange(knots: list[float], tau: float) -> list[float]:
     ]
 
 
-def estimate(system: System, instants: tuple[Instant, Instant, Instant], step: float, tangent: Tangent) -> float:
+def estimate(
+    bearing: RotorBearing, instants: tuple[Instant, Instant, Instant], step: float, tangent: BorderedTangent
+) -> float:
     """Local error of the step, in reference films and ambient pressures.
 
-    The difference to the formula of third order, passed through the tangent: what is stiff must not be overestimated.
+    The difference to the formula of third order, passed through the tangent, so that stiff parts are not overestimated.
     """
     still = np.zeros_like(instants[0].e)
     nothing = TimeState(np.zeros_like(instants[0].moving.mass), still, still)
     wrong = nothing.plus(step, *zip(ERROR, (instant.change for instant in instants), strict=True))
-    rate, n_wall = tangent.rate, system.problem.layout.n_wall
-    residual = np.concatenate([np.zeros(n_wall), rate * wrong.mass])
     base = TimeState(wrong.mass, -wrong.e, -wrong.v)
-    bare = Stage(
-        system.stage(base, instants[2].tau, step, instants[0]).problem,
-        base,
-        system.rotor.inertia,
-        system.rotor.gyroscopic(instants[2].tau),
-        still,
-        system.film,
-    )
-    settle, de, _ = freely(bare, residual, tangent, (np.ones(system.film.by_P.shape[1]), still))
-    change = settle + tangent.units @ de
-    pressures = change[n_wall:]
+    stage = replace(bearing.stage(base, instants[2].tau, step, instants[0], StageOptions()), outside=still)
+    unknowns = bearing.problem.layout.unknowns
+    residual, ambient = unknowns.zeros(), np.ones(unknowns.n)
+    residual[unknowns[PRESSURE]] = stage.rate * wrong.mass
+    settled, de, _ = border_change(stage, residual, (ambient, still), tangent)
+    pressures = (settled + tangent.units @ de)[unknowns[PRESSURE]]
     spread = float(np.sqrt(np.mean(pressures**2))) if len(pressures) else 0.0
     return max(float(np.linalg.norm(de)), spread)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.cold_start import attempt
-from petalfoil.equilibrium.run_log import RunLog
+from petalfoil.equilibrium.run_context import current_run, running
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.physics.forces import node_area
 from petalfoil.system.coupled import CoupledProblem
@@ -45,11 +45,11 @@ def distinct(answers: list[Solution]) -> int:
     return len(found)
 
 
-def probe(problem: CoupledProblem, work: RunLog) -> int:
+def probe(problem: CoupledProblem) -> int:
     """Number of different equilibria that a few cold starts find, at least 1."""
-    question = RunLog()
-    answers = [attempt(problem, barrier, question) for barrier in PROBE_BARRIERS]
-    work.probes.factorizations += question.film.factorizations + question.package.factorizations
+    with running() as question:
+        answers = [attempt(problem, barrier) for barrier in PROBE_BARRIERS]
+    current_run().probes.factorizations += question.film.factorizations + question.package.factorizations
     count = max(1, distinct([answer for answer in answers if answer is not None]))
-    work.note("probe", equilibria=count)
+    current_run().note("probe", equilibria=count)
     return count

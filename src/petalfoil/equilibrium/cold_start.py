@@ -1,4 +1,4 @@
-"""Film and package from nothing: the assembled package, then both through the interior point."""
+"""Film and foil pack from nothing: the assembled pack, then both through the interior point."""
 
 from __future__ import annotations
 
@@ -8,27 +8,28 @@ from dataclasses import replace
 import numpy as np
 
 from petalfoil.equilibrium.package_at_rest import assembled
-from petalfoil.equilibrium.run_log import RunLog
-from petalfoil.equilibrium.solution import Solution, from_closed, from_point
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.solution import Solution, from_contacts, from_point
 from petalfoil.errors import ConvergenceError
-from petalfoil.solvers.cone import ConePoint
-from petalfoil.solvers.contact_newton import ActiveOptions, active_set
-from petalfoil.solvers.interior_point import InteriorOptions, Step, contact_set, interior_point
+from petalfoil.solvers.contact_equations import ContactOptions
+from petalfoil.solvers.contact_newton import solve_contacts
+from petalfoil.solvers.interior_point import InteriorOptions, InteriorStep, contact_set, interior_point
+from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, PrimalDualPoint
 from petalfoil.solvers.sparse_lu import SingularMatrixError
-from petalfoil.system.coupled import RESIDUAL_TOLERANCE, CoupledProblem
+from petalfoil.system.coupled import CoupledProblem
 
 BARRIERS = (3.0, 30.0, 0.3, 300.0)
 """Barriers at which the film joins, in ambient pressure times 10 um; the first serves 97 % of random packages."""
 
-FILM_ALONE = ActiveOptions(max_steps=60, near=0.3, gain=0.2, chords=8)
+FILM_ALONE = ContactOptions(tangents=60, near=0.3, gain=0.2, steps=9)
 """Over a rigid wall Newton converges from afar, and a step with the factor at hand costs a fifth of another."""
 
 GOALS = (1e-5, 1e-8, 1e-11)
-"""Barriers at which the contact set is read and tried: it is right, or close, at the first on grids up to 512 cells a
-pitch."""
+"""Barriers at which the active contacts are read and tried: they are right, or close, at the first on grids up to 512
+cells per pitch."""
 
 
-def solve_cold(problem: CoupledProblem, work: RunLog, barriers: tuple[float, ...] = BARRIERS) -> Solution:
+def solve_cold(problem: CoupledProblem, barriers: tuple[float, ...] = BARRIERS) -> Solution:
     """Solve from nothing; each barrier in turn until one leads to an answer.
 
     Raises
@@ -37,66 +38,66 @@ def solve_cold(problem: CoupledProblem, work: RunLog, barriers: tuple[float, ...
         None did.
     """
     for barrier in barriers:
-        answer = attempt(problem, barrier, work)
+        answer = attempt(problem, barrier)
         if answer is not None:
             return answer
-    raise nothing_found(work)
+    raise nothing_found()
 
 
-def nothing_found(work: RunLog) -> ConvergenceError:
+def nothing_found() -> ConvergenceError:
     """The error of a search that came to nothing, with its history."""
     return ConvergenceError(
         "no equilibrium found: film, petals and contacts did not settle from any start",
-        history=work.history,
+        history=current_run().history,
         advice="refine the grid, lower the eccentricity or approach it along a curve; extreme preload (thick or short "
         "petals, a rigid mount with a steep root) makes equilibria that switch from node to node",
     )
 
 
-def attempt(problem: CoupledProblem, barrier: float, work: RunLog) -> Solution | None:
+def attempt(problem: CoupledProblem, barrier: float) -> Solution | None:
     """Solve from the assembled package at one barrier; None if that leads nowhere."""
-    way = f"interior point from the assembled package, barrier {barrier:g}"
+    path = f"interior point from the assembled package, barrier {barrier:g}"
     if not problem.layout.n_wall:
-        return over_rigid_wall(problem, work)
+        return over_rigid_wall(problem)
     try:
-        return finish(problem, assembled(problem, barrier, work), way, work)
+        return finish(problem, assembled(problem, barrier), path)
     except SingularMatrixError as failure:
-        work.note("film", outcome=str(failure))
+        current_run().note("film", outcome=str(failure))
         return None
 
 
-def over_rigid_wall(problem: CoupledProblem, work: RunLog) -> Solution | None:
+def over_rigid_wall(problem: CoupledProblem) -> Solution | None:
     """The film alone, from ambient pressure: nothing moves and nothing touches."""
-    untouched = np.zeros(len(problem.weight), dtype=bool)
-    closed, outcome = active_set(problem, np.ones(problem.layout.n), untouched, work.film_solver, FILM_ALONE)
-    work.note("film", outcome=outcome.value)
-    return from_closed(problem, closed, "Newton from ambient pressure")
+    run, start = current_run(), (problem.layout.ambient(np.zeros(0)), np.zeros(len(problem.weight), dtype=bool))
+    contacts, outcome = solve_contacts(problem, start, run.film_solver, FILM_ALONE)
+    run.note("film", outcome=outcome.value)
+    return from_contacts(problem, contacts, "Newton from ambient pressure")
 
 
 def finish(
-    problem: CoupledProblem, start: ConePoint, way: str, work: RunLog, options: InteriorOptions | None = None
+    problem: CoupledProblem, start: PrimalDualPoint, path: str, options: InteriorOptions | None = None
 ) -> Solution | None:
-    """Drive the barrier down from `start`; read the contact set as soon as it shows, and solve on it exactly."""
-    point, numbers = start, options or InteriorOptions()
+    """Drive the barrier down from `start`; read the active contacts as soon as they show, and solve on them exactly."""
+    point, numbers, run = start, options or InteriorOptions(), current_run()
     for goal in GOALS:
         numbers = replace(numbers, least_barrier=0.1 * goal)
-        point, found = interior_point(problem, point, work.film_solver, numbers, work.watch("film", content(goal)))
+        point, found = interior_point(problem, point, run.film_solver, numbers, run.watch("film", reached(goal)))
         numbers = replace(numbers, march=False)
         if not found:
             return None
-        x, touching = contact_set(problem, point, work.film_solver)
-        closed, outcome = active_set(problem, x, touching, work.film_solver, ActiveOptions())
-        work.note("contacts", outcome=outcome.value, touching=int(touching.sum()))
-        answer = from_closed(problem, closed, way)
+        x, touching = contact_set(problem, point, run.film_solver)
+        contacts, outcome = solve_contacts(problem, (x, touching), run.film_solver)
+        run.note("contacts", outcome=outcome.value, touching=int(touching.sum()))
+        answer = from_contacts(problem, contacts, path)
         if answer is not None:
             return answer
-    return from_point(problem, point, way)
+    return from_point(problem, point, path)
 
 
-def content(goal: float) -> Callable[[Step], bool]:
-    """Stop at the barrier `goal`, with residuals to match."""
+def reached(goal: float) -> Callable[[InteriorStep], bool]:
+    """A stopping criterion: the barrier `goal`, with residuals to match."""
 
-    def look(step: Step) -> bool:
+    def look(step: InteriorStep) -> bool:
         residual = max(1e2 * goal, 0.5 * RESIDUAL_TOLERANCE)
         return step.barrier < goal and step.residual < residual and step.infeasibility < residual
 

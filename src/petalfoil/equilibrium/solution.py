@@ -1,4 +1,4 @@
-"""An equilibrium of film, wall and contacts, and how it was reached."""
+"""An equilibrium of film, wall and contacts: its state, its operating state, and how it was reached."""
 
 from __future__ import annotations
 
@@ -7,9 +7,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.solvers.cone import ConePoint, Linearized, scaled_residual
-from petalfoil.solvers.contact_newton import Closed
-from petalfoil.system.coupled import RESIDUAL_TOLERANCE, CoupledProblem
+from petalfoil.case import Case
+from petalfoil.solvers.contact_newton import ActiveContacts
+from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, Linearized, PrimalDualPoint, scaled_residual
+from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.loaded import load_scale
+from petalfoil.system.unknowns import DEFLECTION
 
 Array = NDArray[np.float64]
 
@@ -22,21 +25,30 @@ WORTH = 0.5
 
 @dataclass(frozen=True)
 class RefinedState:
-    """Deflections and pressures, with what of the deflections lies below the last digit of `x`.
+    """Unknowns, with the part of the deflections below the last digit of `x`.
 
     Attributes
     ----------
     x : (n,) array
-        Deflections and pressures [1].
-    fine : (n_wall,) array
+        Unknowns [1].
+    low_order : (n_wall,) array
         Rest of the deflections, smaller than the last digit of `x` [1].
     lam : (m,) array
         Contact reactions over the unit of nodal force [1].
     """
 
     x: Array
-    fine: Array
+    low_order: Array
     lam: Array
+
+
+@dataclass(frozen=True)
+class OperatingState:
+    """Speed [rad/s], journal displacement [m], and load [N] where one is balanced."""
+
+    speed: float
+    displacement: Array
+    load: Array | None
 
 
 @dataclass(frozen=True)
@@ -46,27 +58,30 @@ class Solution:
     Attributes
     ----------
     problem : CoupledProblem
-        Speed and journal position that it belongs to.
+        The equations at its speed and journal position.
     state : RefinedState
-        Deflections, pressures, reactions.
+        Unknowns and reactions.
     residual : float
         Largest scaled residual: wall rows by ambient pressure, film rows by their flows, complementarity by
         `|min(g, lam)|`.
-    way : str
+    solution_path : str
         How it was reached, for people.
-    closed : Closed or None
-        Contact set and last tangent; None where the interior point had the last word.
+    contacts : ActiveContacts or None
+        Active contacts and last tangent; None where the interior point had the last word.
+    load : (n_position,) array or None
+        The load that it balances, over the unit of force [1]; None at a fixed position.
     """
 
     problem: CoupledProblem
     state: RefinedState
     residual: float
-    way: str
-    closed: Closed | None = field(default=None, repr=False)
+    solution_path: str
+    contacts: ActiveContacts | None = field(default=None, repr=False)
+    load: Array | None = None
 
     @property
     def x(self) -> Array:
-        """Deflections and pressures, (n,) [1]."""
+        """Unknowns, (n,) [1]."""
         return self.state.x
 
     @property
@@ -75,64 +90,98 @@ class Solution:
         return self.state.lam
 
     @property
-    def in_contact(self) -> NDArray[np.bool_]:
-        """Gaps that carry load, (m,)."""
-        if self.closed is not None:
-            return self.closed.closed
+    def deflection(self) -> Array:
+        """Deflections of the wall, (n_wall,) [1]."""
+        return self.x[self.problem.layout.unknowns[DEFLECTION]]
+
+    @property
+    def active(self) -> NDArray[np.bool_]:
+        """Contacts that carry load, (m,)."""
+        if self.contacts is not None:
+            return self.contacts.active
         return self.lam / self.problem.weight > self.problem.gaps(self.x)
 
+    @property
+    def case(self) -> Case:
+        """The bearing. Speed and eccentricity of the solution are those of `operating_state`."""
+        return self.problem.layout.case
 
-def total_residual(problem: CoupledProblem, state: RefinedState, line: Linearized | None = None) -> float:
-    """Largest scaled residual of a state, from the state alone; `line` is its linearisation, if it is at hand.
+    @property
+    def operating_state(self) -> OperatingState:
+        """Speed, displacement and load, SI."""
+        case, scales = self.case, self.problem.layout.scales
+        radian = scales.bearing_number(case.gas.viscosity, 1.0, case.bearing.journal_radius)
+        load = None if self.load is None else self.load * scales.force
+        return OperatingState(self.problem.bearing_number / radian, self.problem.displacement * scales.length, load)
 
-    Rows of wall and film by their sizes; gaps and reactions (over their weight) by `|min(g, lam)|`, which is zero
+    @property
+    def unbalanced(self) -> Array:
+        """Force of film, contacts and load on the journal over the unit of force, (n_position,) [1]."""
+        force = self.problem.journal_force(self.x, self.lam)
+        return force if self.load is None else force + self.load
+
+    @property
+    def force_residual(self) -> float:
+        """The unbalanced force over the load; nan without a load [1]."""
+        return float("nan") if self.load is None else float(np.linalg.norm(self.unbalanced)) / load_scale(self.load)
+
+
+def total_residual(problem: CoupledProblem, state: RefinedState, linearized: Linearized | None = None) -> float:
+    """Largest scaled residual of a state, from the state alone; `linearized` are its equations, if they are at hand.
+
+    Rows of wall and film by their scales; gaps and reactions (over their weight) by `|min(g, lam)|`, which is zero
     exactly when both are non-negative and one of them vanishes.
     """
-    line = line or problem.linearize(state.x, fine=state.fine)
-    rows = scaled_residual(line, problem.G.T @ state.lam)
+    linearized = linearized or problem.linearize(state.x, low_order=state.low_order)
+    rows = scaled_residual(linearized, problem.G.T @ state.lam)
     mismatch = np.minimum(problem.gaps(state.x), state.lam / problem.weight)
     return max(rows, float(np.max(np.abs(mismatch), initial=0.0)))
 
 
-def from_closed(problem: CoupledProblem, closed: Closed | None, way: str) -> Solution | None:
-    """The answer of the active set, refined below the last digit of its deflections; None if it is none."""
-    if closed is None:
+def from_contacts(problem: CoupledProblem, contacts: ActiveContacts | None, path: str) -> Solution | None:
+    """The solution on active contacts, refined below the last digit of its deflections; None if it is none."""
+    if contacts is None:
         return None
-    return accepted(Solution(problem, *refine(problem, closed), way, closed))
+    return accepted(Solution(problem, *refine(problem, contacts), path, contacts))
 
 
-def from_point(problem: CoupledProblem, point: ConePoint, way: str) -> Solution | None:
-    """The answer of the interior point, its slacks dropped; None if it is none."""
-    state = RefinedState(point.x, np.zeros(problem.layout.n_wall), point.lam)
-    return accepted(Solution(problem, state, total_residual(problem, state), way))
+def from_point(problem: CoupledProblem, point: PrimalDualPoint, path: str) -> Solution | None:
+    """The solution of the interior point, its slacks dropped; None if it is none."""
+    return accepted(unrefined(problem, point.x, point.lam, path))
 
 
-def accepted(answer: Solution) -> Solution | None:
-    """`answer`, if its residual makes it one."""
-    return answer if answer.residual <= RESIDUAL_TOLERANCE else None
+def unrefined(problem: CoupledProblem, x: Array, lam: Array, path: str) -> Solution:
+    """A state as it is, whatever its residual."""
+    state = RefinedState(x, np.zeros(problem.layout.n_wall), lam)
+    return Solution(problem, state, total_residual(problem, state), path)
 
 
-def refine(problem: CoupledProblem, closed: Closed) -> tuple[RefinedState, float]:
-    """The answer after iterative refinement with the tangent at hand (R1), and its residual; no factorisation.
+def accepted(solution: Solution) -> Solution | None:
+    """`solution`, if its residual makes it one."""
+    return solution if solution.residual <= RESIDUAL_TOLERANCE else None
+
+
+def refine(problem: CoupledProblem, contacts: ActiveContacts) -> tuple[RefinedState, float]:
+    """The state after iterative refinement with the tangent at hand (R1), and its residual; no factorisation.
 
     Deflections are corrected below their last digit, so that the wall's rows, which lose it as `dphi^-4`, balance.
     """
-    n, ties = problem.layout.n_wall, closed.ties
-    state = RefinedState(closed.x, np.zeros(n), closed.lam)
-    if not n:
-        return state, total_residual(problem, state, closed.line)
-    line = problem.linearize(state.x, fine=state.fine)
-    best, least = state, total_residual(problem, state, line)
+    wall, constraints = problem.layout.unknowns[DEFLECTION], contacts.constraints
+    state = RefinedState(contacts.state.x, np.zeros(problem.layout.n_wall), contacts.state.lam)
+    if not problem.layout.n_wall:
+        return state, total_residual(problem, state, contacts.state.linearized)
+    linearized = problem.linearize(state.x, low_order=state.low_order)
+    best, least = state, total_residual(problem, state, linearized)
     for _ in range(REFINEMENTS):
-        change = ties.spread(closed.factor.solve(-ties.gather(line.residual)))
-        rest = state.fine + change[:n]
-        x = state.x + np.concatenate([rest, change[n:]])
-        fine = rest - (x[:n] - state.x[:n])  # exactly what the sum has lost
-        line = problem.linearize(x, fine=fine)
-        lam = np.zeros(len(closed.closed))
-        lam[closed.closed] = ties.reactions(line.residual)
-        state = RefinedState(x, fine, lam)
-        before, residual = least, total_residual(problem, state, line)
+        change = contacts.tangent.tangent.step(linearized.residual)
+        change[wall] += state.low_order
+        x = state.x + change
+        low_order = change[wall] - (x[wall] - state.x[wall])  # exactly what the sum has lost
+        linearized = problem.linearize(x, low_order=low_order)
+        lam = np.zeros(len(contacts.active))
+        lam[constraints.held] = constraints.reactions(linearized.residual)
+        state = RefinedState(x, low_order, lam)
+        before, residual = least, total_residual(problem, state, linearized)
         if residual < least:
             best, least = state, residual
         if residual > WORTH * before:

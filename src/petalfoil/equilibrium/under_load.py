@@ -1,108 +1,126 @@
 """The journal's position under a load: film, petals, contacts and journal in one Newton.
 
-From nothing through the interior point, with the position among its unknowns; from a neighbour, and to finish, on the
-contact set with the position bordered: one factorisation a step serves the state and both directions of displacement.
+From nothing through the interior point, with the position among its unknowns. From a neighbour, and to finish, on the
+active contacts with the position bordered: one factorisation a step serves the state and every displacement.
+
+A foil pack that the load has bottomed out has three active contacts at one angle, between journal, petals and bushing,
+where two determine the third: no contact set determines the reactions. The interior point solves it all the same.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.bottomed_out import pressed_solid
-from petalfoil.equilibrium.cold_start import GOALS, content, nothing_found
-from petalfoil.equilibrium.linear_response import Motion, Response
-from petalfoil.equilibrium.loaded import Balance, force_residual, journal_force, size_of
+from petalfoil.equilibrium.cold_start import GOALS, nothing_found, reached
+from petalfoil.equilibrium.continuation import predicted, widened
 from petalfoil.equilibrium.package_at_rest import assembled
-from petalfoil.equilibrium.run_log import RunLog
-from petalfoil.equilibrium.solution import from_closed
-from petalfoil.equilibrium.warm_start import RESTART_BARRIER, keep_open, predict
-from petalfoil.solvers.cone import ConePoint
-from petalfoil.solvers.contact_newton import ActiveOptions, Closed, ContactState, Outcome, evaluate, revise, searched
-from petalfoil.solvers.interior_point import InteriorOptions, contact_set, interior_point
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.solution import Solution, from_contacts, unrefined
+from petalfoil.solvers.contact_equations import (
+    ContactEquations,
+    ContactOptions,
+    ContactState,
+    Correction,
+    Step,
+    Verdict,
+)
+from petalfoil.solvers.contact_newton import ActiveContacts, contact_newton
+from petalfoil.solvers.interior_point import InteriorOptions, InteriorStep, contact_set, interior_point
+from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, Border, ContactProblem, PrimalDualPoint
 from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.system.coupled import CoupledProblem
-from petalfoil.system.loaded import FilmForce, LoadedProblem
+from petalfoil.system.loaded import LoadedProblem, load_scale
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 BARRIERS = (3.0, 30.0, 0.3)
-"""Barriers at which film and load join the assembled package."""
+"""Barriers at which film and load join the assembled foil pack."""
 
 FORCE_TOLERANCE = 1e-9
-"""Largest force residual of a balance, over the load."""
+"""Largest unbalanced force over the load."""
+
+SHARES = (0.25, 0.0625, 0.015625)
+"""Fractions of a load from which all of it is reached: for loads tens of times the bearing force of the film."""
+
+BALANCING = ContactOptions(steps=1, rounded=1e-6)
+"""A residual of gaps closed over slivers of cells stagnates below 1e-6."""
+
+WARM = replace(BALANCING, tangents=8)
+"""Active contacts that lead on from a neighbour do so in a few steps."""
+
+MOST_FILMS = 10.0
+"""Longest move of the journal in a step, in reference films (100 um for petals, ten clearances for a plain bore)."""
+
+CORRECTIONS = 3
+"""Refinements of a balance: the second is for loads that are small beside what pushes on the journal all round."""
+
+# ---------------------------------------------------------------------------------------------- from nothing
 
 
-def balance_cold(problem: CoupledProblem, load: Array, work: RunLog) -> Balance:
-    """Solve from nothing at the load `load` (2,) over the unit of force.
+def balance_cold(problem: CoupledProblem, load: Array) -> Solution:
+    """Solve from nothing at the load `load` (n_position,) over the unit of force.
 
     Raises
     ------
     ConvergenceError
         No position was found.
     """
-    found = from_nothing(problem, load, work) or loaded_gradually(problem, load, work)
+    found = from_nothing(problem, load) or loaded_gradually(problem, load)
     if found is None:
-        raise nothing_found(work)
+        raise nothing_found()
     return found
 
 
-def from_nothing(problem: CoupledProblem, load: Array, work: RunLog) -> Balance | None:
+def from_nothing(problem: CoupledProblem, load: Array) -> Solution | None:
     """Cold starts, each barrier in turn; None if none leads to a balance."""
     for barrier in BARRIERS:
         try:
-            found = attempt(problem, load, barrier, work)
+            found = through_interior(problem, assembled(problem, barrier), load)
         except SingularMatrixError as failure:
-            work.note("balance", outcome=str(failure))
+            current_run().note("balance", outcome=str(failure))
             continue
         if found is not None:
             return found
     return None
 
 
-def loaded_gradually(problem: CoupledProblem, load: Array, work: RunLog) -> Balance | None:
-    """Balance a share of the load, then more and more of it; None if that leads nowhere."""
+def loaded_gradually(problem: CoupledProblem, load: Array) -> Solution | None:
+    """Balance a fraction of the load, then more and more of it; None if that leads nowhere."""
     for share in SHARES:
-        known = from_nothing(problem, share * load, work)
+        known = from_nothing(problem, share * load)
         while known is not None and share < 1.0:
             share = min(1.0, 2.0 * share)
-            known = from_neighbour(known, problem, share * load, work)
+            known = from_neighbour(known, problem, share * load)
         if known is not None:
             return known
     return None
 
 
-SHARES = (0.25, 0.0625, 0.015625)
-"""Shares of a load from which all of it is reached: for loads tens of times the capacity of the film."""
-
-
-def attempt(problem: CoupledProblem, load: Array, barrier: float, work: RunLog) -> Balance | None:
-    """One cold start; None if it leads nowhere."""
-    start = assembled(problem, barrier, work)
-    return through_interior(
-        problem, ConePoint(np.append(start.x, problem.displacement), start.s, start.lam), load, work
-    )
-
-
-def through_interior(problem: CoupledProblem, start: ConePoint, load: Array, work: RunLog) -> Balance | None:
-    """The interior point with the position among its unknowns, then Newton on the contact set; None if it fails."""
-    whole, point = LoadedProblem(problem, load), start
+def through_interior(problem: CoupledProblem, start: PrimalDualPoint, load: Array) -> Solution | None:
+    """The interior point with the position among its unknowns, then Newton on the active contacts; None if it fails."""
+    whole, run = LoadedProblem(problem, load), current_run()
+    point = replace(start, x=np.append(start.x, problem.displacement))
     for goal in GOALS:
         options = InteriorOptions(least_barrier=0.1 * goal)
-        point, found = interior_point(whole, point, work.film_solver, options, work.watch("balance", content(goal)))
+        point, found = interior_point(whole, point, run.film_solver, options, run.watch("balance", reached(goal)))
         if not found:
             return None
-        z, closed = contact_set(whole, point, work.film_solver)
-        balance = newton(problem.at(displacement=z[-2:]), (z[:-2], closed), load, work)
+        z, active = contact_set(whole, point, run.film_solver)
+        moved, x = whole.split(z)
+        balance = newton(moved, (x, active), load)
         if balance is not None:
             return balance
-    return pressed_solid(whole, point, work)
+    return bottomed_out(whole, point)
 
 
-def rebalance(known: Balance, problem: CoupledProblem, load: Array, work: RunLog) -> Balance:
+# ---------------------------------------------------------------------------------------------- from a neighbour
+
+
+def rebalance(known: Solution, problem: CoupledProblem, load: Array) -> Solution:
     """The balance of `problem` (at another speed) or of another load, from a neighbour that is known.
 
     Raises
@@ -110,129 +128,125 @@ def rebalance(known: Balance, problem: CoupledProblem, load: Array, work: RunLog
     ConvergenceError
         Nothing was found, not even from nothing.
     """
-    found = from_neighbour(known, problem, load, work)
-    return found or balance_cold(problem.at(displacement=np.zeros(2)), load, work)
+    centred = problem.at(displacement=np.zeros(problem.layout.n_position))
+    return from_neighbour(known, problem, load) or balance_cold(centred, load)
 
 
-def from_neighbour(known: Balance, problem: CoupledProblem, load: Array, work: RunLog) -> Balance | None:
-    """By the tangent and the contact set of `known`, else by the interior point from there; None if neither leads."""
-    here = problem.at(displacement=known.answer.problem.displacement)
-    x = keep_open(known.answer.x, predict(known.answer, here), here.positive)
-    found = newton(here, (x, known.answer.in_contact), load, work, WARM)
+def from_neighbour(known: Solution, problem: CoupledProblem, load: Array) -> Solution | None:
+    """By tangent and active contacts of `known`, else by the interior point from there; None if neither leads on."""
+    here = problem.at(displacement=known.problem.displacement)
+    x = predicted(known, here)
+    found = newton(here, (x, known.active), load, WARM)
     if found is not None:
         return found
-    s = np.maximum(here.gaps(x), np.sqrt(RESTART_BARRIER))
-    lam = np.maximum(known.answer.lam, RESTART_BARRIER * here.weight / s)
     try:
-        return through_interior(here, ConePoint(np.append(x, here.displacement), s, lam), load, work)
+        return through_interior(here, widened(here, x, known.lam), load)
     except SingularMatrixError as failure:
-        work.note("balance", outcome=str(failure))
+        current_run().note("balance", outcome=str(failure))
         return None
 
 
-WARM = ActiveOptions(max_steps=8)
-"""A contact set that leads on from a neighbour does so in a few steps."""
+# ---------------------------------------------------------------------------------------------- Newton
+
+
+@dataclass(frozen=True)
+class LoadedEquations(ContactEquations):
+    """The variant under a load: the journal's position is bordered, forces on the journal balance (C5)."""
+
+    problem: CoupledProblem
+    load: Array
+
+    @property
+    def border(self) -> Border:
+        """How the journal's position enters."""
+        return self.problem.border
+
+    @property
+    def border_stiffness(self) -> Array:
+        """Nothing but film and contacts resists the journal."""
+        return np.zeros((len(self.load), len(self.load)))
+
+    def at(self, b: Array) -> ContactProblem:
+        """The coupled system at a displacement."""
+        return self.problem.at(displacement=b)
+
+    def imbalance(self, x: Array, lam: Array, b: Array) -> Array:
+        """Force of film, contacts and load on the journal."""
+        return self.problem.journal_force(x, lam) + self.load
+
+    def step_length(self, state: ContactState, correction: Correction) -> float:
+        """Pressures stay positive, and the journal moves by a few films only."""
+        farthest = MOST_FILMS / max(float(np.linalg.norm(correction.b)), 1e-300)
+        return min(super().step_length(state, correction), farthest)
+
+    def verdict(self, step: Step, options: ContactOptions) -> Verdict:
+        """By the residual; and the forces must balance."""
+        verdict = super().verdict(step, options)
+        if verdict is not Verdict.CONVERGED or step.after is None:
+            return verdict
+        unbalanced = np.linalg.norm(self.imbalance(step.after.x, step.after.lam, step.after.b))
+        return verdict if unbalanced <= FORCE_TOLERANCE * load_scale(self.load) else Verdict.RENEW
 
 
 def newton(
-    problem: CoupledProblem, start: tuple[Array, Mask], load: Array, work: RunLog, options: ActiveOptions | None = None
-) -> Balance | None:
-    """Newton from unknowns and closed gaps `start`, with the position of `problem` as its start; None if it fails."""
-    numbers = options or ActiveOptions()
-    x, closed = start
-    doubt, swaps = np.zeros(len(closed), dtype=bool), 0
-    state, before = evaluate(problem, x, closed), np.inf
-    for step in range(numbers.max_steps + 1):
-        if isinstance(state, Outcome):
-            work.note("contacts", outcome=state.value)
-            return None
-        wanted = revise(problem, state, numbers) if step else state.closed
-        unchanged = bool(np.array_equal(wanted, state.closed))
-        left = float(np.hypot(*(journal_force(problem, state.x[problem.positive], state.lam) + load)))
-        work.note("contacts", residual=state.residual, force=left, touching=int(state.closed.sum()))
-        settled = state.residual <= (ROUNDED if state.residual > 0.5 * before else numbers.tolerance)
-        if step and unchanged and settled and left <= FORCE_TOLERANCE * size_of(load):
-            balance = finished(problem, state, load, work)
-            if balance is not None:
-                return balance
-        before = state.residual
-        doubt, swaps = doubt | (wanted != state.closed), swaps + (not unchanged)
-        if not unchanged:
-            found = searched(problem, state, doubt, work.film_solver) if swaps > numbers.patience else None
-            state = evaluate(problem, state.x, wanted) if found is None else found
-            if isinstance(state, Outcome):
-                return None
-        moved = bordered_step(problem, state, load, work)
-        if moved is None:
-            return None
-        problem, x = moved
-        state = evaluate(problem, x, state.closed)
-    return None
+    problem: CoupledProblem, start: tuple[Array, Mask], load: Array, options: ContactOptions = BALANCING
+) -> Solution | None:
+    """Newton from unknowns and active contacts, and from the position of `problem`; None if it fails."""
+    (x, active), run = start, current_run()
+    begin = x, problem.displacement, active
+    contacts, outcome = contact_newton(LoadedEquations(problem, load), begin, run.film_solver, options)
+    run.note("contacts", outcome=outcome.value)
+    return None if contacts is None else polished(problem, contacts, load)
 
 
-ROUNDED = 1e-6
-"""A residual below this that no longer halves is rounding: gaps closed over slivers of cells. Refinement removes it."""
-
-
-def bordered_step(
-    problem: CoupledProblem, state: ContactState, load: Array, work: RunLog
-) -> tuple[CoupledProblem, Array] | None:
-    """One Newton step of state and position: block elimination with one factorisation and three solves."""
-    try:
-        response = Motion(problem, problem.linearize(state.x), state.closed, state.ties).respond(0.0, work.film_solver)
-    except SingularMatrixError:
-        return None
-    ties, residual = state.ties, state.line.residual
-    settle = ties.spread(response.factor.solve(-ties.gather(residual)))
-    lam = ties.reactions(residual + response.apply(settle))
-    by_e = problem.layout.wall.contacts.by_e[state.closed]
-    pressures = state.x[problem.positive] + settle[problem.positive]
-    left = FilmForce.of(problem).at(pressures) + by_e.T @ lam + load
-    follow, de = made_up(response, left)
-    change = settle + follow
-    share = reach(problem, state.x, change, de)
-    return problem.at(displacement=problem.displacement + share * de), state.x + share * change
-
-
-def reach(problem: CoupledProblem, x: Array, change: Array, de: Array) -> float:
-    """Share of a step that keeps pressures positive and moves the journal by at most ten reference films."""
-    kept = problem.positive
-    falling = change[kept] < 0.0
-    pressures = 0.8 * np.min(x[kept][falling] / -change[kept][falling], initial=np.inf)
-    return float(min(1.0, pressures, MOST_FILMS / max(float(np.hypot(*de)), 1e-300)))
-
-
-MOST_FILMS = 10.0
-"""Longest move of the journal in a step, in reference films (100 um for petals, ten clearances for a plain bore)."""
-
-
-def finished(problem: CoupledProblem, state: ContactState, load: Array, work: RunLog) -> Balance | None:
-    """Refine the state; the position follows where the refined film pushes otherwise. One factorisation."""
-    response = Motion(problem, problem.linearize(state.x), state.closed, state.ties).respond(0.0, work.film_solver)
-    closed = Closed(state.x, state.lam, state.closed, state.residual, state.ties, response.factor)
-    best: Balance | None = None
+def polished(problem: CoupledProblem, contacts: ActiveContacts, load: Array) -> Solution | None:
+    """The refined state; the position follows where the refined film pushes otherwise. No factorisation."""
+    state, tangent = contacts.state, contacts.tangent
+    here, best = problem.at(displacement=state.b), None
     for _ in range(CORRECTIONS):
-        answer = from_closed(problem, closed, "balanced with the load")
-        if answer is None:
-            return best
-        left = force_residual(answer, load)
-        if best is None or left < best.force_residual:
-            best = Balance(answer, left)
-        if left <= FORCE_TOLERANCE:
-            return best
-        force = journal_force(problem, answer.x[problem.positive], answer.lam)
-        change, de = made_up(response, force + load)
-        problem = problem.at(displacement=problem.displacement + de)
-        closed = replace(closed, x=answer.x + change, lam=answer.lam)
+        found = from_contacts(here, replace(contacts, state=state), "balanced with the load")
+        if found is None:
+            break
+        found = replace(found, load=load)
+        if best is None or found.force_residual < best.force_residual:
+            best = found
+        if found.force_residual <= FORCE_TOLERANCE:
+            break
+        de = np.linalg.solve(tangent.gradient, -found.unbalanced)
+        here = here.at(displacement=here.displacement + de)
+        state = replace(state, x=found.x + tangent.units @ de, lam=found.lam)
     return best
 
 
-CORRECTIONS = 3
-"""Refinements of a balance: the second is for loads that are small beside what pushes on the journal all round."""
+# ---------------------------------------------------------------------------------------------- bottomed out
+
+BOTTOMED_GOALS = (1e-13, 1e-14, 1e-15, 1e-16)
+"""Barriers that a bottomed-out pack is followed to: pairs off the path need decades more than their mean."""
+
+BOTTOMED_STEPS = InteriorOptions(max_steps=4)
+"""Newton's answer loses digits at such barriers: more steps gain nothing."""
+
+BOTTOMED_OUT = "interior point; petals are pressed solid between journal and bushing"
+"""How such a solution was reached."""
 
 
-def made_up(response: Response, left: Array) -> tuple[Array, Array]:
-    """Changes of the unknowns (n,) and of the position (2,) that make up for a force `left` (2,) on the journal."""
-    changes, gradient = response.units()
-    de = np.asarray(np.linalg.solve(gradient, -left), dtype=np.float64)
-    return changes @ de, de
+def bottomed_out(whole: LoadedProblem, point: PrimalDualPoint) -> Solution | None:
+    """The interior point's own solution: it goes on from `point` until gap or reaction of every pair has vanished."""
+    run = current_run()
+    look = run.watch("solid", lambda step: False)
+
+    def finished(at: PrimalDualPoint, step: InteriorStep) -> bool:
+        return look(at, step) or without_slacks(whole, at).residual <= RESIDUAL_TOLERANCE
+
+    for goal in BOTTOMED_GOALS:
+        options = replace(BOTTOMED_STEPS, least_barrier=goal)
+        point, found = interior_point(whole, point, run.film_solver, options, finished)
+        if found:
+            return without_slacks(whole, point)
+    return None
+
+
+def without_slacks(whole: LoadedProblem, point: PrimalDualPoint) -> Solution:
+    """The state of `point`, its slacks dropped."""
+    problem, x = whole.split(point.x)
+    return replace(unrefined(problem, x, point.lam, BOTTOMED_OUT), load=whole.load)

@@ -21,7 +21,6 @@ from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.continuation import advance
-from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 from petalfoil.physics.contact import Contacts
@@ -53,10 +52,10 @@ def _curve(problems: list[CoupledProblem]) -> list[Solution | None]:
     """The solutions along a curve; None from the first point that does not converge."""
     solutions: list[Solution | None] = []
     try:
-        previous = solve_cold(problems[0], RunLog())
+        previous = solve_cold(problems[0])
         solutions.append(previous)
         for problem in problems[1:]:
-            previous, _ = advance(previous, problem, RunLog())
+            previous, _ = advance(previous, problem)
             solutions.append(previous)
     except ConvergenceError:  # reported as nan by `bounded_loads`
         pass

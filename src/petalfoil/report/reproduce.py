@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from petalfoil.analysis.session import Clock
+from petalfoil.equilibrium.run_context import new_run
 from petalfoil.report import assumptions, paper_grids
 from petalfoil.report.assumptions import CLAMPED, REFERENCE
 from petalfoil.report.claims import Evidence
@@ -19,7 +19,7 @@ WORK_FRACTIONS = (0.05, 0.3, 0.07, 0.3, 0.24, 0.04)
 
 def run(scope: Scope | None = None, progress: Progress | None = None) -> Evidence:
     """Compute all results of the report."""
-    scope, clock = scope or Scope(), Clock()
+    scope, started = scope or Scope(), new_run()
     parts = _parts(progress or _no_progress)
     reference, tangent = ("reference", REFERENCE.description), ("tangent", CLAMPED.description)
     reference_2d = family_2d(*reference, {}, scope, parts[0])
@@ -35,7 +35,7 @@ def run(scope: Scope | None = None, progress: Progress | None = None) -> Evidenc
         reference_interpretations=interpretations(reference_2d, {}, scope),
         tangent_interpretations=interpretations(tangent_2d, TANGENT, scope),
         grids=paper_grids.run(scope, parts[5]),
-        seconds=clock.seconds,
+        seconds=started.seconds,
     )
 
 

@@ -1,13 +1,13 @@
-"""Closed gaps as eliminated unknowns.
+"""Active contacts as constraints that eliminate unknowns.
 
-A closed gap holds one unknown at a value, or ties two to a constant difference. Unknowns tied together move as
-one; those tied to a held one do not move. So closed gaps make the system smaller instead of larger, and no
-multiplier stands in it. Their reactions follow afterwards from the equations that were merged.
+An active contact holds one unknown at a value, or keeps the difference of two constant. Unknowns that are connected in
+this way move as one group, and a group that is connected to a held unknown does not move. Active contacts thus make the
+linear system smaller, without multipliers. Their reactions follow afterwards from the equations of the group.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -17,35 +17,42 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
-from petalfoil.sparsity import Elimination, TiedOrder, add_up
+from petalfoil.solvers.sparse_lu import Factor, LinearSolver
+from petalfoil.sparsity import TiedOrder, add_up
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class Ties:
-    """Closed rows of `G`, each +-1 on one unknown or the difference of two.
+class ContactConstraints:
+    """Active rows of `G`, each +-1 on one unknown or the difference of two.
 
     Attributes
     ----------
+    held : (m,) bool array
+        The gaps held closed.
     G : (k, n) sparse
-        The closed rows.
+        Their rows.
     group : (n,) int array
         Number of the free unknown that each unknown moves with, -1 where it is held.
     n_free : int
         Free unknowns.
+    stops : (j,) int array
+        Active gaps that close a chain of held ones. They are not held: what moves the chain as a whole opens them.
     """
 
+    held: Mask
     G: sp.csr_array
     group: Index
     n_free: int
+    stops: Index
 
     @cached_property
     def determinate(self) -> bool:
-        """No closed gap repeats what others already say (a chain held at both ends)."""
-        n = len(self.group)
-        return int(self.G.shape[0]) == n - self.n_free
+        """No held gap repeats what others already say (a chain held at both ends)."""
+        return int(self.G.shape[0]) == len(self.group) - self.n_free
 
     @cached_property
     def _normal(self) -> spla.SuperLU:
@@ -57,23 +64,19 @@ class Ties:
         return out
 
     def reactions(self, residual: NDArray[Any]) -> NDArray[Any]:
-        """Reactions `lam` (k,) with `G^T lam = residual` on the tied equations (T2)."""
+        """Reactions `lam` (k,) with `G^T lam = residual` on the eliminated equations (T2)."""
         if not self.G.shape[0]:
             return np.zeros(0)
-        return apart(self._normal.solve, self.G @ residual)
+        return apply_to_parts(self._normal.solve, self.G @ residual)
 
     def gather(self, full: NDArray[Any]) -> NDArray[Any]:
         """Add up the equations of unknowns that move together; shape (n_free,)."""
         inside = self.group >= 0
-        return apart(lambda part: add_up(self.group[inside], part, self.n_free), full[inside])
+        return apply_to_parts(lambda part: add_up(self.group[inside], part, self.n_free), full[inside])
 
     def spread(self, free: NDArray[Any]) -> NDArray[Any]:
         """Move every unknown with its group; shape (n,)."""
         return np.append(free, 0.0)[self.group]
-
-    def rank(self, order: Elimination | None) -> TiedOrder | None:
-        """Order of the free unknowns in the elimination, as far as it is known from other contact sets."""
-        return None if order is None else TiedOrder(order.tied, self.group, self.n_free)
 
     def reduce(self, matrix: sp.csc_array) -> sp.csc_array:
         """The matrix over the free unknowns: rows and columns of a group added up."""
@@ -85,19 +88,39 @@ class Ties:
         shape = (self.n_free, self.n_free)
         return sp.coo_array((coo.data[inside], (rows[inside], cols[inside])), shape=shape).tocsc()
 
+    def elimination_order(self, solver: LinearSolver, key: Hashable | None) -> TiedOrder | None:
+        """Elimination order of the free unknowns, as far as `solver` knows it from other contact sets of `key`."""
+        learnt = solver.elimination(key)
+        return None if learnt is None else TiedOrder(learnt.tied, self.group, self.n_free)
 
-def apart(linear: Callable[[Array], Array], value: NDArray[Any]) -> NDArray[Any]:
+    def factor(self, matrix: sp.csc_array, solver: LinearSolver, key: Hashable | None) -> Factor:
+        """Factorise `matrix` (n, n) over the free unknowns.
+
+        Raises
+        ------
+        SingularMatrixError
+            It has no inverse there.
+        """
+        return solver.factor(self.reduce(matrix), self.elimination_order(solver, key))
+
+
+def apply_to_parts(linear: Callable[[Array], Array], value: NDArray[Any]) -> NDArray[Any]:
     """Apply a real linear map to a real or a complex vector."""
     if np.iscomplexobj(value):
         return linear(np.ascontiguousarray(value.real)) + 1j * linear(np.ascontiguousarray(value.imag))
     return linear(value)
 
 
-def tie(G: sp.csr_array, closed: NDArray[np.bool_]) -> Ties:
-    """Close the rows `closed` (m,) of `G`."""
-    rows = sp.csr_array(G[closed])
-    n, held = G.shape[1], np.diff(rows.indptr)
-    single, double = rows.indptr[:-1][held == 1], rows.indptr[:-1][held == 2]
+def constrain(G: sp.csr_array, active: Mask, stops: slice | None = None) -> ContactConstraints:
+    """Hold the gaps `active` (m,) closed.
+
+    Where active gaps repeat each other, one of them becomes a stop if `stops` says where stops are looked for first;
+    without it all are held, and the constraints are not determinate.
+    """
+    held = active if stops is None else determining(G, active, stops)
+    rows = sp.csr_array(G[held])
+    n, entries = G.shape[1], np.diff(rows.indptr)
+    single, double = rows.indptr[:-1][entries == 1], rows.indptr[:-1][entries == 2]
     ground = n
     one = np.concatenate([rows.indices[single], rows.indices[double]])
     other = np.concatenate([np.full(len(single), ground), rows.indices[double + 1]])
@@ -105,4 +128,31 @@ def tie(G: sp.csr_array, closed: NDArray[np.bool_]) -> Ties:
     count, label = sp.csgraph.connected_components(graph, directed=False)
     number = np.arange(count)
     number = np.where(number == label[ground], -1, number - (number > label[ground]))
-    return Ties(rows, number[label[:n]], count - 1)
+    return ContactConstraints(held, rows, number[label[:n]], count - 1, np.flatnonzero(active & ~held))
+
+
+def determining(G: sp.csr_array, active: Mask, last: slice) -> Mask:
+    """The rows of `G` among `active` that connect unknowns without a closed chain, (m,); those in `last` come last.
+
+    They are a spanning forest of the graph whose edges are the rows: a row that would close a chain is left out.
+    """
+    rows = np.flatnonzero(active)
+    entries = np.diff(G.indptr)[rows]
+    rows = rows[entries > 0]
+    ground = G.shape[1]
+    one = G.indices[G.indptr[rows]]
+    both = np.diff(G.indptr)[rows] == 2
+    other = np.where(both, G.indices[np.minimum(G.indptr[rows] + 1, len(G.indices) - 1)], ground)
+    late = np.zeros(G.shape[0], dtype=bool)
+    late[last] = True
+    order = np.lexsort((rows, late[rows]))
+    low, high = np.minimum(one, other)[order], np.maximum(one, other)[order]
+    _, first = np.unique(low.astype(np.int64) * (ground + 1) + high, return_index=True)  # of parallel rows the earliest
+    low, high, kept = low[first], high[first], order[first]
+    graph = sp.coo_array((1.0 + first, (low, high)), shape=(ground + 1, ground + 1)).tocsr()
+    forest = sp.csgraph.minimum_spanning_tree(graph).tocoo()
+    place = {(int(a), int(b)): int(k) for a, b, k in zip(low, high, kept, strict=True)}
+    mask = np.zeros(len(active), dtype=bool)
+    for a, b in zip(forest.row, forest.col, strict=True):
+        mask[rows[place[min(int(a), int(b)), max(int(a), int(b))]]] = True
+    return mask

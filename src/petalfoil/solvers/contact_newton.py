@@ -1,221 +1,249 @@
-"""Newton on a set of closed gaps, which it corrects as it goes: exact zeros, exact reactions, cheap warm starts.
+"""Newton's method on active contacts, which it corrects as it goes: exact zeros, exact reactions, cheap warm starts.
 
-A closed gap whose reaction pulls is opened, an open gap that has gone negative is closed. Near an answer this needs
-a few steps; far from it the set advances a node a step and may cycle, so after a few changes the set is searched for
-among the gaps in doubt (`set_search`).
+The active contacts are held closed and eliminated, so that Newton's method sees smooth equations. A contact whose
+reaction pulls is released, a gap that has gone negative is closed. Near a solution this takes a few steps. Far from it
+the set advances by a node a step and may cycle: after a few changes it is searched for among the gaps in doubt
+(`contact_search`).
+
+One loop serves every variant; what differs is a `ContactEquations` (`contact_equations`).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from enum import Enum
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.solvers.cone import ConeProblem, Linearized
-from petalfoil.solvers.constraints import Ties, tie
-from petalfoil.solvers.contact_search import most_doubts, near, search
-from petalfoil.solvers.sparse_lu import Factor, LinearSolver, SingularMatrixError
+from petalfoil.solvers.constraints import ContactConstraints, constrain
+from petalfoil.solvers.contact_equations import (
+    ContactEquations,
+    ContactFailure,
+    ContactOptions,
+    ContactState,
+    Correction,
+    Outcome,
+    Step,
+    Verdict,
+    evaluate,
+    revise,
+)
+from petalfoil.solvers.contact_search import search
+from petalfoil.solvers.lcp import solve_lcp
+from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, ContactProblem
+from petalfoil.solvers.sparse_lu import LinearSolver, SingularMatrixError
+from petalfoil.solvers.tangent import BorderedTangent, Tangent
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
-class Outcome(Enum):
-    """How an attempt ended."""
-
-    CONVERGED = "converged"
-    STEPS = "the steps ran out"
-    OVERDETERMINED = "closed gaps hold a chain at both ends"
-    PENETRATED = "a gap went far below zero"
-    SINGULAR = "the reduced system has no solution"
-
-
 @dataclass(frozen=True)
-class ActiveOptions:
-    """Numbers of the method."""
+class ActiveContacts:
+    """A solution: unknowns, reactions and active contacts, with the last tangent for refinement and predictions."""
 
-    tolerance: float = 1e-8
-    """Largest scaled residual of an answer."""
-    sign: float = 1e-8
-    """Gaps and reactions (over their weight) that miss zero by less are zero."""
-    max_steps: int = 12
-    patience: int = 1
-    """Times that all gaps of wrong sign are swapped at once before the set is searched for."""
-    chords: int = 4
-    """Most steps that one factorisation may serve beyond its own."""
-    near: float = 1e-2
-    """Residual below which the same factorisation is tried again."""
-    gain: float = 0.1
-    """Factor that such a step must take off the residual."""
-    boundary_x: float = 0.8
-    """Fraction of the way to zero for unknowns that must stay positive."""
+    state: ContactState
+    tangent: BorderedTangent = field(repr=False)
 
+    @property
+    def x(self) -> Array:
+        """Unknowns, (n,)."""
+        return self.state.x
 
-@dataclass(frozen=True)
-class Closed:
-    """An answer: unknowns, reactions and closed gaps, with the last factorised tangent for predictions.
+    @property
+    def lam(self) -> Array:
+        """Reactions, (m,), zero on open gaps."""
+        return self.state.lam
 
-    Attributes
-    ----------
-    x : (n,) array
-        Unknowns.
-    lam : (m,) array
-        Reactions, zero on open gaps.
-    closed : (m,) bool array
-        Gaps that are closed.
-    residual : float
-        Largest scaled residual.
-    ties, factor
-        Closed gaps as ties, and the reduced tangent near the answer.
-    line
-        The equations at the answer.
-    """
+    @property
+    def active(self) -> Mask:
+        """Active contacts, (m,)."""
+        return self.state.active
 
-    x: Array
-    lam: Array
-    closed: Mask
-    residual: float
-    ties: Ties = field(repr=False)
-    factor: Factor = field(repr=False)
-    line: Linearized | None = field(default=None, repr=False)
+    @property
+    def constraints(self) -> ContactConstraints:
+        """The same as constraints."""
+        return self.state.constraints
 
 
-def active_set(
-    problem: ConeProblem,
-    x: Array,
-    closed: Mask,
+Equations = TypeVar("Equations", bound=ContactEquations)
+Start = tuple[Array, Array, Mask]
+"""Unknowns (n,), bordered unknowns (d,), active contacts (m,)."""
+
+
+def contact_newton(
+    equations: ContactEquations,
+    start: Start,
     solver: LinearSolver,
-    options: ActiveOptions,
-    before: Factor | None = None,
-) -> tuple[Closed | None, Outcome]:
-    """Newton from `x` with the gaps `closed`, correcting the set, until residual and signs agree.
+    options: ContactOptions,
+    tangent: BorderedTangent | None = None,
+) -> tuple[ActiveContacts | None, Outcome]:
+    """Solve `equations` from `start`, correcting the active contacts, until residual and signs agree.
 
-    `before`, the tangent of a neighbour with the same set, serves the first step: it shows where the set is wrong.
+    `tangent`, that of a neighbour, serves the first steps if it fits the contacts.
     """
-    factor: Factor | None = None
-    doubt, swaps = np.zeros(len(closed), dtype=bool), 0
-    state = evaluate(problem, x, closed)
-    if before is not None and not isinstance(state, Outcome):
-        state = evaluate(problem, newton_step(problem, state, before, options), closed, state.ties)
-    for step in range(options.max_steps + 1):
-        if isinstance(state, Outcome):
-            return None, state
-        wanted = revise(problem, state, options) if step or before is not None else state.closed
-        unchanged = bool(np.array_equal(wanted, state.closed))
-        done = unchanged and state.residual <= options.tolerance and settled(problem, state, options)
-        if done and factor is not None:  # without a tangent, one more step: refinement and prediction need it
-            known = (state.x, state.lam, state.closed, state.residual, state.ties, factor, state.line)
-            return Closed(*known), Outcome.CONVERGED
-        if step == options.max_steps:
-            break
-        doubt, swaps = doubt | (wanted != state.closed), swaps + (not unchanged)
-        found = searched(problem, state, doubt, solver) if swaps > options.patience and not unchanged else None
-        if found is not None:
-            state, factor = found, None
-            continue
-        if not unchanged:
-            state = evaluate(problem, state.x, wanted)
-            if isinstance(state, Outcome):
-                return None, state
+    try:
+        return iterate(equations, start, solver, options, tangent), Outcome.CONVERGED
+    except ContactFailure as failure:
+        return None, failure.outcome
+
+
+def solve_contacts(
+    problem: ContactProblem,
+    start: tuple[Array, Mask],
+    solver: LinearSolver,
+    options: ContactOptions | None = None,
+    tangent: BorderedTangent | None = None,
+) -> tuple[ActiveContacts | None, Outcome]:
+    """`contact_newton` of a problem as it is, from unknowns (n,) and active contacts (m,)."""
+    x, active = start
+    return contact_newton(
+        ContactEquations(problem), (x, np.zeros(0), active), solver, options or ContactOptions(), tangent
+    )
+
+
+def iterate(
+    equations: ContactEquations,
+    start: Start,
+    solver: LinearSolver,
+    options: ContactOptions,
+    tangent: BorderedTangent | None,
+) -> ActiveContacts:
+    """`contact_newton` that raises `ContactFailure` where it finds no solution."""
+    tangent = fitting(equations, tangent, start)
+    state = evaluate(equations, start[:2], options, constraints_of(equations, start, tangent))
+    before, doubt, changes, count = state, np.zeros(len(state.active), dtype=bool), 0, 0
+    for _ in range(options.tangents + (tangent is not None)):
+        # A tangent: a borrowed one as long as it serves, else a factorisation.
+        borrowed = tangent is not None
+        if tangent is None:
+            renewed = equations.renewed(state, before, count)
+            if renewed is not equations:
+                equations, state = renewed, evaluate(renewed, (state.x, state.b), options, state.constraints)
+            entry = start[:2] if options.tangent_at_entry and not count else (state.x, state.b)
+            tangent = factorise(equations, state, entry, solver)
+
+        # Newton steps with it, as long as they contract.
+        before = state
         try:
-            matrix = state.ties.reduce(state.line.matrix(np.zeros(len(wanted))))
-            factor = solver.factor(matrix, state.ties.rank(problem.rank))
-        except SingularMatrixError:
-            return None, Outcome.SINGULAR
-        state = evaluate(problem, newton_step(problem, state, factor, options), wanted, state.ties)
-        state = with_the_same_factor(problem, state, factor, options)
-    return None, Outcome.STEPS
+            equations, state, converged = steps_with(equations, state, tangent, options)
+        except ContactFailure:
+            if not (borrowed and options.borrow):
+                raise
+            tangent, count = None, count + 1
+            continue
+
+        # Contacts of wrong sign: an active one that pulls, a gap below zero.
+        wanted = state.active
+        if options.revise_early or converged or np.any(state.gaps < -RESIDUAL_TOLERANCE):
+            wanted = revise(equations.problem, state)
+
+        # The same contacts: a solution, or another tangent.
+        if np.array_equal(wanted, state.active):
+            if converged and (options.borrow or not borrowed):
+                return ActiveContacts(state, tangent)
+            tangent, count = None, count + 1
+            if count == options.tangents_per_set:
+                break
+            continue
+
+        # Other contacts: all change at once; a set that keeps changing is searched for.
+        doubt, changes, count = doubt | (wanted != state.active), changes + 1, 0
+        found = search(equations.at(state.b), state, doubt, solver) if changes > options.patience else None
+        x, active = found or (state.x, wanted)
+        start = x, state.b, active
+        tangent = fitting(equations, tangent if options.borrow else None, start)
+        state = before = evaluate(equations, start[:2], options, constraints_of(equations, start, tangent))
+    raise ContactFailure(Outcome.STEPS)
 
 
-def with_the_same_factor(
-    problem: ConeProblem, state: ContactState | Outcome, factor: Factor, options: ActiveOptions
-) -> ContactState | Outcome:
-    """Further steps with the factor at hand, as long as the set is right and each gains a digit.
+def steps_with(
+    equations: Equations, state: ContactState, tangent: BorderedTangent, options: ContactOptions
+) -> tuple[Equations, ContactState, bool]:
+    """Newton steps with one tangent; what they reach, and whether it solves the equations.
 
-    Near the answer the tangent hardly changes: a step costs a solve, a fiftieth of another factorisation.
+    Near the solution the tangent hardly changes, so that a step costs a solve instead of a factorisation.
     """
-    for _ in range(options.chords):
-        if isinstance(state, Outcome) or state.residual <= options.tolerance or state.residual > options.near:
+    last = np.inf
+    for number in range(options.steps):
+        equations = equations.lagged(state)
+        correction = corrected(equations, state, tangent)
+        length = equations.step_length(state, correction)
+        ahead = state.x + length * correction.x, state.b + length * correction.b
+        after: ContactState | None = None
+        failure = Outcome.DIVERGED
+        try:
+            after = evaluate(equations, ahead, options, state.constraints, correction.stops)
+        except ContactFailure as failed:
+            failure = failed.outcome
+        verdict = equations.verdict(Step(number, state, after, length, correction.size, last), options)
+        if verdict is Verdict.FAIL:
+            raise ContactFailure(failure)
+        if verdict is Verdict.REJECT or after is None:
             break
-        if not settled(problem, state, options):
-            break
-        ahead = evaluate(problem, newton_step(problem, state, factor, options), state.closed, state.ties)
-        if isinstance(ahead, Outcome) or ahead.residual > options.gain * state.residual:
-            break
-        state = ahead
-    return state
+        state, last = after, correction.size
+        if verdict is not Verdict.GO_ON:
+            return equations, state, verdict is Verdict.CONVERGED
+    return equations, state, False
 
 
-def searched(
-    problem: ConeProblem, state: ContactState, doubt: Mask, solver: LinearSolver
-) -> ContactState | Outcome | None:
-    """The state after a step that looks for the set among the gaps in doubt and their neighbours; None if none fits."""
-    matrix = state.line.matrix(np.zeros(len(doubt)))
-    wide = near(problem, doubt, matrix)
-    if np.count_nonzero(wide) > most_doubts(problem):
-        wide = doubt
-    found = search(problem, (state.x, state.gaps, state.closed, state.line), wide, solver)
-    return None if found is None else evaluate(problem, *found)
+def corrected(equations: ContactEquations, state: ContactState, tangent: BorderedTangent) -> Correction:
+    """Newton's correction of unknowns and bordered unknowns.
+
+    Stops resist the bordered unknowns alone, whatever the others do: a small complementarity problem.
+    """
+    residual = state.linearized.residual
+    if not equations.border.size:
+        return Correction(tangent.tangent.step(residual), np.zeros(0), np.zeros(0))
+    settled, db, stiffness = border_change(equations, residual, (state.x, state.b), tangent)
+    stops, pushes = tangent.constraints.stops, np.zeros(0)
+    if len(stops):
+        arms = tangent.border.gap_derivative[stops] + equations.problem.G[stops] @ tangent.units
+        give = np.linalg.solve(stiffness, arms.T)
+        found = solve_lcp(arms @ give, state.gaps[stops] + arms @ db, np.zeros(len(arms), dtype=bool))
+        if found is None:
+            raise ContactFailure(Outcome.OVERDETERMINED)
+        db, pushes = db + give @ found, found
+    return Correction(settled + tangent.units @ db, db, pushes)
 
 
-@dataclass(frozen=True)
-class ContactState:
-    """An iterate that closes its closed gaps exactly."""
+def border_change(
+    equations: ContactEquations, residual: Array, at: tuple[Array, Array], tangent: BorderedTangent
+) -> tuple[Array, Array, Array]:
+    """Block elimination, stops apart, at unknowns and bordered unknowns `at`.
 
-    x: Array
-    lam: Array
-    closed: Mask
-    residual: float
-    ties: Ties
-    line: Linearized
-    gaps: Array
-
-
-DEEP = -0.5
-"""A gap this far below zero (in units of the reference film) is no small correction any more."""
-
-
-def evaluate(problem: ConeProblem, x: Array, closed: Mask, ties: Ties | None = None) -> ContactState | Outcome:
-    """Close the gaps `closed` exactly, and find residual and reactions there; `ties` are theirs, if known."""
-    ties = ties or tie(problem.G, closed)
-    if not ties.determinate:
-        return Outcome.OVERDETERMINED
-    x = x + ties.close(problem.gaps(x)[closed])
-    gaps = problem.gaps(x)
-    kept = x[problem.positive]
-    if np.min(gaps, initial=0.0) < DEEP or np.min(kept, initial=1.0) <= 0.0 or not np.all(np.isfinite(x)):
-        return Outcome.PENETRATED
-    if not problem.admits(x):
-        return Outcome.PENETRATED
-    line = problem.linearize(x)
-    lam = np.zeros(len(closed))
-    lam[closed] = ties.reactions(line.residual)
-    residual = float(np.max(np.abs(line.residual - problem.G.T @ lam) / line.size, initial=0.0))
-    return ContactState(x, lam, closed, residual, ties, line, gaps)
+    Returns
+    -------
+    settled, db, stiffness
+        Change of the unknowns at fixed bordered unknowns (n,), change of these (d,), and what resists it (d, d).
+    """
+    (x, b), (settled, lam) = at, tangent.respond(residual)
+    stiffness = equations.border_stiffness - tangent.gradient
+    db = np.linalg.solve(stiffness, equations.imbalance(x + settled, lam, b))
+    return settled, np.asarray(db, dtype=np.float64), stiffness
 
 
-def revise(problem: ConeProblem, state: ContactState, options: ActiveOptions) -> Mask:
-    """Keep closed what pushes, close what has gone negative."""
-    below: Mask = state.gaps < -options.sign
-    if not state.closed.any():
-        return below
-    noise = np.maximum(problem.weight, abs(problem.G) @ state.line.size)  # rows that lose digits blur reactions too
-    pushing = state.lam > -options.sign * noise
-    return np.where(state.closed, pushing, below)
+def factorise(
+    equations: ContactEquations, state: ContactState, at: tuple[Array, Array], solver: LinearSolver
+) -> BorderedTangent:
+    """The tangent on the contacts of `state`, there or at other unknowns and bordered unknowns."""
+    linearized = state.linearized if at[0] is state.x else equations.at(at[1]).linearize(at[0])
+    matrix, border = linearized.matrix(np.zeros(len(state.lam))), equations.border
+    try:
+        factor = state.constraints.factor(matrix, solver, equations.problem.elimination_key)
+    except SingularMatrixError:
+        raise ContactFailure(Outcome.SINGULAR) from None
+    return BorderedTangent.at(Tangent(matrix, state.constraints, factor), border, linearized)
 
 
-def settled(problem: ConeProblem, state: ContactState, options: ActiveOptions) -> bool:
-    """Signs of gaps and reactions are those of an answer."""
-    return bool(np.array_equal(revise(problem, state, options), state.closed))
+def fitting(equations: ContactEquations, tangent: BorderedTangent | None, start: Start) -> BorderedTangent | None:
+    """The tangent, if it serves the contacts of `start`, as it is or after an exchange of a few."""
+    if tangent is None or tangent.serves(start[2]):
+        return tangent
+    return tangent.exchanged(equations.problem.G, start[2])
 
 
-def newton_step(problem: ConeProblem, state: ContactState, factor: Factor, options: ActiveOptions) -> Array:
-    """The next iterate, damped where unknowns must stay positive."""
-    step = state.ties.spread(factor.solve(-state.ties.gather(state.line.residual)))
-    kept = problem.positive
-    value, change = state.x[kept], step[kept]
-    falling = change < 0.0
-    reach = options.boundary_x * np.min(value[falling] / -change[falling], initial=np.inf)
-    return state.x + min(1.0, float(reach)) * step
+def constraints_of(equations: ContactEquations, start: Start, tangent: BorderedTangent | None) -> ContactConstraints:
+    """The contacts of `start` as constraints; those of a tangent that fits them."""
+    return constrain(equations.problem.G, start[2], equations.stops) if tangent is None else tangent.constraints

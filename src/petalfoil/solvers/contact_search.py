@@ -1,20 +1,23 @@
-"""The contact set of the linearised equations, found exactly among the gaps in doubt (T3).
+"""The active contacts of the linearised equations, found exactly among the gaps in doubt.
 
-Swapping all gaps of wrong sign at once advances a bending contact one node a step, and may cycle. Here the equations
-are linearised once and factorised once; the gaps in doubt are kept as a small dense complementarity problem whose
-matrix comes from a few solves with that factor. Its answer is the whole set at once, however far it had to travel:
+Changing all contacts of wrong sign at once advances a bending contact by one node a step, and may cycle. Here the
+equations are linearised once and factorised once; the gaps in doubt form a small dense complementarity problem whose
+matrix comes from a few solves with that factor. Its solution is the whole set at once, however far it has to travel:
 Newton's method for complementarity problems (Josephy 1979).
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.solvers.cone import ConeProblem, Linearized
-from petalfoil.solvers.constraints import Ties, tie
+from petalfoil.solvers.constraints import ContactConstraints, constrain
+from petalfoil.solvers.contact_equations import ContactState
 from petalfoil.solvers.lcp import solve_lcp
+from petalfoil.solvers.problem import ContactProblem
 from petalfoil.solvers.sparse_lu import LinearSolver, SingularMatrixError
 
 Array = NDArray[np.float64]
@@ -24,108 +27,116 @@ SOLVES = 1_200_000
 """Gaps in doubt times unknowns that are still a small problem: each asks for a solve, and a factorisation is worth some
 tens of those."""
 
-LEAST_MOST = 60
+ALWAYS_FEW = 60
 """Gaps in doubt that are always few enough."""
 
 ROUNDS = 4
 """Times that gaps which the step would close are added to those in doubt."""
 
+CLOSES = 1e-9
+"""A gap that the step takes this far below zero is one of them."""
 
-def near(problem: ConeProblem, mask: Mask, matrix: sp.csc_array) -> Mask:
-    """Gaps whose unknowns the equations couple to those of the gaps in `mask`, (m,)."""
-    touched = abs(problem.G).T @ mask.astype(float)
+
+def neighbours(problem: ContactProblem, gaps: Mask, matrix: sp.csc_array) -> Mask:
+    """Gaps whose unknowns the equations couple to those of the gaps given, (m,)."""
+    touched = abs(problem.G).T @ gaps.astype(float)
     coupled = abs(matrix) @ (touched > 0.0).astype(float)
     return np.asarray(abs(problem.G) @ (coupled > 0.0).astype(float) > 0.0)
 
 
-def most_doubts(problem: ConeProblem) -> int:
-    """Gaps that may be in doubt in a search, so that it costs no more than a few factorisations."""
-    return max(LEAST_MOST, SOLVES // max(1, int(problem.G.shape[1])))
-
-
 def search(
-    problem: ConeProblem, at: tuple[Array, Array, Mask, Linearized], doubt: Mask, solver: LinearSolver
+    problem: ContactProblem, state: ContactState, doubt: Mask, solver: LinearSolver
 ) -> tuple[Array, Mask] | None:
-    """One Newton step with the contact set of its linearisation; None if there is none.
+    """One Newton step from `state` with the active contacts of its linearisation; None if there are none.
 
     Parameters
     ----------
-    at : (x, gaps, closed, line)
-        Iterate, its gaps, its closed gaps and its linearisation.
     doubt : (m,) bool array
-        Gaps whose state is looked for; the others stay as they are.
+        Gaps whose state is searched for, with their neighbours if these are few enough; the others stay as they are.
 
     Returns
     -------
-    (x, closed)
-        The next iterate and its closed gaps.
+    (x, active)
+        The next iterate and its active contacts.
     """
-    _, _, closed, line = at
-    most = most_doubts(problem)
-    if np.count_nonzero(doubt) > most:
-        return None
-    firm = closed & ~doubt
-    ties = tie(problem.G, firm)
-    if not ties.determinate:
+    plain = state.linearized.matrix(np.zeros(len(doubt)))
+    most = max(ALWAYS_FEW, SOLVES // max(1, int(problem.G.shape[1])))  # a search costs as much as a few factorisations
+    wide = neighbours(problem, doubt, plain)
+    doubt = doubt if np.count_nonzero(wide) > most else wide
+    kept = state.active & ~doubt
+    constraints = constrain(problem.G, kept)
+    if np.count_nonzero(doubt) > most or not constraints.determinate:
         return None
     stiffness = np.zeros(len(doubt))
-    plain = line.matrix(stiffness)
-    stiffness[closed & doubt] = float(np.median(np.abs(plain.diagonal())))
+    stiffness[state.active & doubt] = float(np.median(np.abs(plain.diagonal())))
     try:
-        factor = solver.factor(ties.reduce(line.matrix(stiffness)), ties.rank(problem.rank))
+        factor = constraints.factor(state.linearized.matrix(stiffness), solver, problem.elimination_key)
     except SingularMatrixError:
         return None
-    base = factor.solve(-ties.gather(line.residual))
+    base = factor.solve(-constraints.gather(state.linearized.residual))
     for _ in range(ROUNDS):
         doubts = np.flatnonzero(doubt)
         if len(doubts) > most:
             return None
-        rows = reduced_rows(problem.G, doubts, ties)
-        ways = factor.solve(rows.T.toarray())
-        answer = among(problem, at, doubts, (rows, ways, base, stiffness[doubts]))
-        if answer is None:
+        rows = reduced_rows(problem.G, doubts, constraints)
+        reduced = ReducedContacts(rows, factor.solve(rows.T.toarray()), base, stiffness[doubts])
+        found = reduced.solved(state.gaps[doubts], state.active[doubts])
+        if found is None:
             return None
-        step, pushing = ties.spread(answer[0]), answer[1]
-        x, gaps, now, _ = at
-        late = (gaps + problem.G @ step < -1e-9) & ~doubt & ~now
-        if not late.any():
-            chosen = firm.copy()
-            chosen[doubts[pushing]] = True
-            return x + step, chosen
-        doubt = doubt | late
+        step, pushing = constraints.spread(found[0]), found[1]
+        closing = (state.gaps + problem.G @ step < -CLOSES) & ~doubt & ~state.active
+        if not closing.any():
+            active = kept.copy()
+            active[doubts[pushing]] = True
+            return state.x + step, active
+        doubt = doubt | closing
     return None
 
 
-def reduced_rows(G: sp.csr_array, rows: NDArray[np.intp], ties: Ties) -> sp.csr_array:
-    """Rows of `G` over the free unknowns of `ties`, (k, n_free)."""
+def reduced_rows(G: sp.csr_array, rows: NDArray[np.intp], constraints: ContactConstraints) -> sp.csr_array:
+    """Rows of `G` over the free unknowns, (k, n_free)."""
     coo = sp.csr_array(G[rows]).tocoo()
-    group = ties.group[coo.col]
+    group = constraints.group[coo.col]
     inside = group >= 0
-    shape = (len(rows), ties.n_free)
+    shape = (len(rows), constraints.n_free)
     return sp.coo_array((coo.data[inside], (coo.row[inside], group[inside])), shape=shape).tocsr()
 
 
-def among(
-    problem: ConeProblem,
-    at: tuple[Array, Array, Mask, Linearized],
-    doubts: NDArray[np.intp],
-    parts: tuple[sp.csr_array, Array, Array, Array],
-) -> tuple[Array, Mask] | None:
-    """Step of the free unknowns, and which of the gaps in doubt push.
+@dataclass(frozen=True)
+class ReducedContacts:
+    """The linearised equations as seen by the gaps in doubt.
 
-    With `S = G J^-1 G^T` and stiffnesses `theta` held in the factor, the gaps change by `q = S (lam + theta q) + q0`.
+    Attributes
+    ----------
+    rows : (k, n_free) sparse
+        `G` on these gaps.
+    responses : (n_free, k) array
+        Change of the free unknowns by a unit reaction of each.
+    base : (n_free,) array
+        Their change without reactions.
+    stiffness : (k,) array
+        Stiffness that the factor holds in each gap.
     """
-    rows, ways, base, theta = parts
-    _, gaps, closed, _ = at
-    S, q0 = rows @ ways, rows @ base
-    flexible = np.eye(len(doubts)) - S * theta[None, :]
-    try:
-        both = np.linalg.solve(flexible, np.column_stack([S, q0]))
-    except np.linalg.LinAlgError:
-        return None
-    M, constant = both[:, :-1], both[:, -1]
-    lam = solve_lcp(M, constant + gaps[doubts], closed[doubts])
-    if lam is None:
-        return None
-    change = M @ lam + constant
-    return base + ways @ (lam + theta * change), lam > 0.0
+
+    rows: sp.csr_array
+    responses: Array
+    base: Array
+    stiffness: Array
+
+    def solved(self, gaps: Array, active: Mask) -> tuple[Array, Mask] | None:
+        """Step of the free unknowns, and which of the gaps push, from `gaps` (k,) of which `active` were closed.
+
+        With `S = G J^-1 G^T` and the stiffness `k` held in the factor, the gaps change by `q = S (lam + k q) + q0`.
+        """
+        S, q0 = self.rows @ self.responses, self.rows @ self.base
+        flexible = np.eye(len(gaps)) - S * self.stiffness[None, :]
+        try:
+            both = np.linalg.solve(flexible, np.column_stack([S, q0]))
+        except np.linalg.LinAlgError:
+            return None
+        M, constant = both[:, :-1], both[:, -1]
+        lam = solve_lcp(M, constant + gaps, active)
+        if lam is None:
+            return None
+        change = M @ lam + constant
+        return self.base + self.responses @ (lam + self.stiffness * change), lam > 0.0

@@ -16,7 +16,7 @@ import scipy.linalg as la
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.solvers.constraints import apart
+from petalfoil.solvers.constraints import apply_to_parts
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.sparsity import Order
 
@@ -42,7 +42,7 @@ class Pencil:
     J: sp.csc_array
     M: sp.csc_array
     first: int
-    rank: Order | None = None
+    order: Order | None = None
 
 
 def rightmost(pencil: Pencil, step: float, solver: LinearSolver) -> complex:
@@ -54,11 +54,11 @@ def rightmost(pencil: Pencil, step: float, solver: LinearSolver) -> complex:
         A constrained state without tangent.
     """
     first = pencil.first
-    factor = solver.factor(sp.csc_array(pencil.M + step * pencil.J), pencil.rank)
+    factor = solver.factor(sp.csc_array(pencil.M + step * pencil.J), pencil.order)
     mass_rows, algebraic = sp.csr_array(pencil.M[first:]), np.zeros(first)
 
     def advance(mass: Array) -> Array:
-        stored: Array = mass_rows @ apart(factor.solve, np.concatenate([algebraic, mass]))
+        stored: Array = mass_rows @ apply_to_parts(factor.solve, np.concatenate([algebraic, mass]))
         return stored
 
     return arnoldi(advance, np.random.default_rng(0).standard_normal(mass_rows.shape[0]), step)

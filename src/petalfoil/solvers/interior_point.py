@@ -17,7 +17,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.solvers.cone import ConePoint, ConeProblem, Linearized, scaled_residual
+from petalfoil.solvers.problem import (
+    POSITIVE_FRACTION,
+    ContactProblem,
+    Linearized,
+    PrimalDualPoint,
+    fraction_to_boundary,
+    scaled_residual,
+)
 from petalfoil.solvers.sparse_lu import Factor, LinearSolver
 
 Array = NDArray[np.float64]
@@ -32,8 +39,6 @@ class InteriorOptions:
     """Most centrality correctors a step."""
     boundary: float = 0.98
     """Fraction of the way to `s = 0` or `lam = 0` that a step may go."""
-    boundary_x: float = 0.8
-    """The same for unknowns that must stay positive: the equations are steep near their zero."""
     near: float = 0.1
     """Scaled residual below which predictor-corrector steps pay; above it they overreach (2 % of random cases lost)."""
     calm: float = 1e-3
@@ -57,7 +62,7 @@ class InteriorOptions:
 
 
 @dataclass(frozen=True)
-class Step:
+class InteriorStep:
     """One line of a solve's history."""
 
     barrier: float
@@ -67,11 +72,11 @@ class Step:
     rate: float
 
 
-Watch = Callable[[ConePoint, Step], bool]
+Watch = Callable[[PrimalDualPoint, InteriorStep], bool]
 
 
 @dataclass(frozen=True)
-class Pace:
+class StepHistory:
     """How the last step went and how the next one is taken."""
 
     length: float = 1.0
@@ -79,88 +84,92 @@ class Pace:
     rate: float = 0.0
     residual: float = np.inf
 
-    def after(self, length: float, residual: float, options: InteriorOptions) -> Pace:
-        """The pace after a step of `length` from a point with `residual`."""
+    def after(self, length: float, residual: float, options: InteriorOptions) -> StepHistory:
+        """The history after a step of `length` from a point with `residual`."""
         if self.rate == 0.0:
             short = self.short + 1 if length < options.short else 0
-            return Pace(length, short, 1.0 / options.first_time if short >= 2 else 0.0, residual)
+            return StepHistory(length, short, 1.0 / options.first_time if short >= 2 else 0.0, residual)
         growth = options.growth if length > 0.9 else 1.0 if length > 0.3 else 1.0 / options.growth
         arrived = length > 0.9 and residual < 1e-2 * options.near
         done = arrived or growth / self.rate > options.longest_time
         rate = 0.0 if done else min(self.rate / growth, 1.0 / options.shortest_time)
-        return Pace(length, 0, rate, residual)
+        return StepHistory(length, 0, rate, residual)
 
 
 def interior_point(
-    problem: ConeProblem, start: ConePoint, solver: LinearSolver, options: InteriorOptions, watch: Watch
-) -> tuple[ConePoint, bool]:
-    """Follow the central path from `start` until `watch` is content; in time first, if the options say so.
+    problem: ContactProblem, start: PrimalDualPoint, solver: LinearSolver, options: InteriorOptions, watch: Watch
+) -> tuple[PrimalDualPoint, bool]:
+    """Follow the central path from `start` until `watch` returns True; in time first, if the options say so.
 
     Returns
     -------
-    (ConePoint, bool)
-        The last point, and whether `watch` was content with it before the steps ran out.
+    (PrimalDualPoint, bool)
+        The last point, and whether `watch` accepted it before the steps ran out.
     """
-    point, pace = start, Pace(rate=1.0 / options.first_time if options.march else 0.0)
+    point, history = start, StepHistory(rate=1.0 / options.first_time if options.march else 0.0)
     for _ in range(options.max_steps + 1):
         shift = point.s - problem.gaps(point.x)
-        line = problem.linearize(point.x, shift)
-        residual = scaled_residual(line, problem.G.T @ point.lam)
+        linearized = problem.linearize(point.x, shift)
+        residual = scaled_residual(linearized, problem.G.T @ point.lam)
         widest = float(np.max(np.abs(shift), initial=0.0))
-        if watch(point, Step(point.barrier(problem.weight), residual, widest, pace.length, pace.rate)):
+        if watch(point, InteriorStep(point.barrier(problem.weight), residual, widest, history.length, history.rate)):
             return point, True
-        factor = solver.factor(line.matrix(point.lam / point.s, pace.rate), problem.rank)
-        newton = NewtonSystem(problem, point, line, factor, pace.rate)
-        direction = choose(newton, residual, pace, options)
+        factor = solver.factor(
+            linearized.matrix(point.lam / point.s, history.rate), solver.elimination(problem.elimination_key)
+        )
+        newton = NewtonSystem(problem, point, linearized, factor, history.rate)
+        direction = choose(newton, residual, history, options)
         length = newton.longest(direction, options)
         s, lam = point.s + length * direction.s, point.lam + length * direction.lam
-        x = keep_positive(point.x, length * direction.x, problem.positive, options.boundary_x)
-        point, pace = ConePoint(x, s, lam), pace.after(length, residual, options)
+        x = keep_positive(point.x, length * direction.x, problem.positive)
+        point, history = PrimalDualPoint(x, s, lam), history.after(length, residual, options)
         if length < options.jammed:
             point = recentre(point, problem.weight)
     return point, False
 
 
-def contact_set(problem: ConeProblem, point: ConePoint, solver: LinearSolver) -> tuple[Array, NDArray[np.bool_]]:
+def contact_set(
+    problem: ContactProblem, point: PrimalDualPoint, solver: LinearSolver
+) -> tuple[Array, NDArray[np.bool_]]:
     """Which gaps are closed in the answer ahead of `point`, and where it lies.
 
     Along the direction that aims at a barrier of zero, slacks of closed gaps vanish while those of open gaps stay
     (Tapia's indicators): it does not depend on units, as comparing reactions with gaps would.
     """
     shift = point.s - problem.gaps(point.x)
-    line = problem.linearize(point.x, shift)
-    factor = solver.factor(line.matrix(point.lam / point.s), problem.rank)
-    newton = NewtonSystem(problem, point, line, factor, 0.0)
+    linearized = problem.linearize(point.x, shift)
+    factor = solver.factor(linearized.matrix(point.lam / point.s), solver.elimination(problem.elimination_key))
+    newton = NewtonSystem(problem, point, linearized, factor, 0.0)
     ahead = newton.direction(-point.lam * point.s)
-    return keep_positive(point.x, ahead.x, problem.positive, 0.8), -ahead.s > 0.5 * point.s
+    return keep_positive(point.x, ahead.x, problem.positive), -ahead.s > 0.5 * point.s
 
 
-def recentre(point: ConePoint, weight: Array) -> ConePoint:
+def recentre(point: PrimalDualPoint, weight: Array) -> PrimalDualPoint:
     """Move pairs that ran into the boundary back toward the path: slack and reaction grow by the same factor (P4).
 
     A pair far below the mean product blocks every direction; the equations pay with a residual that Newton removes.
     """
     product, least = point.lam * point.s / weight, 0.1 * point.barrier(weight)
     factor = np.sqrt(np.maximum(1.0, least / product))
-    return ConePoint(point.x, point.s * factor, point.lam * factor)
+    return PrimalDualPoint(point.x, point.s * factor, point.lam * factor)
 
 
-def choose(newton: NewtonSystem, residual: float, pace: Pace, options: InteriorOptions) -> Direction:
+def choose(newton: NewtonSystem, residual: float, history: StepHistory, options: InteriorOptions) -> Direction:
     """Direction toward a lower barrier: cautious far from the answer and on a march, Mehrotra's near it (P3)."""
     point, weight = newton.point, newton.problem.weight
     mu, now = point.barrier(weight), point.lam * point.s
-    overreached = residual > max(pace.residual, options.calm)
-    far = residual > options.near or overreached or pace.rate > 0.0
+    overreached = residual > max(history.residual, options.calm)
+    far = residual > options.near or overreached or history.rate > 0.0
     if far:
-        shares = (0.5, 0.8, 1.0) if pace.rate > 0.0 else (0.1, 0.3, 0.8)
-        centring = shares[0] if pace.length > 0.9 else shares[1] if pace.length > 0.5 else shares[2]
+        shares = (0.5, 0.8, 1.0) if history.rate > 0.0 else (0.1, 0.3, 0.8)
+        centring = shares[0] if history.length > 0.9 else shares[1] if history.length > 0.5 else shares[2]
         return newton.direction(max(centring * mu, options.least_barrier) * weight - now)
     predictor = newton.direction(min(mu, options.least_barrier) * weight - now)
     reach = newton.longest(predictor, options)
-    ahead = ConePoint(point.x, point.s + reach * predictor.s, point.lam + reach * predictor.lam).barrier(weight)
-    least = 0.0 if pace.length > 0.9 else 0.1 if pace.length > 0.5 else 0.8
+    ahead = PrimalDualPoint(point.x, point.s + reach * predictor.s, point.lam + reach * predictor.lam).barrier(weight)
+    least = 0.0 if history.length > 0.9 else 0.1 if history.length > 0.5 else 0.8
     centring = min(max((ahead / mu) ** 3 if mu > 0.0 else 0.0, least), 1.0)
-    second = predictor.s * predictor.lam if pace.length > 0.5 and reach > 0.1 else 0.0
+    second = predictor.s * predictor.lam if history.length > 0.5 and reach > 0.1 else 0.0
     target = max(centring * mu, options.least_barrier) * weight
     return straighten(newton, target - now - second, target, options)
 
@@ -206,9 +215,9 @@ class Direction:
 class NewtonSystem:
     """Newton's equations at one point, factorised."""
 
-    problem: ConeProblem
-    point: ConePoint
-    line: Linearized
+    problem: ContactProblem
+    point: PrimalDualPoint
+    linearized: Linearized
     factor: Factor
     rate: float
 
@@ -216,30 +225,24 @@ class NewtonSystem:
         """Direction that aims at a change `product` (m,) of `lam s`, at `F = G^T lam` and at `s = g` (P2)."""
         G, (x, s, lam) = self.problem.G, (self.point.x, self.point.s, self.point.lam)
         open_by = s - self.problem.gaps(x)
-        imbalance = self.line.residual - G.T @ lam
-        rhs = -imbalance + self.line.by_shift(open_by, self.rate) + G.T @ ((product + lam * open_by) / s)
+        imbalance = self.linearized.residual - G.T @ lam
+        rhs = -imbalance + self.linearized.slack_derivative(open_by, self.rate) + G.T @ ((product + lam * open_by) / s)
         dx = self.factor.solve(rhs)
         ds = G @ dx - open_by
         return Direction(dx, ds, (product - lam * ds) / s)
 
     def longest(self, direction: Direction, options: InteriorOptions) -> float:
         """Largest step of at most 1 that keeps the fractions to the boundary of slacks and reactions."""
-        reach_s = options.boundary * room(self.point.s, direction.s)
-        reach_lam = options.boundary * room(self.point.lam, direction.lam)
+        reach_s = options.boundary * fraction_to_boundary(self.point.s, direction.s)
+        reach_lam = options.boundary * fraction_to_boundary(self.point.lam, direction.lam)
         return min(1.0, reach_s, reach_lam)
 
 
-def keep_positive(x: Array, change: Array, kept: slice, share: float) -> Array:
-    """Add `change`; unknowns that must stay positive go at most `share` of the way to zero, each by itself.
+def keep_positive(x: Array, change: Array, kept: slice) -> Array:
+    """Add `change`; unknowns that must stay positive go only a fraction of the way to zero, each by itself.
 
-    A single one of them does not hold up the others: where the film opens, pressures of a few per cent are common.
+    One of them does not hold up the others: where the film opens, pressures of a few per cent of ambient are common.
     """
     moved = x + change
-    moved[kept] = np.maximum(moved[kept], (1.0 - share) * x[kept])
+    moved[kept] = np.maximum(moved[kept], (1.0 - POSITIVE_FRACTION) * x[kept])
     return moved
-
-
-def room(value: Array, change: Array) -> float:
-    """Step at which the first of `value + step change` reaches zero."""
-    falling = change < 0.0
-    return float(np.min(value[falling] / -change[falling], initial=np.inf))

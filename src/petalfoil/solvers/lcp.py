@@ -8,6 +8,8 @@ import numpy as np
 import scipy.linalg as la
 from numpy.typing import NDArray
 
+from petalfoil.solvers.problem import fraction_to_boundary
+
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
@@ -103,13 +105,8 @@ def _interior_step(M: Array, at: tuple[Array, Array, Array], mu: float) -> tuple
         dw = M @ dz + off
         if not (np.all(np.isfinite(dz)) and np.all(np.isfinite(dw))):
             return None
-        reach = min(1.0, 0.99 * _room(z, dz), 0.99 * _room(w, dw))
+        reach = min(1.0, 0.99 * fraction_to_boundary(z, dz), 0.99 * fraction_to_boundary(w, dw))
         if not corrector:
             share = float((z + reach * dz) @ (w + reach * dw)) / len(z) / mu
             aim = share**3 * mu - dz * dw
     return (dz, dw), reach
-
-
-def _room(value: Array, change: Array) -> float:
-    falling = change < 0.0
-    return float(np.min(value[falling] / -change[falling], initial=np.inf))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,7 +11,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
-from petalfoil.sparsity import Order, postorder
+from petalfoil.sparsity import Elimination, Order, postorder
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -75,19 +76,32 @@ PANELS = ((20_000, 1), (np.inf, 8))
 
 @dataclass
 class LinearSolver:
-    """Factorises the matrices of one problem and counts them."""
+    """Factorises matrices, counts them, and remembers in which order like ones are best eliminated.
+
+    Attributes
+    ----------
+    counter : Counter
+        Factorisations done.
+    elimination_orders : dict
+        Orders learnt so far, by the key of a problem.
+    """
 
     counter: Counter = field(default_factory=Counter)
+    elimination_orders: dict[Hashable, Elimination] = field(default_factory=dict)
 
-    def factor(self, matrix: sp.csc_array, rank: Order | None = None) -> Factor:
+    def elimination(self, key: Hashable | None) -> Elimination | None:
+        """Orders of the problems with this `key`; None where a problem has none."""
+        return None if key is None else self.elimination_orders.setdefault(key, Elimination())
+
+    def factor(self, matrix: sp.csc_array, order: Order | None = None) -> Factor:
         """Equilibrate and factorise `matrix` (n, n).
 
         Parameters
         ----------
         matrix : (n, n) sparse
             The matrix; the order is chosen for symmetric patterns.
-        rank : Order, optional
-            Where the order of elimination of like matrices is kept.
+        order : Order, optional
+            Remembers the elimination order of like matrices.
 
         Raises
         ------
@@ -99,13 +113,13 @@ class LinearSolver:
         if not np.all(np.isfinite(matrix.data)):
             raise SingularMatrixError("matrix with entries that are not finite")
         scaled, row, col = equilibrate(without_zeros(matrix))
-        places = None if rank is None else rank.known()
+        places = None if order is None else order.known()
         try:
             factor = Factor(symmetric_lu(scaled, places), row, col, places)
             if trusted(scaled, factor):
-                if rank is not None:
+                if order is not None:
                     fill = factor.lu.nnz / scaled.shape[0]
-                    rank.learn(postorder(scaled, np.argsort(factor.lu.perm_c)) if places is None else None, fill)
+                    order.learn(postorder(scaled, np.argsort(factor.lu.perm_c)) if places is None else None, fill)
                 return factor
         except RuntimeError:  # SuperLU met a zero pivot: without the diagonal it may still do
             pass

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from petalfoil.case import Case
 from petalfoil.memory import check_memory
 from petalfoil.physics.mass_balance import FilmBalance
-from petalfoil.system.coupled import CoupledProblem, Layout
+from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.layout import Layout
 from petalfoil.system.scales import scales_of
 from petalfoil.walls import Wall, build_wall
 from petalfoil.walls.two_bearings import paired
@@ -25,19 +26,18 @@ def build_pair(case: Case) -> CoupledProblem:
     if case.rotor is None or case.rotor.span is None:
         raise ValueError("this rotor runs in one bearing")
     whole = case.replace(**{"model.symmetry": False})
-    check_memory(whole, bearings=2)
-    return discretised(
-        whole, paired(build_wall(whole), case.rotor.span), np.append(case.operation.eccentricity, [0, 0])
-    )
+    wall = paired(build_wall(whole), case.rotor.span)
+    slopes = np.zeros(wall.n_position - len(case.operation.eccentricity))
+    return discretised(whole, wall, np.append(case.operation.eccentricity, slopes))
 
 
 def discretised(case: Case, wall: Wall, displacement: NDArray[np.float64]) -> CoupledProblem:
     """The equations on a wall at a displacement [m]."""
     scales = scales_of(case, wall)
     radius, speed = case.bearing.journal_radius, case.operation.speed
-    knudsen = case.slip_length / scales.length
+    balance = FilmBalance(wall.film, radius, case.slip_length / scales.length)
     return CoupledProblem(
-        layout=Layout(wall, FilmBalance(wall.film, radius, knudsen), scales),
+        layout=Layout(case, wall, balance, scales),
         bearing_number=scales.bearing_number(case.gas.viscosity, speed, radius),
         displacement=displacement / scales.length,
     )

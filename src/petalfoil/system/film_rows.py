@@ -1,4 +1,4 @@
-"""The film's rows of the coupled system: cell balances, and the content of a film without ends."""
+"""The film's rows of the coupled system: cell balances, and the gas inventory of a film without ends."""
 
 from __future__ import annotations
 
@@ -23,28 +23,28 @@ class FilmRows:
     balance: FilmBalance
 
     @cached_property
-    def content(self) -> GasInventory | None:
-        """The condition that stands in place of the first balance; None where the film has ends."""
-        content = GasInventory(self.balance.mesh, self.balance.area, self.balance.knudsen)
-        return content if content.needed else None
+    def inventory(self) -> GasInventory | None:
+        """The condition that replaces the first balance; None where the film has ends."""
+        inventory = GasInventory(self.balance.mesh, self.balance.area, self.balance.knudsen)
+        return inventory if inventory.needed else None
 
     @cached_property
     def by_pressure(self) -> Entries:
         """Places of the derivatives by the pressure unknowns."""
-        return _joined(self.balance.by_pressure, None if self.content is None else self.content.by_pressure)
+        return _joined(self.balance.by_pressure, None if self.inventory is None else self.inventory.by_pressure)
 
     @cached_property
     def by_film(self) -> Entries:
         """Places of the derivatives by the film thickness at every film node (flat number)."""
-        return _joined(self.balance.by_film, None if self.content is None else self.content.by_film)
+        return _joined(self.balance.by_film, None if self.inventory is None else self.inventory.by_film)
 
     def at(self, P: Array, H: Array, Lam: float) -> FilmState:
         """The rows at one state."""
         return FilmState(self, P, H, Lam)
 
-    def give_way(self, values: Array, places: Entries) -> Array:
-        """Drop the balance that gives way to the content."""
-        return values if self.content is None else np.where(places.rows == 0, 0.0, values)
+    def without_first(self, values: Array, places: Entries) -> Array:
+        """Drop the balance that the gas inventory replaces, if it does."""
+        return values if self.inventory is None else np.where(places.rows == 0, 0.0, values)
 
 
 @dataclass(frozen=True)
@@ -65,27 +65,27 @@ class FilmState:
     def residual(self) -> Array:
         """Net outflow of every cell, (n_unknown,) [1]."""
         residual = self.rows.balance.residual(self.fluxes)
-        if self.rows.content is not None:
-            residual[0] = self.rows.content.value(self.P, self.H)
+        if self.rows.inventory is not None:
+            residual[0] = self.rows.inventory.value(self.P, self.H)
         return residual
 
     @cached_property
-    def size(self) -> Array:
-        """What each row's residual is measured by, (n_unknown,) [1]."""
-        size = self.rows.balance.row_scale(self.fluxes)
-        if self.rows.content is not None:
-            size[0] = self.rows.content.row_scale(self.P, self.H)
-        return size
+    def row_scale(self) -> Array:
+        """What each row's residual is compared with, (n_unknown,) [1]."""
+        scale = self.rows.balance.row_scale(self.fluxes)
+        if self.rows.inventory is not None:
+            scale[0] = self.rows.inventory.row_scale(self.P, self.H)
+        return scale
 
     @cached_property
     def tangent(self) -> tuple[Array, Array]:
         """Derivatives in the order of `by_pressure` and `by_film`."""
-        balance, content = self.rows.balance, self.rows.content
+        balance, inventory = self.rows.balance, self.rows.inventory
         by_P, by_H = balance.tangent(self.fluxes)
-        if content is None:
+        if inventory is None:
             return by_P, by_H
-        more_P, more_H = content.tangent(self.P, self.H)
-        by_P, by_H = self.rows.give_way(by_P, balance.by_pressure), self.rows.give_way(by_H, balance.by_film)
+        more_P, more_H = inventory.tangent(self.P, self.H)
+        by_P, by_H = self.rows.without_first(by_P, balance.by_pressure), self.rows.without_first(by_H, balance.by_film)
         return np.concatenate([by_P, more_P]), np.concatenate([by_H, more_H])
 
     @cached_property
@@ -93,7 +93,9 @@ class FilmState:
         """Derivatives of the stored mass by pressure and film, in the order of `balance.storage_entries`."""
         balance = self.rows.balance
         by_P, by_H = balance.storage_tangent(self.P, self.H, self.Lam)
-        return self.rows.give_way(by_P, balance.storage_entries), self.rows.give_way(by_H, balance.storage_entries)
+        return self.rows.without_first(by_P, balance.storage_entries), self.rows.without_first(
+            by_H, balance.storage_entries
+        )
 
     def moved(self, change: Array, rate: float) -> Array:
         """Derivative of the rows (and of `rate` times the storage) by the film, applied to `change` (flat nodes)."""

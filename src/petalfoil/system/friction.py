@@ -1,11 +1,15 @@
-"""Friction of the petals in the units of the problem, from one state to the next.
+"""Friction between petals in the units of the problem, and a contact problem with friction.
 
-The reactions that limit it are those of a correction before; whoever solves goes on until they agree.
+F(x) + B^T T = G^T lam,  gaps as without friction       (C1) with (D2)
+
+The reactions that limit friction are those of a correction before; the solver goes on until they agree.
 """
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -14,7 +18,8 @@ from numpy.typing import NDArray
 
 from petalfoil.case import Case
 from petalfoil.physics.dry_friction import Friction
-from petalfoil.system.coupled import Layout
+from petalfoil.solvers.problem import ContactProblem, Linearized
+from petalfoil.system.layout import Layout
 
 Array = NDArray[np.float64]
 
@@ -30,8 +35,28 @@ class FrictionState:
     @classmethod
     def fresh(cls, friction: Friction, x: Array, lam: Array) -> FrictionState:
         """No force yet, wherever the petals are."""
-        slip = friction.slip @ x[: friction.slip.shape[1]]
+        slip = slips(friction, x)
         return cls(slip, np.zeros(len(slip)), friction.coefficient * friction.normal(lam))
+
+
+def slips(friction: Friction, x: NDArray[Any]) -> NDArray[Any]:
+    """Slip `B w` of the deflections, the first of the unknowns `x`; (k,) or (k, j)."""
+    out: NDArray[Any] = friction.slip @ x[: friction.slip.shape[1]]
+    return out
+
+
+def against_slip(friction: Friction, force: NDArray[Any], n: int) -> NDArray[Any]:
+    """`B^T T` among all `n` unknowns."""
+    out = np.zeros(n, dtype=force.dtype)
+    out[: friction.slip.shape[1]] = friction.slip.T @ force
+    return out
+
+
+def friction_tangent(friction: Friction, stiffness: NDArray[Any], n: int) -> sp.csc_array:
+    """`B^T diag(stiffness) B` among all `n` unknowns."""
+    B = friction.slip
+    held = sp.coo_array(B.T @ (sp.diags_array(stiffness) @ B))
+    return sp.coo_array((held.data, (held.row, held.col)), shape=(n, n)).tocsc()
 
 
 def energy_lost(friction: Friction, before: FrictionState, after: FrictionState) -> float:
@@ -43,7 +68,7 @@ def energy_lost(friction: Friction, before: FrictionState, after: FrictionState)
 
 
 ROUNDING = 1e-11
-"""Slips that differ by less do not tell a slope."""
+"""Slips that differ by less do not determine a slope."""
 
 
 @dataclass(frozen=True)
@@ -59,8 +84,8 @@ class FrictionStep:
     normal : (k,) array
         Reactions that limit the friction.
     secant : (k,) array or None
-        Stiffness that stands for the law's own derivative: where contacts stick and slip in turns from one iterate to
-        the next, neither derivative leads on.
+        Stiffness in place of the law's own derivative: where contacts stick and slip in turns from one iterate to the
+        next, neither derivative leads on.
     """
 
     friction: Friction
@@ -68,11 +93,20 @@ class FrictionStep:
     normal: Array
     secant: Array | None = None
 
+    @classmethod
+    def beginning(cls, friction: Friction, before: FrictionState, lam: Array) -> FrictionStep:
+        """A step that starts with the reactions `lam` (m,)."""
+        return cls(friction.in_step(lam), before, friction.normal(lam))
+
     def law(self, x: Array) -> tuple[Array, Array, Array]:
         """Slip, force and its derivative by the slip at `x`, (k,)."""
-        slip = self.friction.slip @ x[: self.friction.slip.shape[1]]
+        slip = slips(self.friction, x)
         force, stiffness = self.friction.force(slip, (self.before.slip, self.before.force), self.normal)
         return slip, force, stiffness if self.secant is None else self.secant
+
+    def limited(self, lam: Array) -> FrictionStep:
+        """The same with friction limited by the reactions `lam` (m,)."""
+        return replace(self, normal=self.friction.normal(lam), secant=None)
 
     def between(self, x: Array, other: Array) -> FrictionStep:
         """The same with secants between the iterates `x` and `other`."""
@@ -88,11 +122,85 @@ class FrictionStep:
         return FrictionState(slip, force, self.friction.coefficient * self.normal)
 
 
-def held_together(friction: Friction, stiffness: NDArray[Any], n: int) -> sp.csc_array:
-    """`B^T diag(stiffness) B` among all `n` unknowns."""
-    B = friction.slip
-    held = sp.coo_array(B.T @ (sp.diags_array(stiffness) @ B))
-    return sp.coo_array((held.data, (held.row, held.col)), shape=(n, n)).tocsc()
+@dataclass(frozen=True)
+class FrictionProblem:
+    """A contact problem with friction.
+
+    Attributes
+    ----------
+    base : ContactProblem
+        The problem without friction; its first unknowns are the deflections.
+    step : FrictionStep
+        Friction in this step.
+    """
+
+    base: ContactProblem
+    step: FrictionStep
+
+    @property
+    def G(self) -> sp.csr_array:
+        """Derivative of the gaps, (m, n)."""
+        return self.base.G
+
+    @property
+    def weight(self) -> Array:
+        """Weights of the gaps, (m,)."""
+        return self.base.weight
+
+    @property
+    def elimination_key(self) -> Hashable | None:
+        """That of the problem without friction."""
+        return self.base.elimination_key
+
+    @property
+    def positive(self) -> slice:
+        """Unknowns that must stay positive."""
+        return self.base.positive
+
+    def gaps(self, x: Array) -> Array:
+        """Gaps at `x`, (m,)."""
+        return self.base.gaps(x)
+
+    def admits(self, x: Array) -> bool:
+        """The equations can be evaluated at `x`."""
+        return self.base.admits(x)
+
+    def linearize(self, x: Array, shift: Array | None = None) -> FrictionLinearization:
+        """The equations at `x`."""
+        return FrictionLinearization(self.base.linearize(x, shift), self.step, x)
+
+
+@dataclass(frozen=True)
+class FrictionLinearization:
+    """The equations with friction at one point."""
+
+    smooth: Linearized
+    step: FrictionStep
+    x: Array
+
+    @cached_property
+    def _law(self) -> tuple[Array, Array, Array]:
+        return self.step.law(self.x)
+
+    @cached_property
+    def residual(self) -> Array:
+        """`F(x) + B^T T`, (n,)."""
+        friction: Array = against_slip(self.step.friction, self._law[1], len(self.x))
+        return self.smooth.residual + friction
+
+    @property
+    def row_scale(self) -> Array:
+        """What each row's residual is compared with, (n,)."""
+        return self.smooth.row_scale
+
+    def matrix(self, barrier_weight: Array, rate: float = 0.0) -> sp.csc_array:
+        """Tangent with `B^T (dT/ds) B`, (n, n)."""
+        stiffness = friction_tangent(self.step.friction, self._law[2], len(self.x))
+        return sp.csc_array(self.smooth.matrix(barrier_weight, rate) + stiffness)
+
+    def slack_derivative(self, change: Array, rate: float = 0.0) -> Array:
+        """Friction reads slips, not gaps."""
+        return self.smooth.slack_derivative(change, rate)
 
 
 def friction_of(case: Case, layout: Layout) -> Friction | None:

@@ -9,6 +9,7 @@ The reactions' force on the journal is the transpose of what its displacement do
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -16,42 +17,18 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.physics.forces import node_area
-from petalfoil.sparsity import Elimination, add_up
 from petalfoil.system.coupled import CoupledProblem, Linearization
+from petalfoil.system.unknowns import POSITION, Unknowns
 
 Array = NDArray[np.float64]
 
+LEAST_LOAD = 1e-3
+"""An unbalanced force is compared with the load; where that is less than this over the unit of force, with this."""
 
-@dataclass(frozen=True)
-class FilmForce:
-    """Force of the film on the journal, linear in the pressure unknowns, over the unit of nodal force.
 
-    Attributes
-    ----------
-    by_P : (2, n_film) array
-        Derivative by the pressure unknowns [1].
-    """
-
-    by_P: Array
-
-    @classmethod
-    def of(cls, problem: CoupledProblem) -> FilmForce:
-        """The film's force in the units of `problem`: `-sum (P - 1) n R_j dphi dz` (62)."""
-        layout = problem.layout
-        mesh, balance = layout.wall.film, layout.balance
-        area = node_area(mesh, balance.radius) * layout.scales.pressure / layout.scales.force
-        numbers = np.where(mesh.unknown >= 0, mesh.unknown, mesh.n_unknown).ravel()
-        normals = layout.wall.contacts.by_e[layout.wall.contacts.journal].T  # a gap narrows where the film pushes
-        parts = [
-            add_up(numbers, np.broadcast_to(area, mesh.shape).ravel() * n, mesh.n_unknown + 1)[:-1] for n in normals
-        ]
-        return cls(np.array(parts))
-
-    def at(self, P: Array) -> Array:
-        """Force at pressure unknowns `P`, (2,) [1]."""
-        force: Array = self.by_P @ (P - 1.0)
-        return force
+def load_scale(load: Array) -> float:
+    """What an unbalanced force is compared with [1]."""
+    return max(float(np.linalg.norm(load)), LEAST_LOAD)
 
 
 @dataclass(frozen=True)
@@ -62,7 +39,7 @@ class LoadedProblem:
     ----------
     coupled : CoupledProblem
         The bearing; its displacement is only the start.
-    load : (2,) array
+    load : (n_position,) array
         Load on the journal over the unit of nodal force [1].
     """
 
@@ -70,14 +47,19 @@ class LoadedProblem:
     load: Array
 
     @cached_property
-    def film_force(self) -> FilmForce:
-        """Force of the film on the journal."""
-        return FilmForce.of(self.coupled)
+    def unknowns(self) -> Unknowns:
+        """Those of the coupled system, then the position."""
+        layout = self.coupled.layout
+        return layout.unknowns.extended(**{POSITION: layout.n_position})
+
+    def split(self, z: Array) -> tuple[CoupledProblem, Array]:
+        """The coupled system at the position of `z`, and its unknowns."""
+        return self.coupled.at(displacement=z[self.unknowns[POSITION]]), z[: self.coupled.layout.n]
 
     @cached_property
     def G(self) -> sp.csr_array:
-        """Derivative of the gaps by deflections, pressures and displacement, (m, n + 2)."""
-        by_e = sp.csr_array(self.coupled.layout.wall.contacts.by_e)
+        """Derivative of the gaps by deflections, pressures and position, (m, n + n_position)."""
+        by_e = sp.csr_array(self.coupled.border.gap_derivative)
         return sp.csr_array(sp.hstack([self.coupled.G, by_e], format="csr"))
 
     @property
@@ -85,31 +67,30 @@ class LoadedProblem:
         """Weights of the gaps."""
         return self.coupled.weight
 
-    @cached_property
-    def rank(self) -> Elimination:
-        """Orders of elimination; the two rows that reach all over the bearing come last by their degree."""
-        return Elimination()
+    @property
+    def elimination_key(self) -> Hashable | None:
+        """One for all loads; the rows that reach all over the bearing come last by their degree."""
+        return self.coupled.layout, POSITION
 
     @property
     def positive(self) -> slice:
         """The pressures."""
         return self.coupled.positive
 
-    def at(self, z: Array) -> CoupledProblem:
-        """The coupled system at the displacement of `z`."""
-        return self.coupled.at(displacement=z[-2:])
-
     def gaps(self, z: Array) -> Array:
         """Gaps over the reference length, (m,)."""
-        return self.at(z).gaps(z[:-2])
+        problem, x = self.split(z)
+        return problem.gaps(x)
 
     def admits(self, z: Array) -> bool:
         """The film is open everywhere."""
-        return self.at(z).admits(z[:-2])
+        problem, x = self.split(z)
+        return problem.admits(x)
 
     def linearize(self, z: Array, shift: Array | None = None) -> LoadedLinearization:
         """Residual and tangent at `z`."""
-        return LoadedLinearization(self, z, self.at(z).linearize(z[:-2], shift))
+        problem, x = self.split(z)
+        return LoadedLinearization(self, z, problem.linearize(x, shift))
 
 
 @dataclass(frozen=True)
@@ -118,35 +99,35 @@ class LoadedLinearization:
 
     problem: LoadedProblem
     z: Array
-    line: Linearization
+    coupled: Linearization
 
     @cached_property
     def residual(self) -> Array:
-        """Wall and film, then minus film force and load (reactions apart), (n + 2,)."""
-        P = self.z[self.problem.positive]
-        journal = -(self.problem.film_force.at(P) + self.problem.load)
-        return np.concatenate([self.line.residual, journal])
+        """Wall and film, then minus film force and load (reactions apart), (n + n_position,)."""
+        force = self.problem.coupled.film_force(self.z)
+        return np.concatenate([self.coupled.residual, -(force + self.problem.load)])
 
     @cached_property
-    def size(self) -> Array:
-        """Sizes of wall and film rows; the load for the journal's."""
-        load = max(float(np.hypot(*self.problem.load)), 1e-3)
-        return np.concatenate([self.line.size, [load, load]])
+    def row_scale(self) -> Array:
+        """Scales of wall and film rows; the load for the journal's."""
+        load = self.problem.load
+        return np.concatenate([self.coupled.row_scale, np.full(len(load), load_scale(load))])
 
-    def matrix(self, theta: Array, rate: float = 0.0) -> sp.csc_array:
-        """Tangent plus `G_z^T diag(theta) G_z`, (n + 2, n + 2)."""
-        problem, layout = self.problem, self.problem.coupled.layout
-        by_e = layout.wall.contacts.by_e
-        stiff = theta[:, None] * by_e
-        columns = np.column_stack([self.line.by_shift(by_e[:, k], rate) for k in (0, 1)]) + layout.G.T @ stiff
-        rows = (layout.G.T @ stiff).T
-        rows[:, problem.positive] -= problem.film_force.by_P
+    def matrix(self, barrier_weight: Array, rate: float = 0.0) -> sp.csc_array:
+        """Tangent plus `G_z^T diag(barrier_weight) G_z`, (n + n_position, n + n_position)."""
+        problem, border = self.problem, self.problem.coupled.border
+        by_e = border.gap_derivative
+        stiff = barrier_weight[:, None] * by_e
+        forcing = np.column_stack([self.coupled.slack_derivative(column, rate) for column in by_e.T])
+        rows = (problem.coupled.G.T @ stiff).T
+        columns = forcing + rows.T
+        rows[:, border.columns] -= border.row_derivative
         blocks = [
-            [self.line.matrix(theta, rate), sp.csc_array(columns)],
+            [self.coupled.matrix(barrier_weight, rate), sp.csc_array(columns)],
             [sp.csc_array(rows), sp.csc_array(by_e.T @ stiff)],
         ]
         return sp.csc_array(sp.block_array(blocks, format="csc"))
 
-    def by_shift(self, shift: Array, rate: float = 0.0) -> Array:
+    def slack_derivative(self, change: Array, rate: float = 0.0) -> Array:
         """The journal's rows do not read the gaps."""
-        return np.concatenate([self.line.by_shift(shift, rate), np.zeros(2)])
+        return np.concatenate([self.coupled.slack_derivative(change, rate), np.zeros(len(self.problem.load))])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -9,8 +10,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.sparsity import Elimination, Pattern
-from petalfoil.system.coupled import CoupledProblem, Layout, wall_size
+from petalfoil.system.coupled import CoupledProblem, wall_scale
+from petalfoil.system.layout import Layout
+from petalfoil.system.unknowns import DEFLECTION, BlockPattern, Unknowns
 
 Array = NDArray[np.float64]
 
@@ -51,16 +53,15 @@ class PackageProblem:
         return slice(0, 0)
 
     @property
-    def rank(self) -> Elimination:
-        """Orders of elimination, kept for all loads and positions."""
-        return self.layout.package_elimination
+    def elimination_key(self) -> Hashable | None:
+        """One for all loads and positions."""
+        return self.layout, DEFLECTION
 
     @cached_property
-    def pattern(self) -> Pattern:
+    def pattern(self) -> BlockPattern:
         """Sparsity of `K + G^T diag G`."""
-        K = self.layout.stiffness.tocoo()
-        rows, cols, _, _ = self.layout.gap_products
-        return Pattern.of(np.concatenate([K.row, rows]), np.concatenate([K.col, cols]), self.layout.n_wall)
+        unknowns = Unknowns({DEFLECTION: self.layout.n_wall})
+        return BlockPattern(unknowns, [self.layout.stiffness_entries, self.layout.contact_entries])
 
     def gaps(self, x: Array) -> Array:
         """Gaps over the reference length, (m,) [1]."""
@@ -89,16 +90,16 @@ class PackageLinearization:
         return out
 
     @cached_property
-    def size(self) -> Array:
-        """What each row's residual is measured by, as in the coupled system (C4)."""
-        return wall_size(self.problem.layout, self.x)
+    def row_scale(self) -> Array:
+        """What each row's residual is compared with, as in the coupled system (C4)."""
+        return wall_scale(self.problem.layout, self.x)
 
-    def matrix(self, theta: Array, rate: float = 0.0) -> sp.csc_array:
-        """`K + G^T diag(theta) G`; nothing is stored, so `rate` adds nothing."""
+    def matrix(self, barrier_weight: Array, rate: float = 0.0) -> sp.csc_array:
+        """`K + G^T diag(barrier_weight) G`; nothing is stored, so `rate` adds nothing."""
         _, _, gap, factor = self.problem.layout.gap_products
         K = self.problem.layout.stiffness.tocoo()
-        return self.problem.pattern.assemble(np.concatenate([K.data, theta[gap] * factor]))
+        return self.problem.pattern.assemble([K.data, barrier_weight[gap] * factor])
 
-    def by_shift(self, shift: Array, rate: float = 0.0) -> Array:
+    def slack_derivative(self, change: Array, rate: float = 0.0) -> Array:
         """The residual does not depend on the gaps."""
         return np.zeros(len(self.x))

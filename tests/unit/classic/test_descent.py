@@ -11,7 +11,6 @@ from petalfoil.classic.descent import PackDescent
 from petalfoil.classic.method_options import ClassicOptions
 from petalfoil.classic.numpy_kernels import elastic_force, project
 from petalfoil.equilibrium.ascent import rest
-from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.system.coupled import CoupledProblem
 from tests.unit.classic.bearings import bearing, package
 
@@ -67,7 +66,7 @@ def test_the_bands_are_the_stiffness(kind: str) -> None:
 @pytest.mark.parametrize("momentum", [False, True])
 def test_the_package_alone_descends_to_newton_s(mount: str, momentum: bool) -> None:
     problem = package(8, 100e-6, **{"petals.mount": mount})
-    wanted = rest(problem, RunLog())
+    wanted = rest(problem)
     assert wanted is not None
     W, load = np.zeros(problem.layout.n_wall), np.zeros(problem.layout.n_wall)
     descent = PackDescent(problem, ClassicOptions(momentum=momentum))

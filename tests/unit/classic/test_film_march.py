@@ -14,7 +14,6 @@ from petalfoil.classic.kernels import MarchSettings
 from petalfoil.classic.method_options import ClassicOptions
 from petalfoil.classic.relaxation import pressure_unknowns
 from petalfoil.equilibrium.cold_start import solve_cold
-from petalfoil.equilibrium.run_log import RunLog
 from petalfoil.system.coupled import CoupledProblem
 from tests.unit.classic.bearings import KINDS, bearing
 
@@ -64,7 +63,7 @@ def test_an_explicit_step_conserves_mass(kind: str, monkeypatch: pytest.MonkeyPa
 @pytest.mark.parametrize("kind", ["2d", "half", "whole, continuous", "plain", "plain, 2d"])
 def test_the_film_alone_marches_to_newton_s_pressure(kind: str) -> None:
     problem = bearing(kind)
-    answer = solve_cold(problem, RunLog())
+    answer = solve_cold(problem)
     P, wanted = np.ones(problem.layout.balance.mesh.shape), problem.pressure(answer.x)
     film = FilmMarch(problem, ClassicOptions())
     assert film.advance(P, problem.film(answer.x), 1e-6, 2_000_000)
@@ -74,7 +73,7 @@ def test_the_film_alone_marches_to_newton_s_pressure(kind: str) -> None:
 
 def test_the_time_step_is_within_a_factor_two_of_the_largest_that_is_stable() -> None:
     problem = bearing("2d")
-    H = problem.film(solve_cold(problem, RunLog()).x)
+    H = problem.film(solve_cold(problem).x)
     settles = {
         share: FilmMarch(problem, ClassicOptions(time_step_fraction=share)).advance(np.ones(H.shape), H, 1e-6, 20_000)
         for share in (0.95, 2.2)
@@ -97,6 +96,6 @@ def test_a_film_without_ambient_nodes_has_the_gas_inventory_of_a_long_bearing() 
     H = problem.film(np.ones(problem.layout.n))
     P = np.full(H.shape, 1.3)
     assert FilmMarch(problem, ClassicOptions()).advance(P, H, 1e-8, 2_000_000)
-    inventory = problem.layout.film_rows.content
+    inventory = problem.layout.film_rows.inventory
     assert inventory is not None
     assert abs(inventory.value(P, H)) < 1e-7 * inventory.row_scale(P, H)

@@ -49,7 +49,7 @@ class Spring:
         return np.ones(1)
 
     @property
-    def rank(self) -> None:
+    def elimination_key(self) -> None:
         """The solver orders the elimination itself."""
 
     @property
@@ -84,14 +84,14 @@ class SpringLine:
         return self.x - self.strength / self.film
 
     @property
-    def size(self) -> Array:
+    def row_scale(self) -> Array:
         """A unit force."""
         return np.ones(1)
 
-    def matrix(self, theta: Array, rate: float = 0.0) -> sp.csc_array:
+    def matrix(self, barrier_weight: Array, rate: float = 0.0) -> sp.csc_array:
         """The film stiffens as the gap closes; a step in time adds a damper."""
-        return sp.csc_array([[1.0 - self.strength / self.film[0] ** 2 + theta[0] + rate]])
+        return sp.csc_array([[1.0 - self.strength / self.film[0] ** 2 + barrier_weight[0] + rate]])
 
-    def by_shift(self, shift: Array, rate: float = 0.0) -> Array:
+    def slack_derivative(self, change: Array, rate: float = 0.0) -> Array:
         """A wider gap weakens the film."""
-        return self.strength / self.film**2 * shift
+        return self.strength / self.film**2 * change

@@ -7,7 +7,7 @@ import scipy.sparse as sp
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from petalfoil.solvers.constraints import Ties, tie
+from petalfoil.solvers.constraints import ContactConstraints, constrain
 from tests.verification.shell_helpers import rows_of
 
 N = 14
@@ -35,7 +35,7 @@ def random_sets() -> list[tuple[sp.csr_array, NDArray[np.bool_]]]:
     return found
 
 
-def moves(ties: Ties) -> NDArray[np.float64]:
+def moves(ties: ContactConstraints) -> NDArray[np.float64]:
     """The motions that ties leave, one a column."""
     return np.stack([ties.spread(unit) for unit in np.eye(ties.n_free)], axis=1)
 
@@ -43,7 +43,7 @@ def moves(ties: Ties) -> NDArray[np.float64]:
 @pytest.mark.parametrize(("G", "closed"), random_sets())
 def test_against_the_dense_null_space(G: sp.csr_array, closed: NDArray[np.bool_]) -> None:
     rng = np.random.default_rng(12)
-    rows, ties = G[closed].toarray(), tie(G, closed)
+    rows, ties = G[closed].toarray(), constrain(G, closed)
     null = scipy.linalg.null_space(rows)
     Z = moves(ties)
     assert ties.determinate
@@ -63,7 +63,7 @@ def test_against_the_dense_null_space(G: sp.csr_array, closed: NDArray[np.bool_]
 
 def test_nothing_closed() -> None:
     G = rows_of(3, ([0, 1], 1.0))
-    ties = tie(G, np.zeros(2, dtype=bool))
+    ties = constrain(G, np.zeros(2, dtype=bool))
     assert ties.determinate
     assert ties.n_free == 3
     assert_allclose(ties.close(np.zeros(0)), 0.0, atol=0.0)
@@ -81,12 +81,12 @@ def test_nothing_closed() -> None:
 )
 def test_what_is_said_twice_is_not_determinate(rows: NDArray[np.float64]) -> None:
     G = sp.csr_array(rows)
-    assert not tie(G, np.ones(len(rows), dtype=bool)).determinate
-    assert tie(G, np.arange(len(rows)) > 0).determinate
+    assert not constrain(G, np.ones(len(rows), dtype=bool)).determinate
+    assert constrain(G, np.arange(len(rows)) > 0).determinate
 
 
 def test_everything_held() -> None:
-    ties = tie(rows_of(2, ([0, 1], 1.0)), np.ones(2, dtype=bool))
+    ties = constrain(rows_of(2, ([0, 1], 1.0)), np.ones(2, dtype=bool))
     assert ties.n_free == 0
     assert_allclose(ties.spread(np.zeros(0)), 0.0, atol=0.0)
     assert ties.reduce(sp.csc_array(np.eye(2))).shape == (0, 0)

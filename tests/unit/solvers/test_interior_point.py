@@ -5,19 +5,19 @@ import pytest
 import scipy.sparse as sp
 from numpy.testing import assert_allclose
 
-from petalfoil.solvers.cone import ConePoint
-from petalfoil.solvers.interior_point import InteriorOptions, Pace, Step, Watch, interior_point, recentre, room
+from petalfoil.solvers.interior_point import InteriorOptions, InteriorStep, StepHistory, Watch, interior_point, recentre
+from petalfoil.solvers.problem import PrimalDualPoint, fraction_to_boundary
 from petalfoil.solvers.sparse_lu import LinearSolver
 from tests.unit.solvers.problems import CELLS, Spring, string, string_answer
 from tests.verification.shell_helpers import ElasticProblem, cold_point
 
-Path = list[tuple[ConePoint, Step]]
+Path = list[tuple[PrimalDualPoint, InteriorStep]]
 
 
 def content(barrier: float, path: Path) -> Watch:
     """A watch that keeps what it saw."""
 
-    def watch(point: ConePoint, step: Step) -> bool:
+    def watch(point: PrimalDualPoint, step: InteriorStep) -> bool:
         path.append((point, step))
         return step.barrier < barrier and max(step.residual, step.infeasibility) < 1e-9
 
@@ -69,7 +69,7 @@ def test_without_gaps_it_is_newton() -> None:
     K = sp.csr_array([[2.0, 1.0], [1.0, 3.0]])
     problem = ElasticProblem(K, np.array([1.0, -1.0]), sp.csr_array((0, 2)), np.zeros(0), np.zeros(0))
     solver, path = LinearSolver(), Path()
-    start = ConePoint(np.zeros(2), np.zeros(0), np.zeros(0))
+    start = PrimalDualPoint(np.zeros(2), np.zeros(0), np.zeros(0))
     point, done = interior_point(problem, start, solver, InteriorOptions(), content(1.0, path))
     assert done
     assert solver.counter.factorizations == 1
@@ -79,7 +79,7 @@ def test_without_gaps_it_is_newton() -> None:
 def test_film_reads_the_slack() -> None:
     """Started where the gap is shut (x = 1.5), the film still has its slack; it ends where `x (1 - x) = c`."""
     path = Path()
-    start = ConePoint(np.array([1.5]), np.ones(1), np.ones(1))
+    start = PrimalDualPoint(np.array([1.5]), np.ones(1), np.ones(1))
     point, done = interior_point(Spring(0.1), start, LinearSolver(), InteriorOptions(), content(1e-12, path))
     assert done
     assert_allclose(point.x, 0.5 - np.sqrt(0.25 - 0.1), rtol=1e-8)
@@ -91,13 +91,13 @@ def test_film_reads_the_slack() -> None:
     ("value", "change", "expected"),
     [([1.0, 2.0], [1.0, 0.0], np.inf), ([1.0, 2.0], [-2.0, -1.0], 0.5), ([], [], np.inf), ([0.0], [-1.0], 0.0)],
 )
-def test_room(value: list[float], change: list[float], expected: float) -> None:
-    assert room(np.array(value), np.array(change)) == expected
+def test_fraction_to_the_boundary(value: list[float], change: list[float], expected: float) -> None:
+    assert fraction_to_boundary(np.array(value), np.array(change)) == expected
 
 
 def test_pace_marches_after_two_short_steps() -> None:
     options = InteriorOptions()
-    once = Pace().after(0.1, 1.0, options)
+    once = StepHistory().after(0.1, 1.0, options)
     assert (once.short, once.rate) == (1, 0.0)
     assert once.after(0.5, 1.0, options).short == 0
     twice = once.after(0.1, 1.0, options)
@@ -106,17 +106,17 @@ def test_pace_marches_after_two_short_steps() -> None:
 
 def test_pace_of_a_march() -> None:
     options = InteriorOptions()
-    march = Pace(0.1, 0, 1.0)
+    march = StepHistory(0.1, 0, 1.0)
     assert march.after(1.0, 1.0, options).rate == 1.0 / options.growth
     assert march.after(0.5, 1.0, options).rate == 1.0
     assert march.after(0.1, 1.0, options).rate == options.growth
-    assert Pace(0.1, 0, 1.0 / options.shortest_time).after(0.1, 1.0, options).rate == 1.0 / options.shortest_time
+    assert StepHistory(0.1, 0, 1.0 / options.shortest_time).after(0.1, 1.0, options).rate == 1.0 / options.shortest_time
     assert march.after(1.0, 1e-3 * options.near, options).rate == 0.0  # arrived
-    assert Pace(1.0, 0, 1.1 / options.longest_time).after(1.0, 1.0, options).rate == 0.0  # as good as no march
+    assert StepHistory(1.0, 0, 1.1 / options.longest_time).after(1.0, 1.0, options).rate == 0.0  # as good as no march
 
 
 def test_recentre_moves_only_what_ran_ahead() -> None:
-    point = ConePoint(np.zeros(3), np.array([1.0, 1.0, 1e-4]), np.array([1.0, 2.0, 1e-4]))
+    point = PrimalDualPoint(np.zeros(3), np.array([1.0, 1.0, 1e-4]), np.array([1.0, 2.0, 1e-4]))
     moved = recentre(point, np.ones(3))
     assert_allclose(moved.s[:2], point.s[:2], rtol=0.0)
     assert_allclose(moved.lam[:2], point.lam[:2], rtol=0.0)

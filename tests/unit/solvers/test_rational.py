@@ -6,7 +6,7 @@ import numpy as np
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from petalfoil.solvers.rational import PRECISION, Rational
+from petalfoil.solvers.reduced_model import PRECISION, Rational
 
 Complex = NDArray[np.complex128]
 

@@ -1,0 +1,217 @@
+"""The linearised equations on one set of active contacts, factorised, with a few bordered unknowns.
+
+`Tangent` is the factorised system with active gaps eliminated. `BorderedTangent` adds unknowns `b` that reach all over
+the problem (the journal's position): block elimination with one factorisation and a solve for each of them. It also
+follows a contact set that changes by a few gaps without a new factorisation (O4).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from petalfoil.solvers.constraints import ContactConstraints, constrain
+from petalfoil.solvers.problem import Border, Linearized
+from petalfoil.solvers.sparse_lu import Factor
+
+Array = NDArray[np.float64]
+Values = NDArray[Any]
+"""Real, or complex at a frequency."""
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+MOST_EXCHANGED = 16
+"""Gaps that may change before a factorisation is cheaper: each asks for a solve, a fortieth of one."""
+
+WORST_CONDITION = 1e12
+"""Condition of an exchange past which a factorisation is safer (openings and reactions have units of their own)."""
+
+
+@dataclass(frozen=True)
+class Tangent:
+    """`M dx = -residual + G^T dlam` with the change of the active gaps given.
+
+    Attributes
+    ----------
+    matrix : (n, n) sparse
+        `M`.
+    constraints : ContactConstraints
+        The active contacts.
+    factor : Factor
+        Of `M` over the free unknowns.
+    """
+
+    matrix: sp.csc_array
+    constraints: ContactConstraints
+    factor: Factor
+
+    def step(self, residual: Values) -> Values:
+        """Change of the unknowns (n,) against `residual` (n,), active gaps held (T1)."""
+        return self.constraints.spread(self.factor.solve(-self.constraints.gather(residual)))
+
+    def respond(self, residual: Values, gap_change: Array | None = None) -> tuple[Values, Values]:
+        """Change of the unknowns (n,) and of the held reactions (k,) against `residual`.
+
+        `gap_change` (k,) is what else changes the held gaps: the unknowns follow it (T4).
+        """
+        if gap_change is None:
+            change = self.step(residual)
+        else:
+            follow = self.constraints.close(gap_change)
+            change = follow + self.step(self.matrix @ follow + residual)
+        return change, self.constraints.reactions(self.matrix @ change + residual)
+
+
+@dataclass(frozen=True)
+class Exchange:
+    """Gaps opened and closed since the factorisation.
+
+    A gap that opens is a motion of unit opening whose reaction must vanish; a gap that closes is a unit reaction under
+    which it must not open (O4).
+
+    Attributes
+    ----------
+    opened : (a,) int array
+        Places among the held gaps of the factor.
+    added : (b,) int array
+        Numbers of the gaps that have closed.
+    rows : (b, n) sparse
+        Their derivatives.
+    changes, reactions : (n, a + b), (k, a + b) array
+        Changes of the unknowns and of the factor's reactions by a unit opening or a unit reaction of each.
+    lu : tuple
+        Factors of the conditions that openings carry no load and closed gaps stay closed.
+    """
+
+    opened: Index
+    added: Index
+    rows: sp.csr_array
+    changes: Array
+    reactions: Array
+    lu: tuple[Array, Array]
+
+    @classmethod
+    def between(cls, tangent: Tangent, G: sp.csr_array, active: Mask) -> Exchange | None:
+        """Open and close gaps of `tangent` until `active` are held; None if these do not determine the unknowns."""
+        constraints = tangent.constraints
+        opened, added = np.flatnonzero(~active[constraints.held]), np.flatnonzero(active & ~constraints.held)
+        rows, none = sp.csr_array(G[added]), np.zeros(G.shape[1])
+        columns = []
+        for place in opened:
+            unit_opening = np.zeros(constraints.G.shape[0])
+            unit_opening[place] = -1.0
+            columns.append(tangent.respond(none, unit_opening))
+        columns += [tangent.respond(-rows[[row]].toarray()[0]) for row in range(len(added))]
+        changes, reactions = (np.column_stack(part) for part in zip(*columns, strict=True))
+        conditions = np.vstack([reactions[opened], rows @ changes])
+        if not np.all(np.isfinite(conditions)) or np.linalg.cond(conditions) > WORST_CONDITION:
+            return None
+        return cls(opened, added, rows, changes, reactions, la.lu_factor(conditions))
+
+    def amend(self, change: Array, reactions: Array, gap_change: Array) -> tuple[Array, Array, Array]:
+        """Unknowns, reactions of the factor's gaps and of the gaps added, from what the factor alone gave.
+
+        `gap_change` (b,) is what else changes the gaps added.
+        """
+        violation = np.concatenate([reactions[self.opened], self.rows @ change + gap_change])
+        amounts = la.lu_solve(self.lu, -violation)
+        reactions = reactions + self.reactions @ amounts
+        reactions[self.opened] = 0.0
+        return change + self.changes @ amounts, reactions, amounts[len(self.opened) :]
+
+
+@dataclass(frozen=True)
+class BorderedTangent:
+    """A tangent with its bordered unknowns, on the contacts of its factor or on a few others.
+
+    Attributes
+    ----------
+    tangent : Tangent
+        The factorised system.
+    border : Border
+        How the bordered unknowns enter.
+    forcing : (n, d) array
+        Derivative of the equations by them, at fixed unknowns.
+    constraints : ContactConstraints
+        The contacts held now.
+    exchange : Exchange or None
+        How they differ from those of the factor.
+    units : (n, d) array
+        Change of the unknowns by a unit of each bordered unknown.
+    gradient : (d, d) array
+        Change of the rows `R x + A^T lam` by them.
+    """
+
+    tangent: Tangent
+    border: Border
+    forcing: Values
+    constraints: ContactConstraints
+    exchange: Exchange | None
+    units: Values
+    gradient: Values
+
+    @classmethod
+    def at(cls, tangent: Tangent, border: Border, linearized: Linearized) -> BorderedTangent:
+        """The tangent of equations linearised at a point."""
+        columns = [linearized.slack_derivative(column) for column in border.gap_derivative.T]
+        forcing = np.column_stack(columns) if columns else np.zeros((tangent.matrix.shape[0], 0))
+        return cls.of(tangent, border, forcing)
+
+    @classmethod
+    def of(
+        cls,
+        tangent: Tangent,
+        border: Border,
+        forcing: Values,
+        constraints: ContactConstraints | None = None,
+        exchange: Exchange | None = None,
+    ) -> BorderedTangent:
+        """Solve for a unit of each bordered unknown."""
+        bare = cls(tangent, border, forcing, constraints or tangent.constraints, exchange, forcing, np.zeros((0, 0)))
+        if not border.size:
+            return bare
+        both = [bare.respond(forcing[:, k], border.gap_derivative[:, k]) for k in range(border.size)]
+        gradient = np.column_stack([border.rows(*change) for change in both])
+        units = np.column_stack([change for change, _ in both])
+        return cls(tangent, border, forcing, bare.constraints, exchange, units, gradient)
+
+    def respond(self, residual: Values, gap_change: Array | None = None) -> tuple[Values, Values]:
+        """Change of the unknowns (n,) and of all reactions (m,) against `residual`, bordered unknowns held.
+
+        `gap_change` (m,) is what else changes the gaps.
+        """
+        held = self.tangent.constraints.held
+        change, reactions = self.tangent.respond(residual, None if gap_change is None else gap_change[held])
+        lam = np.zeros(len(held), dtype=change.dtype)
+        if self.exchange is not None:
+            added = self.exchange.added
+            moved = np.zeros(len(added)) if gap_change is None else gap_change[added]
+            change, reactions, lam[added] = self.exchange.amend(change, reactions, moved)
+        lam[held] = reactions
+        return change, lam
+
+    def serves(self, active: Mask) -> bool:
+        """Whether the gaps `active` are those held, apart from stops."""
+        held = self.constraints.held.copy()
+        held[self.constraints.stops] = active[self.constraints.stops]
+        return bool(np.array_equal(held, active))
+
+    def exchanged(self, G: sp.csr_array, active: Mask) -> BorderedTangent | None:
+        """The same factor for other active contacts; None where too many differ or they need a factor of their own."""
+        own = self.tangent.constraints
+        if len(self.constraints.stops) or np.count_nonzero(active != own.held) > MOST_EXCHANGED:
+            return None
+        constraints = constrain(G, active)
+        if not constraints.determinate:
+            return None
+        if np.array_equal(active, own.held):
+            return BorderedTangent.of(self.tangent, self.border, self.forcing, constraints)
+        exchange = Exchange.between(self.tangent, G, active)
+        if exchange is None:
+            return None
+        return BorderedTangent.of(self.tangent, self.border, self.forcing, constraints, exchange)

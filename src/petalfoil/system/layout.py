@@ -1,0 +1,180 @@
+"""What of the coupled system stays the same while speed and position change: its unknowns and its constant entries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from petalfoil.case import Case
+from petalfoil.physics.forces import node_area
+from petalfoil.physics.mass_balance import FilmBalance
+from petalfoil.solvers.problem import Border
+from petalfoil.sparsity import add_up
+from petalfoil.system.film_rows import FilmRows
+from petalfoil.system.scales import Scales
+from petalfoil.system.unknowns import DEFLECTION, PRESSURE, BlockEntries, BlockPattern, ExtraField, Unknowns
+from petalfoil.walls.base import Wall
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """What stays the same while speed and position change: mesh, places of entries, constant entries.
+
+    Attributes
+    ----------
+    case : Case
+        The bearing that was discretised.
+    wall, balance, scales
+        Its wall, the mass balance of its film, and the units of the unknowns.
+    fields : tuple of ExtraField
+        Fields beside deflection and pressure.
+    """
+
+    case: Case
+    wall: Wall
+    balance: FilmBalance
+    scales: Scales
+    fields: tuple[ExtraField, ...] = ()
+
+    @cached_property
+    def unknowns(self) -> Unknowns:
+        """Blocks of the vector of unknowns."""
+        sizes = {DEFLECTION: self.wall.n_unknown, PRESSURE: self.wall.film.n_unknown}
+        return Unknowns({**sizes, **{field.name: field.size for field in self.fields}})
+
+    @property
+    def n(self) -> int:
+        """All unknowns."""
+        return self.unknowns.n
+
+    @property
+    def n_wall(self) -> int:
+        """Deflection unknowns."""
+        return self.wall.n_unknown
+
+    @property
+    def n_position(self) -> int:
+        """Components of the journal's position: 2, or 4 where the shaft tilts."""
+        return self.wall.n_position
+
+    def ambient(self, deflection: Array) -> Array:
+        """Unknowns (n,) of a wall with `deflection` under a film at ambient pressure."""
+        initial = {field.name: field.initial for field in self.fields}
+        return self.unknowns.join({DEFLECTION: deflection, PRESSURE: 1.0, **initial})
+
+    @cached_property
+    def film_rows(self) -> FilmRows:
+        """The film's equations."""
+        return FilmRows(self.balance)
+
+    @cached_property
+    def stiffness(self) -> sp.csr_array:
+        """`K` in the units of the problem [1]."""
+        return sp.csr_array(self.wall.elasticity.stiffness * (self.scales.length / self.scales.force))
+
+    def elastic_force(self, w: Array, low_order: Array | None = None) -> Array:
+        """`K w` by its factors, differences first; (n_wall,) [1]."""
+        return self.wall.elasticity.force(w, low_order) * (self.scales.length / self.scales.force)
+
+    @cached_property
+    def stiffness_size(self) -> sp.csr_array:
+        """Magnitudes of the entries of `K` [1]."""
+        return sp.csr_array(abs(self.stiffness))
+
+    @cached_property
+    def push(self) -> sp.csr_array:
+        """`A`: nodal forces on the wall from the pressure unknowns, (n_wall, n_film) [1]."""
+        wall, unknown = self.wall.film_unknown.ravel(), self.wall.film.unknown.ravel()
+        both = (wall >= 0) & (unknown >= 0)
+        area = self.wall.load_area.ravel()[both] * self.scales.pressure / self.scales.force
+        shape = (self.n_wall, self.wall.film.n_unknown)
+        return sp.coo_array((area, (wall[both], unknown[both])), shape=shape).tocsr()
+
+    @cached_property
+    def G(self) -> sp.csr_array:
+        """Derivative of the gaps by all unknowns, (m, n) [1]."""
+        by_w = self.wall.contacts.G
+        return sp.csr_array(sp.hstack([by_w, sp.csr_array((by_w.shape[0], self.n - self.n_wall))], format="csr"))
+
+    @cached_property
+    def weight(self) -> Array:
+        """Area of each gap's node over a typical one, (m,) [1]."""
+        return self.wall.contacts.area / self.wall.node_area
+
+    @cached_property
+    def film_column(self) -> Index:
+        """Deflection unknown of every derivative by film thickness, -1 where the wall does not move."""
+        return self.wall.film_unknown.ravel()[self.film_rows.by_film.cols]
+
+    @cached_property
+    def storage_column(self) -> Index:
+        """Deflection unknown of every derivative of the stored mass by film thickness, -1 where none."""
+        return self.wall.film_unknown.ravel()[self.balance.storage_entries.cols]
+
+    @cached_property
+    def gap_products(self) -> tuple[Index, Index, Index, Array]:
+        """Entries of `G^T diag G`: rows, columns, gap, coefficient."""
+        G = self.wall.contacts.G
+        held, gap = np.diff(G.indptr), np.repeat(np.arange(G.shape[0]), np.diff(G.indptr))
+        every, first = np.arange(G.nnz), G.indptr[:-1][held == 2]  # a row holds one or two entries
+        one = np.concatenate([every, first, first + 1])
+        other = np.concatenate([every, first + 1, first])
+        rows, cols = G.indices[one].astype(np.intp), G.indices[other].astype(np.intp)
+        return rows, cols, gap[one].astype(np.intp), G.data[one] * G.data[other]
+
+    @cached_property
+    def contact_entries(self) -> BlockEntries:
+        """Places of `G^T diag G` among the deflections."""
+        rows, cols, _, _ = self.gap_products
+        return BlockEntries(DEFLECTION, DEFLECTION, rows, cols)
+
+    @cached_property
+    def stiffness_entries(self) -> BlockEntries:
+        """Places of `K` among the deflections."""
+        K = self.stiffness.tocoo()
+        return BlockEntries(DEFLECTION, DEFLECTION, K.row, K.col)
+
+    @cached_property
+    def pattern(self) -> BlockPattern:
+        """Sparsity of the tangent with every contact, the same for all states."""
+        A, by_P, by_H = self.push.tocoo(), self.film_rows.by_pressure, self.film_rows.by_film
+        held, moving, under = self.balance.storage_entries, self.film_column >= 0, self.storage_column >= 0
+        return BlockPattern(
+            self.unknowns,
+            [
+                self.stiffness_entries,
+                BlockEntries(DEFLECTION, PRESSURE, A.row, A.col),
+                BlockEntries(PRESSURE, PRESSURE, by_P.rows, by_P.cols),
+                BlockEntries(PRESSURE, DEFLECTION, by_H.rows[moving], self.film_column[moving]),
+                self.contact_entries,
+                BlockEntries(PRESSURE, PRESSURE, held.rows, held.rows),
+                BlockEntries(PRESSURE, DEFLECTION, held.rows[under], self.storage_column[under]),
+                *(entries for field in self.fields for entries in field.entries),
+            ],
+        )
+
+    @cached_property
+    def constant_entries(self) -> list[Array]:
+        """Values of the wall's own entries."""
+        return [self.stiffness.tocoo().data, -self.push.tocoo().data]
+
+    @cached_property
+    def border(self) -> Border:
+        """How the journal's position enters: gaps by position, force on the journal by pressures and reactions.
+
+        The film's force is `-sum (P - 1) n R_j dphi dz` (62) over the unit of nodal force. A gap narrows where the film
+        pushes, so that its derivative by the position gives the normals.
+        """
+        mesh, by_e = self.wall.film, self.wall.contacts.by_e
+        area = node_area(mesh, self.balance.radius) * self.scales.pressure / self.scales.force
+        numbers = np.where(mesh.unknown >= 0, mesh.unknown, mesh.n_unknown).ravel()
+        nodal = [np.broadcast_to(area, mesh.shape).ravel() * n for n in by_e[self.wall.contacts.journal].T]
+        by_P = np.array([add_up(numbers, force, mesh.n_unknown + 1)[:-1] for force in nodal])
+        return Border(by_e, by_P, self.unknowns[PRESSURE])
