@@ -10,7 +10,7 @@ import pytest
 
 from tests.docs.texts import SOURCE, tree
 
-FOLDERS = ("api", "classic", "mesh", "physics", "plot", "report", "results", "units", "walls")
+FOLDERS = ("analysis", "classic", "cli", "mesh", "physics", "plot", "report", "results", "units", "walls")
 """Folders whose maps are checked."""
 
 

@@ -1,23 +1,50 @@
 """Questions about a case. An analysis stands in the file of its name, which declares arguments, results and layout.
 
-====================  ====================================================================
-`solve.py`            one position of the journal
-`curve.py`            the load characteristic along a displacement
-`static.py`           the package at rest: preload, static characteristic, starting torque
-`balance.py`          the position of the journal under a load
-`liftoff.py`          speeds of lift-off and touchdown
-`runup.py`            from rest to speed under a load, and back
-`coefficients.py`     stiffness and damping over whirl frequency
-`stability.py`        critical mass, threshold speed, damped natural frequencies
-`orbit.py`            a rigid rotor through time
-`converge.py`         one position on finer and finer grids
-`check.py`            what follows from a case without a run
-====================  ====================================================================
+=====================  ===================================================================
+`solve.py`             one position of the journal
+`curve.py`             the load characteristic along a displacement
+`static.py`            the package at rest: preload, static characteristic, starting torque
+`balance.py`           the position of the journal under a load
+`liftoff.py`           speeds of lift-off and touchdown
+`runup.py`             from rest to speed under a load, and back
+`coefficients.py`      stiffness and damping over whirl frequency
+`stability.py`         critical mass, threshold speed, damped natural frequencies
+`orbit.py`             a rigid rotor through time
+`converge.py`          one position on finer and finer grids
+`check.py`             what follows from a case without a run
+=====================  ===================================================================
 
-How they are declared: `declaration.py`, `arguments.py`, `registry.py`, `runs.py`. What they share: `operating_point.py`
-(the equilibrium they are about), `speeds.py` and `crossings.py` (a load followed over speed), `impedance.py` and
-`threshold.py` (small motions), `motion.py` with `release.py`, `restart.py`, `trace.py` (large ones), `grid_study.py`
-with `richardson.py`, `displacements.py` and `hysteresis.py` (the journal displaced), `classic_method.py` (the paper's
-method). From a solution to a record: `evaluation.py`, `balances.py`, `extremes.py`, `fields.py`, `records.py`;
-`session.py`: threads, clock, progress.
+How they are declared:
+
+=====================  ===================================================================
+`declaration.py`       the decorator, and what follows from a declaration
+`arguments.py`         kinds of arguments with unit, range and help; those that are shared
+`registry.py`          the analyses by name
+`runs.py`              an analysis under way
+`session.py`           one BLAS thread, clock, progress
+=====================  ===================================================================
+
+What they share:
+
+=====================  ===================================================================
+`operating_point.py`   the equilibrium that an analysis is about
+`displacements.py`     the journal displaced point by point
+`hysteresis.py`        the same at rest, with friction between petals
+`speeds.py`            a load followed over speed
+`crossings.py`         speeds at which the contact fraction crosses a limit
+`impedance.py`         small motions of the journal
+`threshold.py`         the speed at which a rotor becomes unstable
+`release.py`           where a large motion begins
+`motion.py`            a large motion, step by step
+`restart.py`           a motion that goes on from a result
+`trace.py`             what a motion leaves behind
+`grid_study.py`        nested grids and error bars
+`richardson.py`        values on a sequence of grids: limit, order, error bar
+`classic_method.py`    the paper's own method
+`evaluation.py`        a solution evaluated once, as typed parts
+`extremes.py`          extremes between nodes
+`balances.py`          balances of a solution
+`fields.py`            its fields on the mesh
+`records.py`           typed parts to a record
+=====================  ===================================================================
 """

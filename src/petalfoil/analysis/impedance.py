@@ -1,4 +1,4 @@
-"""Small motions of the journal about an equilibrium: stiffness and damping at a whirl frequency."""
+"""Small motions of the journal about an equilibrium: stiffness and damping at a whirl frequency (E5)."""
 
 from __future__ import annotations
 
