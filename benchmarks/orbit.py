@@ -94,7 +94,7 @@ class Followed:
     @property
     def steps(self) -> int:
         """Number of accepted steps."""
-        return int(self.orbit.counts["steps"])
+        return self.orbit.taken
 
     @property
     def revolutions(self) -> float:
@@ -123,11 +123,12 @@ def followed(case: OrbitCase) -> Followed:
     """Compute a motion until its end or its time limit."""
     orbit = Orbit.begin(case.case(), OrbitRequest(initial="balance", revolutions=case.revolutions))
     before, last, start = orbit.run.film.factorizations, deque([orbit.start], TURN + 2), time.process_time()
-    for _ in orbit.advance():
-        assert orbit.trace.last is not None  # a step has just been made
-        last.append(orbit.trace.last)
-        if time.process_time() - start > case.seconds:
-            break
+    with one_thread():
+        for _ in orbit.advance():
+            assert orbit.trace.last is not None  # a step has just been made
+            last.append(orbit.trace.last)
+            if time.process_time() - start > case.seconds:
+                break
     seconds = time.process_time() - start
     last.pop()  # the last step of a motion may be shorter
     return Followed(case, orbit, tuple(last), orbit.run.film.factorizations - before, seconds)

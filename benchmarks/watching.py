@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
-import petalfoil.analysis.curve  # noqa: F401 - what it calls is watched
+from petalfoil.analysis import curve
 from petalfoil.solvers import contact_newton
 from petalfoil.solvers.constraints import ContactConstraints
 from petalfoil.solvers.sparse_lu import Factor, LinearSolver
@@ -22,7 +21,7 @@ PLACES: dict[str, tuple[Place, ...]] = {
     "factorisation": ((LinearSolver, "factor"),),
     "assembly": ((Linearization, "matrix"), (PackageLinearization, "matrix"), (ContactConstraints, "reduce")),
     "solves": ((Factor, "solve"),),
-    "stability": ((sys.modules["petalfoil.analysis.curve"], "leading_eigenvalue"),),
+    "stability": ((curve, "leading_eigenvalue"),),
     "contact_search": ((contact_newton, "search"),),
 }
 """Functions by the name of their share. The last two contain parts of the first three."""

@@ -3,7 +3,7 @@
 =====================  ===================================================================
 `solve.py`             one position of the journal
 `curve.py`             the load characteristic along a displacement
-`static.py`            the package at rest: preload, static characteristic, starting torque
+`static.py`            the foil pack at zero speed: preload, static characteristic, starting torque
 `balance.py`           the position of the journal under a load
 `liftoff.py`           speeds of lift-off and touchdown
 `runup.py`             from rest to speed under a load, and back

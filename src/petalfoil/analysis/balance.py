@@ -1,4 +1,4 @@
-"""`balance`: where the journal sits under a load (model, question 3)."""
+"""`balance`: the journal position under a load (model, question 3)."""
 
 from __future__ import annotations
 
@@ -60,4 +60,4 @@ def carrier(contact_fraction: float) -> CarriedBy:
     """What carries the load, in words."""
     if contact_fraction < ON_FILM:
         return CarriedBy("film")
-    return CarriedBy(f"touching: contact carries {100.0 * contact_fraction:.0f} %")
+    return CarriedBy(f"touching: solid contact carries {100.0 * contact_fraction:.0f} %")

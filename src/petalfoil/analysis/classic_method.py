@@ -36,12 +36,12 @@ def newton_only(case: Case) -> None:
     if is_classic(case):
         raise UsageError(
             'this needs model.method = "newton": the classic method has no tangent; it solves, follows curves and '
-            "finds the package at rest"
+            "finds the foil pack at zero speed"
         )
 
 
 def by_classic(problem: CoupledProblem, known: Solution | None = None) -> Solution:
-    """The equilibrium that film and package relax to, from the assembled package or from a `known` neighbour.
+    """The equilibrium that film and package relax to, from the assembled pack or from a `known` neighbour.
 
     Raises
     ------
@@ -49,12 +49,12 @@ def by_classic(problem: CoupledProblem, known: Solution | None = None) -> Soluti
         A number of steps was used up.
     """
     reached = relax(telling_run(problem), None if known is None else start_from(known))
-    way = "the assembled package" if known is None else "the neighbouring point"
+    way = "the assembled pack" if known is None else "the neighbouring point"
     return answer_of(problem, reached, f"film and package relaxed in turn from {way}, {reached.outer} times")
 
 
 def rest_by_classic(problem: CoupledProblem) -> Solution:
-    """The assembled package with its film at rest, by gradient descent.
+    """The assembled pack with its film at rest, by gradient descent.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def rest_by_classic(problem: CoupledProblem) -> Solution:
     still = problem.at(bearing_number=0.0)
     reached = assembled(telling_run(still))
     current_run().note("classic", pack_steps=reached.pack_steps)
-    return answer_of(still, reached, "assembled package at rest, by gradient descent")
+    return answer_of(still, reached, "assembled pack at zero speed, by gradient descent")
 
 
 def telling_run(problem: CoupledProblem) -> ClassicRun:

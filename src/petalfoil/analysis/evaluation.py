@@ -71,7 +71,7 @@ class Evaluation:
         return contact_fraction(self.normal_force, self.lift)
 
     def forces(self) -> Forces:
-        """Forces on the journal (J1), (J2), and the fraction that contact carries (J3)."""
+        """Forces on the journal (J1), (J2), and the fraction that solid contact carries (J3)."""
         film, radius = self.answer.problem.layout.wall.film, self.case.bearing.journal_radius
         by_film = film_force(film, radius, self.pressure - self.case.gas.ambient_pressure)
         by_contact, total = contact_force(film.theta, self.reactions), self.normal_force
@@ -94,7 +94,7 @@ class Evaluation:
         film, case = self.answer.problem.layout.wall.film, self.case
         radius, omega, z = case.bearing.journal_radius, case.operation.speed, film.axial.whole_z
         thin, high = lowest(self.film_thickness, film.phi), highest(self.pressure, film.phi)
-        thinnest = smallest_film(case, self.film_thickness, thin.value)
+        thinnest = closed_film(case, self.film_thickness, thin.value)
         torque = viscous_torque(
             film,
             radius,
@@ -136,10 +136,10 @@ class Evaluation:
 
 
 def contact_fraction(normal_force: float, lift: float) -> float:
-    """Part of what pushes on the journal that its contacts carry (J3) [1]."""
+    """Part of the normal force on the journal that solid contact carries (J3) [1]."""
     return normal_force / (normal_force + lift) if normal_force > 0.0 else 0.0
 
 
-def smallest_film(case: Case, film_thickness: Array, between_nodes: float) -> float:
+def closed_film(case: Case, film_thickness: Array, between_nodes: float) -> float:
     """Minimum film thickness [m]: between nodes, but where the journal touches the contact film thickness."""
     return max(between_nodes, min(case.surface.contact_film_thickness, float(film_thickness.min())))

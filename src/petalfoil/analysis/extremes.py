@@ -1,8 +1,8 @@
 """The extreme of a field between nodes: a parabola along the arc through the extreme node and its neighbours.
 
 Extremes taken at nodes jump from node to node as a grid is refined. With the parabola, 11 of 12 states of the paper's
-packages show their order in the smallest film (5 to 7 of 12 at nodes), and error bars of the peak pressure shrink
-tenfold.
+packages show their order in the minimum film thickness (5 to 7 of 12 at nodes), and error bars of the peak pressure
+shrink tenfold.
 """
 
 from __future__ import annotations

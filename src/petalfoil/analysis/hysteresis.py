@@ -1,4 +1,4 @@
-"""The package at rest with friction between its petals: loading, unloading, loading again."""
+"""The foil pack at zero speed with friction between its petals: loading, unloading, loading again."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Mask = NDArray[np.bool_]
 HALVINGS = 8
 """Times that a way between two points may be halved before there is no answer."""
 
-WAY = "package at rest, moved here with friction between its petals"
+WAY = "foil pack at zero speed, moved here with friction between its petals"
 """How such a state was reached."""
 
 

@@ -26,7 +26,7 @@ def sliding_at(case: Case, answer: Solution) -> SlidingContacts | None:
 
 
 def elastic(case: Case, answer: Solution) -> SmallMotion:
-    """Small motions about `answer`, if the bearing gives way there; petals with friction stick.
+    """Small motions about `answer`, if the bearing deflects there; petals with friction stick.
 
     Raises
     ------
@@ -39,7 +39,7 @@ def elastic(case: Case, answer: Solution) -> SmallMotion:
         raise ConvergenceError(
             "no coefficients: the journal is on a bottomed-out pack, its stiffness has no bound",
             history=current_run().history,
-            advice="lower the load, or ask `balance` what part of it the contacts carry",
+            advice="lower the load, or ask `balance` what part of it solid contact carries",
         )
     return motion
 

@@ -14,6 +14,7 @@ from petalfoil.analysis.operating_point import at
 from petalfoil.analysis.records import effort, geometry, record_of
 from petalfoil.analysis.release import OrbitRequest, at_rest, first_position, system_of
 from petalfoil.analysis.restart import continued, end_coordinates, end_state, instant_of
+from petalfoil.analysis.session import one_thread
 from petalfoil.analysis.trace import Trace
 from petalfoil.case import Case
 from petalfoil.dynamics.adaptive_steps import MarchOptions, march
@@ -141,7 +142,7 @@ class Orbit:
 
     @property
     def _turns(self) -> float:
-        """Turns of the shaft so far."""
+        """Revolutions of the shaft so far."""
         return float(self.trace.rows[-1]["shaft_angle"] - self.trace.rows[0]["shaft_angle"]) / TURN
 
     def record(self, status: str = "converged") -> Record:
@@ -184,7 +185,8 @@ class Orbit:
 
 def follow(case: Case, request: OrbitRequest, restart: xr.Dataset | None = None) -> Record:
     """The record of a whole motion."""
-    orbit = Orbit.begin(case, request, restart)
-    for _ in orbit.advance():
-        pass
-    return orbit.record()
+    with one_thread():
+        orbit = Orbit.begin(case, request, restart)
+        for _ in orbit.advance():
+            pass
+        return orbit.record()

@@ -1,6 +1,6 @@
 """The equilibrium that an analysis is about: at a position of the journal, or under a load.
 
-Where several equilibria exist, the answer is the one that the assembled package reaches from rest.
+Where several equilibria exist, the answer is the one that the assembled pack reaches from rest.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ def at_position(case: Case) -> OperatingPoint:
     Raises
     ------
     ConvergenceError
-        Neither a cold start nor the way up from rest found one.
+        Neither a cold start nor the continuation from zero speed found one.
     """
     problem = build_problem(case)
     found = from_nothing(problem)
@@ -188,5 +188,5 @@ def coarse(case: Case) -> Case:
 
 def ascent_text(jumps: int) -> str:
     """How the followed branch was reached."""
-    text = "followed from the assembled package at rest up to speed"
+    text = "followed from the assembled pack at zero speed up to speed"
     return text if jumps == 0 else f"{text}; the branch ended {jumps} time(s) on the way and the bearing settled anew"

@@ -23,7 +23,7 @@ Revolutions = Annotated[
     Quantity(
         unit="1",
         metavar="TURNS",
-        help="Turns of the shaft to follow; by default to the end of the ramp, else 20.",
+        help="Revolutions of the shaft to follow; by default to the end of the ramp, else 20.",
         above=0.0,
     ),
 ]

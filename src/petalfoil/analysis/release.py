@@ -36,7 +36,7 @@ class OrbitRequest:
     Attributes
     ----------
     revolutions : float or None
-        Turns of the shaft; by default what `duration` or the schedule lasts, else 20.
+        Revolutions of the shaft; by default what `duration` or the schedule lasts, else 20.
     duration : float or None
         Time [s], instead of turns.
     initial : (2,), "balance" or None
@@ -138,7 +138,7 @@ def at_rest(case: Case, system: RotorBearing, request: OrbitRequest) -> Instant:
 def released(
     system: RotorBearing, tau: float, state: tuple[Array, Array, NDArray[np.bool_]], moving: tuple[Array, Array]
 ) -> Instant:
-    """An instant from unknowns, reactions and closed gaps, position and velocity: its rates by the equations."""
+    """An instant from unknowns, reactions and active contacts, position and velocity: its rates by the equations."""
     (x, lam, closed), (e, v), rotor = state, moving, system.rotor
     problem = system.problem.at(displacement=e, bearing_number=rotor.bearing_number(tau))
     film = FilmState(problem.layout.film_rows, problem.pressure(x), problem.film(x), problem.bearing_number)

@@ -42,7 +42,7 @@ class Extrapolation:
     Attributes
     ----------
     limit : float
-        Value for vanishing cells; the finest value where no order could be observed.
+        Grid-converged value; the finest value where no order could be observed.
     order : float
         Observed order [1], as it was observed, nan where there is none.
     error : float

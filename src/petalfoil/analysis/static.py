@@ -1,4 +1,4 @@
-"""`static`: the package at rest: preload, reaction against displacement, starting torque (model, question 1)."""
+"""`static`: the foil pack at zero speed: preload, force over displacement, starting torque (model, question 1)."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def static(
     loop: Loop = False,
     progress: Progress | None = None,
 ) -> Points:
-    """Press the journal into the package at rest: preload, load, starting torque.
+    """Press the journal into the foil pack at zero speed: preload, load, starting torque.
 
     Preload and starting torque are those of the centred journal, so let the
     displacements begin at 0. With --out the file is rewritten as points
@@ -126,7 +126,7 @@ def _without_friction(cases: list[Case], progress: Progress | None) -> Iterator[
 
 
 def at_rest(case: Case, problem: CoupledProblem) -> Solution | None:
-    """The assembled package by the method of `case`; None, and why in the history, if it did not settle."""
+    """The assembled pack by the method of `case`; None, and why in the history, if it did not settle."""
     if not is_classic(case):
         return rest(problem)
     try:
@@ -137,7 +137,7 @@ def at_rest(case: Case, problem: CoupledProblem) -> Solution | None:
 
 
 def static_record(case: Case, answer: Solution, *parts: object) -> Record:
-    """The record of a package at rest: its reactions; there is no film to speak of."""
+    """The record of a foil pack at zero speed: its reactions; there is no film to speak of."""
     forces, fields = Evaluation.of(case, answer).forces(), wall_fields(case, answer)
     torque = case.surface.friction_coefficient * case.bearing.journal_radius * forces.contact_normal_force
     return record_of(

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
-from petalfoil.analysis.evaluation import contact_fraction, smallest_film
+from petalfoil.analysis.evaluation import closed_film, contact_fraction
 from petalfoil.analysis.extremes import highest, lowest
 from petalfoil.case import Case
 from petalfoil.dynamics.time_state import Instant
@@ -142,7 +142,7 @@ class Trace:
         viscous = viscous_torque(mesh, case.bearing.journal_radius, (p, h), shear, case.slip_length * ambient)
         film = FilmState(problem.layout.film_rows, P, H, self.system.rotor.bearing_number(instant.tau))
         return {
-            "min_film_thickness": smallest_film(case, h, lowest(h, mesh.phi).value),
+            "min_film_thickness": closed_film(case, h, lowest(h, mesh.phi).value),
             "peak_pressure": highest(p, mesh.phi).value,
             "contact_fraction": contact_fraction(touching, lift),
             "force_x": float(pushed[0]),

@@ -25,7 +25,7 @@ Json = Annotated[bool, typer.Option("--json", help="Print one JSON object in SI 
 def reproduce(out: Folder = Path("report"), as_json: Json = False) -> None:
     """Compute the paper's Figures 6, 7 and 8 and its claims: a page and data.
 
-    Three bearings with 6, 8 and 10 petals, flat and in space; a study of what
+    Three bearings with 6, 8 and 10 petals, 2-D and 3-D; a study of what
     the paper does not state. A few minutes on one core.
 
     Example: petalfoil reproduce --out report

@@ -17,7 +17,7 @@ class Estimate:
     values : tuple of float
         Value on each grid, coarsest first; nan on a grid without an answer.
     limit : float
-        Value for vanishing cells.
+        Grid-converged value.
     order : float
         Observed order [1]; nan where none could be observed.
     error : float

@@ -1,8 +1,8 @@
-"""What the histories of a motion tell: places once a turn, spectra of the whirl, its dominating frequency.
+"""What the histories of a motion tell: places once a turn, spectra of the whirl, its dominant frequency.
 
 The steps of a motion are not equally long. Between them the path is the cubic that has the positions and velocities of
-both ends, so that it can be read at any instant. The whirl is the complex number `x + i y`: a circle with the rotation
-has a positive frequency, one against it a negative frequency of the same size.
+both ends, so that it can be read at any instant. The whirl is the complex number `x + i y`: a circle of forward whirl
+has a positive frequency, one of backward whirl a negative frequency of the same size.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class Path:
 
     @property
     def turns(self) -> float:
-        """Turns of the shaft from start to end."""
+        """Revolutions of the shaft from start to end."""
         return float(self.angle[-1] - self.angle[0]) / TURN
 
     @property
@@ -107,7 +107,7 @@ class Spectrum:
     Attributes
     ----------
     frequency : (n,) array
-        Angular frequency, negative against the rotation, increasing [rad/s].
+        Angular frequency, negative for backward whirl, increasing [rad/s].
     amplitude : (n,) array
         Radius of the circle [m].
     resolution : float
@@ -175,7 +175,7 @@ def settled_amplitude(path: Path) -> float:
 
 
 def figures_of(time: Array, over: Mapping[str, Array]) -> dict[str, float]:
-    """Amplitude [m] and dominating frequency over the speed of a motion, from its histories."""
+    """Amplitude [m] and dominant frequency over the speed of a motion, from its histories."""
     path = Path.of(time, over)
     if len(time) < 2:
         return {"amplitude": 0.0, "dominant_whirl_ratio": math.nan}
@@ -193,7 +193,7 @@ class Waterfall:
     speed : (m,) array
         Speed of the shaft there [rad/s].
     frequency : (n,) array
-        Angular frequency, negative against the rotation [rad/s].
+        Angular frequency, negative for backward whirl [rad/s].
     amplitude : (m, n) array
         Radius of the circle of each frequency [m].
     """

@@ -82,7 +82,7 @@ class Record:
         return bool(self.scalars.get("converged", True))
 
     def reported(self) -> dict[str, Scalar]:
-        """Scalars as plain Python values; figures of a state that did not converge are NaN, its flags false."""
+        """Scalars as plain Python values; results of a state that did not converge are NaN, its flags false."""
         return {name: _plain(name, value, self.converged) for name, value in self.scalars.items()}
 
 

@@ -249,7 +249,7 @@ SCALARS: dict[str, Variable] = {
     "dominant_whirl_ratio": _answer(
         "1", "frequency of the largest circle of the whirl over the speed, negative for backward whirl", "Omega/omega"
     ),
-    "revolutions": _answer("1", "turns of the shaft", "N_rev"),
+    "revolutions": _answer("1", "revolutions of the shaft", "N_rev"),
     "steps": _run("1", "steps in time", "N_steps", DataType.INT),
     "rejected_steps": _run("1", "steps taken again shorter, for their error", "N_refused", DataType.INT),
     "failed_steps": _run("1", "steps taken again shorter, for want of an answer", "N_failed", DataType.INT),
