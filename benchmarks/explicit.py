@@ -54,7 +54,7 @@ def turn(orbit: Orbit) -> float:
     problem = placed(orbit, start)
     cells = cells_at(problem, *np.split(start.x, [problem.layout.n_wall]))
     step = NUMBERS.time_step_fraction / largest_rate(problem.pressure(start.x).reshape(-1), cells)
-    return 2.0 * math.pi / (2.0 * orbit.system.problem.clock * step)
+    return 2.0 * math.pi / (2.0 * orbit.system.problem.time_number * step)
 
 
 def costs(orbit: Orbit, engine: Engine, steps: int) -> tuple[float, float]:
@@ -164,9 +164,10 @@ class ExplicitMotion:
         self.capacity, fit = cells.capacity, exponential_fit(self.P, cells)
         dt = NUMBERS.time_step_fraction / largest_rate(self.P, cells)
         self.P += dt * inflow(self.P, cells, fit) / cells.capacity
-        step = 2.0 * self.orbit.system.problem.clock * dt
+        step = 2.0 * self.orbit.system.problem.time_number * dt
         self.tau += step
-        force = self.orbit.system.film.at(self.unknowns) + rotor.outside(self.tau)
+        by_film = self.problem.border.row_derivative @ (self.unknowns - 1.0)
+        force = by_film + rotor.outside(self.tau)
         self.v = self.v + step * np.linalg.solve(rotor.inertia * np.eye(2), force)  # no gyroscopic forces: two axes
         self.e = self.e + step * self.v
         self.problem = self.problem.at(displacement=self.e)

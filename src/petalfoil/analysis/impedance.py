@@ -45,7 +45,7 @@ def elastic(case: Case, answer: Solution) -> SmallMotion:
 
 
 def impedance(motion: SmallMotion, frequency: float, speed: float) -> tuple[Array, Array]:
-    """`K` [N/m] and `C` [N s/m] at one whirl frequency [rad/s], each (2, 2); one factorisation.
+    """`K` [N/m] and `C` [N s/m] (E5) at one whirl frequency [rad/s], each (d, d); one factorisation.
 
     At a frequency of zero, `C` is the limit of small ones.
     """

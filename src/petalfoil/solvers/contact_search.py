@@ -1,4 +1,4 @@
-"""The active contacts of the linearised equations, found exactly among the gaps in doubt.
+"""The active contacts of the linearised equations, found exactly among the gaps in doubt (T3).
 
 Changing all contacts of wrong sign at once advances a bending contact by one node a step, and may cycle. Here the
 equations are linearised once and factorised once; the gaps in doubt form a small dense complementarity problem whose
