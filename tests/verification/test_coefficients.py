@@ -140,12 +140,12 @@ def differences(answer: Solution, step: float) -> Array:
 
 @pytest.mark.parametrize(("speed", "load", "touching"), [(8000.0, 20.0, False), (800.0, 20.0, True)])
 def test_stiffness_of_petals_is_the_slope_of_equilibria(speed: float, load: float, touching: bool) -> None:
-    """Within 1e-5 of its size, with contacts of the journal closed and without; 4e-9 when this was written."""
+    """With contacts at nodes within 1e-5 of its size, contacts of the journal closed or not; 4e-9 when written."""
     answer = balanced(speed, load)
     journal = answer.problem.layout.wall.contacts.journal
     assert bool(answer.active[journal].any()) == touching
     scales = answer.problem.layout.scales
-    K, _ = impedance(SmallMotion.about(answer), 0.0, speed)
+    K, _ = impedance(SmallMotion.at_nodes(answer), 0.0, speed)
     slope = differences(answer, 1e-4) * scales.force / scales.length
     assert_allclose(K, slope, rtol=0.0, atol=1e-5 * float(np.max(np.abs(slope))))
 
@@ -161,7 +161,7 @@ def test_impedance_of_petals_solves_the_equations_linearised_by_differences() ->
     answer = operating(bearing)
     assert not answer.active[answer.problem.layout.wall.contacts.journal].any()
     nu = 0.7
-    K, C = impedance(SmallMotion.about(answer), nu * 8000.0, 8000.0)
+    K, C = impedance(SmallMotion.at_nodes(answer), nu * 8000.0, 8000.0)
     Z = by_differences(answer, nu) * answer.problem.layout.scales.force / answer.problem.layout.scales.length
     assert_allclose(K + 1j * nu * 8000.0 * C, Z, rtol=0.0, atol=1e-5 * float(np.max(np.abs(Z))))
 

@@ -145,21 +145,23 @@ def whole_operator(motion: SmallMotion, inertia: float) -> tuple[Complex, NDArra
     Unknowns: free motions `y`, position `e`, velocity `v`. With `N` the motion that keeps gaps closed when the journal
     moves, `x = S y + N e`; the force of the closed contacts on the journal is `-N^T` times what acts on the tied rows.
     """
-    problem, ties = motion.problem, motion.constraints
+    problem, contacts, ties = motion.problem, motion.contacts, motion.contacts.constraints
     scales, n = problem.layout.scales, len(ties.group)
     by_e = problem.layout.wall.contacts.by_e
     S = np.column_stack([ties.spread(unit) for unit in np.eye(ties.n_free)])
-    N = np.column_stack([ties.close(by_e[ties.held, k]) for k in (0, 1)])
+    N = np.column_stack([ties.close(contacts.gap_by_e[:, k]) for k in (0, 1)])
     push = np.zeros((2, n))
     push[:, problem.positive] = problem.border.row_derivative
     blocks = []
     for matrix, rate in ((motion.steady, 0.0), (motion.stored, 1.0)):
         full = matrix.toarray()
         by_slack = motion.linearized.slack_derivative
-        shift = [by_slack(by_e[:, k], rate) - rate * by_slack(by_e[:, k]) for k in (0, 1)]
-        forced = full @ N + np.column_stack(shift)
-        force = (0.0 if rate else push) - N.T @ full
-        offset = -N.T @ np.column_stack(shift)
+        shift = np.column_stack([by_slack(by_e[:, k], rate) - rate * by_slack(by_e[:, k]) for k in (0, 1)])
+        if not rate:
+            shift += contacts.forcing
+        forced = full @ N + shift
+        force = (0.0 if rate else push - contacts.forcing.T) - N.T @ full
+        offset = -N.T @ shift - (0.0 if rate else contacts.gradient)
         blocks.append((S.T @ full @ S, S.T @ forced, force @ S, force @ N + offset))
     m = ties.n_free
     A, B = np.zeros((m + 4, m + 4)), np.zeros((m + 4, m + 4))

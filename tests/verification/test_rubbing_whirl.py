@@ -66,8 +66,10 @@ def test_stiffness_of_stuck_petals_is_the_slope_of_equilibria_with_friction(spee
     """Within 1e-5 of its size; friction is strong and soft, so that nothing slips in a step of 1 nm."""
     rubs, answer = bearing(5.0, 5e-9 / 0.3, speed), answer_of(speed)
     assert bool(answer.active[answer.problem.layout.wall.contacts.journal].any()) == touching
-    K, _ = impedance(elastic(rubs, answer), 0.0, speed)
-    free, _ = impedance(SmallMotion.about(answer), 0.0, speed)
+    sliding = sliding_at(rubs, answer)
+    assert sliding is not None
+    K, _ = impedance(SmallMotion.at_nodes(answer, sliding.sticking(len(answer.x))), 0.0, speed)
+    free, _ = impedance(SmallMotion.at_nodes(answer), 0.0, speed)
     slope = differences(rubs, answer, 1e-4)
     assert_allclose(K, slope, rtol=0.0, atol=1e-5 * float(np.max(np.abs(slope))))
     assert K[0, 0] > 2.0 * free[0, 0]
@@ -161,7 +163,8 @@ def test_cycles_are_near_those_that_the_bearing_is_led_through(amplitude: float)
     scales, sliding = answer.problem.layout.scales, sliding_at(rubs, answer)
     assert sliding is not None
     a = amplitude / scales.length
-    balanced = FrictionCycle(sliding, SmallMotion.about(answer).respond(1e-6, LinearSolver()), a).force_gradient()[0, 0]
+    response = SmallMotion.at_nodes(answer).respond(1e-6, LinearSolver())
+    balanced = FrictionCycle(sliding, response, a).force_gradient()[0, 0]
     led = slow_cycle(rubs, answer, a)
     assert led.real == pytest.approx(balanced.real, rel=2e-2)
     assert led.imag == pytest.approx(balanced.imag, rel=1.2e-1)

@@ -35,7 +35,7 @@ def elastic(case: Case, answer: Solution) -> SmallMotion:
     """
     sliding = sliding_at(case, answer)
     motion = SmallMotion.about(answer, None if sliding is None else sliding.sticking(len(answer.x)))
-    if not motion.constraints.determinate:
+    if not motion.contacts.constraints.determinate:
         raise ConvergenceError(
             "no coefficients: the journal is on a bottomed-out pack, its stiffness has no bound",
             history=current_run().history,

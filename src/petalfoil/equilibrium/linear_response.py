@@ -3,9 +3,10 @@
 Contacts that carry load stay active, and the wall follows the journal where they touch. At whirl frequency
 `nu = Omega / omega`, in `exp(i nu tau)`:
 
-    (J + i nu S) dX = -(F_e + i nu S_e) de,     dF = F_P dP + by_e^T dlam        (E4)
+    (J + i nu S) dX = -(F_e + i nu S_e) de,     dF = F_P dP + n_e^T dlam        (E4)
 
-A motion that grows or dies out has a complex `s` in place of `i nu`. Petals that stick to each other add to `J`.
+Isolated contacts are points between nodes, whose travel adds to `J`, `F_e` and `dF` (E12), (E13). A motion that grows
+or dies out has a complex `s` in place of `i nu`. Petals that stick to each other add to `J`.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.solvers.constraints import ContactConstraints, constrain
+from petalfoil.equilibrium.travelling_contacts import TravellingContacts
+from petalfoil.solvers.problem import Border
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.solvers.tangent import BorderedTangent, Tangent
 from petalfoil.system.coupled import CoupledProblem, Linearization
@@ -40,28 +42,35 @@ class SmallMotion:
         Speed and position.
     linearized : Linearization
         The system there.
-    constraints : ContactConstraints
-        Contacts that carry load, eliminated.
+    contacts : TravellingContacts
+        Contacts that carry load.
     sticking : (n, n) sparse or None
         What friction between petals that stick adds to the tangent (E11).
     """
 
     problem: CoupledProblem
     linearized: Linearization
-    constraints: ContactConstraints
+    contacts: TravellingContacts
     sticking: sp.csc_array | None = None
 
     @classmethod
     def about(cls, solution: Solution, sticking: sp.csc_array | None = None) -> SmallMotion:
-        """Small motions about an equilibrium."""
+        """Small motions about an equilibrium, whose isolated contacts are points that travel."""
+        linearized = solution.problem.linearize(solution.x)
+        return cls(solution.problem, linearized, TravellingContacts.of(solution, linearized), sticking)
+
+    @classmethod
+    def at_nodes(cls, solution: Solution, sticking: sp.csc_array | None = None) -> SmallMotion:
+        """The derivative of the discrete equations: contacts stay at their nodes."""
         problem = solution.problem
-        return cls(problem, problem.linearize(solution.x), constrain(problem.G, solution.active), sticking)
+        return cls(problem, problem.linearize(solution.x), TravellingContacts.at_nodes(solution), sticking)
 
     @cached_property
     def steady(self) -> sp.csc_array:
-        """`J`, friction included."""
-        smooth = self.linearized.matrix(np.zeros(len(self.problem.weight)))
-        return smooth if self.sticking is None else sp.csc_array(smooth + self.sticking)
+        """`J`, travel of contacts and friction included."""
+        fixed = self.linearized.matrix(np.zeros(len(self.problem.weight)))
+        travelling = sp.csc_array(fixed + self.contacts.tangent)
+        return travelling if self.sticking is None else sp.csc_array(travelling + self.sticking)
 
     @cached_property
     def stored(self) -> sp.csc_array:
@@ -70,18 +79,24 @@ class SmallMotion:
 
     @cached_property
     def steady_forcing(self) -> Array:
-        """`F_e`, (n, n_position)."""
-        return np.column_stack([self.linearized.slack_derivative(column) for column in self._by_e.T])
+        """`F_e`, travel of contacts included, (n, n_position)."""
+        return np.asarray(self._gap_forcing(0.0) + self.contacts.forcing)
 
     @cached_property
     def stored_forcing(self) -> Array:
         """`S_e`, (n, n_position)."""
-        with_rate = np.column_stack([self.linearized.slack_derivative(column, 1.0) for column in self._by_e.T])
-        return np.asarray(with_rate - self.steady_forcing)
+        return np.asarray(self._gap_forcing(1.0) - self._gap_forcing(0.0))
 
-    @property
-    def _by_e(self) -> Array:
-        return self.problem.border.gap_derivative
+    def _gap_forcing(self, rate: float) -> Array:
+        by_e = self.problem.border.gap_derivative
+        return np.column_stack([self.linearized.slack_derivative(column, rate) for column in by_e.T])
+
+    @cached_property
+    def border(self) -> Border:
+        """How the journal's position enters: its rows read film, contacts and their travel."""
+        rows = -self.contacts.forcing.T
+        rows[:, self.problem.positive] += self.problem.border.row_derivative
+        return Border(self.contacts.gap_by_e, rows, slice(0, rows.shape[1]))
 
     @property
     def elimination_key(self) -> Hashable | None:
@@ -96,9 +111,9 @@ class SmallMotion:
         """The response to a motion in `exp(s tau)`; one factorisation."""
         matrix = sp.csc_array(self.steady + s * self.stored) if s else self.steady
         forcing = self.steady_forcing + s * self.stored_forcing if s else self.steady_forcing
-        factor = self.constraints.factor(matrix, solver, self.elimination_key)
-        tangent = Tangent(matrix, self.constraints, factor)
-        return LinearResponse(self, BorderedTangent.of(tangent, self.problem.border, forcing))
+        constraints = self.contacts.constraints
+        tangent = Tangent(matrix, constraints, constraints.factor(matrix, solver, self.elimination_key))
+        return LinearResponse(self, BorderedTangent.of(tangent, self.border, forcing))
 
 
 @dataclass(frozen=True)
@@ -119,7 +134,7 @@ class LinearResponse:
     @property
     def force_gradient(self) -> Values:
         """`dF/de` of film and contacts on the journal, (n_position, n_position), over unit of force and length [1]."""
-        return self.tangent.gradient
+        return np.asarray(self.tangent.gradient - self.motion.contacts.gradient)
 
     def forced(self, force: Values) -> tuple[Values, Values]:
         """Change of the unknowns (n,) and force on the journal held in place (n_position,), by forces (n,) on them."""

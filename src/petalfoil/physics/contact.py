@@ -23,6 +23,25 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
+class GapLines:
+    """Gaps of one kind in lines around the shaft, along which a contact point travels.
+
+    Attributes
+    ----------
+    number : (line, node) int array
+        Number of each gap.
+    phi : (node,) array
+        Local angle of the nodes, the same on all lines [rad].
+    stations : int
+        Lines of one petal, one an axial station; they follow each other.
+    """
+
+    number: NDArray[np.intp]
+    phi: Array
+    stations: int
+
+
+@dataclass(frozen=True)
 class Contacts:
     """Gaps between journal, petals and bushing: `m` gaps, `n` deflection unknowns.
 
@@ -38,6 +57,8 @@ class Contacts:
         Area of the node of each gap [m^2]. Contact pressure is reaction over area.
     journal, bushing, petals : slice
         Rows of the gaps on the journal, on the bushing and between petals.
+    lines : tuple of GapLines
+        The gaps in lines around the shaft; none where the wall has no bending stiffness.
     """
 
     G: sp.csr_array
@@ -47,6 +68,7 @@ class Contacts:
     journal: slice
     bushing: slice
     petals: slice
+    lines: tuple[GapLines, ...] = ()
 
     def gaps(self, W: Array, e: Array) -> Array:
         """Gaps at deflections `W` (n,) and displacement `e` (2,), shape (m,) [m]."""
@@ -98,7 +120,19 @@ def pack_contacts(mesh: PackMesh, free_radius: Array, sizes: dict[str, float]) -
         slice(0, n_J),
         slice(n_J, n_J + n_B),
         slice(n_J + n_B, m),
+        gap_lines(mesh),
     )
+
+
+def gap_lines(mesh: PackMesh) -> tuple[GapLines, ...]:
+    """Gaps of `pack_contacts` on the journal, on the bushing and between petals: a line per petal and station."""
+    lines, first = [], 0
+    for nodes in (mesh.exposed, mesh.on_bushing, mesh.on_neighbour):
+        phi = mesh.phi[nodes]
+        number = first + np.arange(mesh.count * len(phi) * mesh.n_z).reshape(mesh.count, len(phi), mesh.n_z)
+        lines.append(GapLines(number.transpose(0, 2, 1).reshape(-1, len(phi)), phi, mesh.n_z))
+        first += number.size
+    return tuple(lines)
 
 
 def bore_contacts(theta: Array, clearance: float, area: Array) -> Contacts:

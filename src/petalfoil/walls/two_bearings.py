@@ -14,7 +14,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.mesh.strips import FilmMesh
-from petalfoil.physics.contact import Contacts
+from petalfoil.physics.contact import Contacts, GapLines
 from petalfoil.walls.base import Wall
 from petalfoil.walls.elasticity import Elasticity
 
@@ -88,10 +88,22 @@ def paired_contacts(wall: Wall, span: float, order: Index) -> Contacts:
         sides.append(np.hstack([contacts.by_e, arm[:, None] * contacts.by_e]))
     sizes = [2 * len(np.arange(m)[rows]) for rows in (contacts.journal, contacts.bushing, contacts.petals)]
     ends = np.concatenate([[0], np.cumsum(sizes)])
+    journal, bushing, petals = (slice(int(a), int(b)) for a, b in pairwise(ends))
     return Contacts(
         sp.csr_array(twice(contacts.G)[order]),
         np.concatenate([contacts.rest, contacts.rest])[order],
         np.vstack(sides)[order],
         np.concatenate([contacts.area, contacts.area])[order],
-        *(slice(int(a), int(b)) for a, b in pairwise(ends)),
+        journal,
+        bushing,
+        petals,
+        paired_lines(contacts.lines, order),
     )
+
+
+def paired_lines(lines: tuple[GapLines, ...], order: Index) -> tuple[GapLines, ...]:
+    """The lines of both bearings, with the numbers that their gaps have in `order`."""
+    place = np.argsort(order)
+    m = len(order) // 2
+    both = ((np.vstack([place[line.number], place[line.number + m]]), line) for line in lines)
+    return tuple(GapLines(number, line.phi, line.stations) for number, line in both)

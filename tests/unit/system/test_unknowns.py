@@ -155,7 +155,7 @@ def test_every_solver_carries_a_field_along(name: str, changes: dict[str, object
     assert near is not None
     assert temperature_error(near.x, near.problem) < 1e-8
     slope = (near.problem.journal_force(near.x, near.lam) - problem.journal_force(solution.x, solution.lam)) / 1e-3
-    gradient = SmallMotion.about(solution).respond(0.0, LinearSolver()).force_gradient
+    gradient = SmallMotion.at_nodes(solution).respond(0.0, LinearSolver()).force_gradient
     assert_allclose(gradient[:, 1], slope, rtol=0.0, atol=1e-2 * np.max(np.abs(gradient)))
 
     loaded = balance_cold(problem.at(displacement=np.zeros(2)), np.array([0.0, -5.0]))
