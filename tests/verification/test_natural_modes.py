@@ -16,9 +16,11 @@ from petalfoil.analysis.impedance import elastic
 from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.stability import stability
 from petalfoil.case import Case
-from petalfoil.dynamics.critical_mass import neutral_whirl, scan
+from petalfoil.dynamics import impedance
+from petalfoil.dynamics.critical_mass import neutral_whirl, whirl_impedance
 from petalfoil.dynamics.natural_modes import PEAK, Mode, natural_modes
 from petalfoil.equilibrium.linear_response import SmallMotion
+from petalfoil.equilibrium.run_context import running
 from tests.cases import case
 
 Complex = NDArray[np.complex128]
@@ -38,8 +40,8 @@ def at(bearing: Case, load: float = 0.0) -> SmallMotion:
 def modes_of(bearing: Case, masses: Sequence[float], load: float = 0.0) -> list[list[Mode]]:
     """The modes with each mass [kg]."""
     motion = at(bearing, load)
-    scanned = scan(motion)
-    return [natural_modes(motion, mass * bearing.operation.speed**2, scanned) for mass in masses]
+    Z = whirl_impedance(motion)
+    return [natural_modes(Z, mass * bearing.operation.speed**2) for mass in masses]
 
 
 # ---------------------------------------------------------------------------------------------- plain journal
@@ -123,13 +125,31 @@ def test_without_a_mass_there_are_no_modes() -> None:
 def test_at_the_critical_mass_a_mode_neither_grows_nor_dies_out(bearing: Case, load: float) -> None:
     """Its frequency is the whirl ratio's; a little more mass lets it grow, a little less lets it die out."""
     motion = at(bearing, load)
-    threshold = neutral_whirl(motion, bearing.operation.speed)
+    threshold = neutral_whirl(whirl_impedance(motion), bearing.operation.speed)
     assert math.isfinite(threshold.mass)
     masses = [threshold.mass * by for by in (0.95, 1.0, 1.05)]
     lighter, neutral, heavier = (max((mode.s for mode in modes), key=real) for modes in modes_of(bearing, masses, load))
     assert abs(neutral.real) <= 1e-5 * threshold.ratio
     assert_allclose(neutral.imag, threshold.ratio, rtol=1e-5, atol=0.0)
     assert lighter.real < 0.0 < heavier.real
+
+
+def test_without_a_reduced_model_the_equations_give_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A model that is not good enough is not used: many factorisations, the same onset of whirl and modes."""
+    bearing = case("paper_n6", **{"model.cells_per_pitch": 16})
+    mass, found = 0.5, []
+    for largest in (impedance.MODEL_ERROR, 0.0):
+        monkeypatch.setattr(impedance, "MODEL_ERROR", largest)
+        with running() as run:
+            motion = at(bearing, 200.0)
+            Z = whirl_impedance(motion)
+            whirl = neutral_whirl(Z, bearing.operation.speed)
+            modes = natural_modes(Z, mass * bearing.operation.speed**2)
+        assert Z.reduced == (largest > 0.0)
+        assert modes
+        assert (run.probes.factorizations > 30) == (largest == 0.0)
+        found.append([whirl.mass, whirl.ratio, *(abs(mode.s) for mode in modes)])
+    assert_allclose(found[0], found[1], rtol=1e-6)
 
 
 def real(s: complex) -> float:
@@ -191,10 +211,10 @@ def test_modes_are_the_eigenvalues_of_the_whole_operator(name: str) -> None:
     """Each found mode is one, with its participation; and each one in which the rotor takes part is found."""
     bearing, load, masses = OPERATORS[name]
     motion = at(bearing, load)
-    scanned = scan(motion)
+    Z = whirl_impedance(motion)
     for mass in masses:
         inertia = mass * bearing.operation.speed**2
-        modes = natural_modes(motion, inertia, scanned)
+        modes = natural_modes(Z, inertia)
         s, share = whole_operator(motion, inertia)
         assert modes
         for mode in modes:

@@ -12,7 +12,7 @@ from petalfoil.analysis.arguments import Load, Quantity, Speed, Speeds, Values
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.declaration import Export, analysis
 from petalfoil.analysis.evaluation import Evaluation
-from petalfoil.analysis.impedance import Array, cycle_impedance, elastic, impedance, sliding_at
+from petalfoil.analysis.impedance import Array, cycle_impedance, elastic, impedances, sliding_at
 from petalfoil.analysis.operating_point import OperatingPoint, Vector, at, operating_point
 from petalfoil.analysis.records import effort, failed_record, geometry, position, record_of
 from petalfoil.analysis.runs import Points
@@ -210,7 +210,7 @@ def point(case: Case, asked: Asked, load: Vector | None) -> Record:
     found = operating_point(case, load)
     motion, sliding = elastic(case, found.answer), sliding_at(case, found.answer)
     if asked.amplitude is None or sliding is None:
-        pairs = [impedance(motion, frequency, speed) for frequency in asked.frequencies]
+        pairs = impedances(motion, asked.frequencies, speed)
     else:
         free, rubs = replace(motion, sticking=None), (sliding, asked.amplitude)
         pairs = [cycle_impedance(free, frequency, speed, rubs) for frequency in asked.frequencies]

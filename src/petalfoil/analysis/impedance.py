@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from petalfoil.case import Case
 from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
+from petalfoil.dynamics.impedance import Impedance
 from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
@@ -17,6 +18,9 @@ Array = NDArray[np.float64]
 
 SLOW = 1e-6
 """Whirl ratio that stands for zero: stiffness depends on its square."""
+
+FEW = 3
+"""Most frequencies that are solved for one by one: a reduced model costs three factorisations and its basis."""
 
 
 def sliding_at(case: Case, answer: Solution) -> SlidingContacts | None:
@@ -42,6 +46,16 @@ def elastic(case: Case, answer: Solution) -> SmallMotion:
             advice="lower the load, or ask `balance` what part of it solid contact carries",
         )
     return motion
+
+
+def impedances(motion: SmallMotion, frequencies: Array, speed: float) -> list[tuple[Array, Array]]:
+    """`K` [N/m] and `C` [N s/m] at whirl frequencies [rad/s], each (2, 2): by a reduced model where it is cheaper."""
+    if len(frequencies) <= FEW:
+        return [impedance(motion, frequency, speed) for frequency in frequencies]
+    ratios = np.maximum(frequencies / speed, SLOW)
+    whirl = Impedance.over(motion, np.sort(ratios).tolist())
+    Z = [whirl.at_ratio(nu) for nu in ratios]
+    return [(one.real, one.imag / (nu * speed)) for one, nu in zip(Z, ratios, strict=True)]
 
 
 def impedance(motion: SmallMotion, frequency: float, speed: float) -> tuple[Array, Array]:

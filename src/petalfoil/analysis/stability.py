@@ -20,7 +20,7 @@ from petalfoil.analysis.session import part
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.analysis.threshold import rotor_mass, threshold_speed
 from petalfoil.case import Case
-from petalfoil.dynamics.critical_mass import Whirl, neutral_whirl, scan
+from petalfoil.dynamics.critical_mass import Whirl, neutral_whirl, whirl_impedance
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.dynamics.natural_modes import Mode, natural_modes
 from petalfoil.equilibrium.run_context import Progress, running
@@ -124,12 +124,11 @@ def point(case: Case, load: Vector | None, mass: float | None, progress: Progres
     """
     with running(progress, "stability") as run:
         found = operating_point(case, load)
-        motion = elastic(case, found.answer)
-        scanned = scan(motion)
-        whirl = neutral_whirl(motion, case.operation.speed, scanned)
+        impedance = whirl_impedance(elastic(case, found.answer))
+        whirl = neutral_whirl(impedance, case.operation.speed)
         rotor = rotor_mass(case, load, mass)
         inertia = rotor * case.operation.speed**2
-        modes = None if math.isnan(rotor) else natural_modes(motion, inertia, scanned)
+        modes = None if math.isnan(rotor) else natural_modes(impedance, inertia)
         threshold, ended = threshold_speed(case, load, (rotor, whirl))
         parts = (Rotor(rotor, threshold), *whirl_parts(case, found, whirl, ended), effort(run.seconds))
         fields, coords = ({}, {}) if modes is None else mode_fields(modes, case.operation.speed)
@@ -177,6 +176,6 @@ def _points(cases: list[Case], loads: list[Vector], progress: Progress | None) -
 def _followed(line: SpeedLine, case: Case) -> tuple[OperatingPoint, Whirl]:
     """The balance at the case's speed and its critical mass."""
     answer = line.at(case.operation.speed)
-    whirl = neutral_whirl(elastic(case, answer), case.operation.speed)
+    whirl = neutral_whirl(whirl_impedance(elastic(case, answer)), case.operation.speed)
     known = branch(leading_eigenvalue(answer), case, 1, answer.solution_path)
     return OperatingPoint(answer, known, (AppliedLoad.of(line.load),)), whirl

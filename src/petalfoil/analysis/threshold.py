@@ -12,7 +12,7 @@ from petalfoil.analysis.impedance import elastic
 from petalfoil.analysis.operating_point import Vector, applied_load, at, operating_point
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
-from petalfoil.dynamics.critical_mass import Whirl, neutral_whirl
+from petalfoil.dynamics.critical_mass import Whirl, neutral_whirl, whirl_impedance
 from petalfoil.dynamics.rotor import GRAVITY
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.errors import ConvergenceError
@@ -80,14 +80,14 @@ def margins(case: Case, load: Vector | None, mass: float) -> Callable[[float], f
 
         def in_place(speed: float) -> float:
             answer = operating_point(at(case, speed), None).answer
-            return margin(neutral_whirl(elastic(case, answer), speed), mass)
+            return margin(neutral_whirl(whirl_impedance(elastic(case, answer)), speed), mass)
 
         return in_place
     line = SpeedLine(case, applied_load(case, load))
 
     def under_load(speed: float) -> float:
         answer = line.at(speed)
-        return margin(neutral_whirl(elastic(case, answer), speed), mass)
+        return margin(neutral_whirl(whirl_impedance(elastic(case, answer)), speed), mass)
 
     return under_load
 

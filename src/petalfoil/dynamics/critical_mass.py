@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq, linear_sum_assignment
 
+from petalfoil.dynamics.impedance import Impedance
 from petalfoil.equilibrium.linear_response import SmallMotion
-from petalfoil.equilibrium.run_context import current_run
 
 Complex = NDArray[np.complex128]
 
@@ -34,38 +34,31 @@ class Whirl:
     ratio: float
 
 
-def neutral_whirl(motion: SmallMotion, speed: float, scanned: Complex | None = None) -> Whirl:
-    """Find the smallest whirling mass about the state of `motion`; `scanned` if the impedances of `scan` are known.
+def whirl_impedance(motion: SmallMotion) -> Impedance:
+    """The impedance over the whirl ratios of `SCAN`."""
+    return Impedance.over(motion, SCAN.tolist())
+
+
+def neutral_whirl(impedance: Impedance, speed: float) -> Whirl:
+    """Find the smallest whirling mass.
 
     For a mass at the threshold the eigenvalues of `Z(i Omega)` include a real one, `m Omega^2`: the branches of
     their imaginary part are followed over whirl ratio and their zeros bracketed.
     """
     roots: list[Whirl] = []
-    values = list(np.linalg.eigvals(scan(motion) if scanned is None else scanned))
+    values = [eigenvalues(impedance, nu) for nu in SCAN]
     for k in range(len(SCAN) - 1):
         ahead = matched(values[k], values[k + 1])
         for branch in range(len(ahead)):
             if np.sign(values[k][branch].imag) != np.sign(ahead[branch].imag):
-                roots += crossing(motion, (SCAN[k], SCAN[k + 1]), values[k][branch], speed)
+                roots += crossing(impedance, (SCAN[k], SCAN[k + 1]), values[k][branch], speed)
         values[k + 1] = ahead
     return min(roots, key=lambda root: root.mass, default=Whirl(np.inf, np.nan))
 
 
-def scan(motion: SmallMotion) -> Complex:
-    """Impedances at the whirl ratios of `SCAN`, (n, d, d) [N/m]."""
-    return np.array([whirl_impedance(motion, nu) for nu in SCAN])
-
-
-def whirl_impedance(motion: SmallMotion, nu: float) -> Complex:
-    """`Z` at whirl ratio `nu`, (d, d) [N/m]; one factorisation."""
-    scales = motion.problem.layout.scales
-    gradient = motion.respond(float(nu), current_run().probe_solver).force_gradient
-    return np.asarray(-gradient * scales.force / scales.length, dtype=np.complex128)
-
-
-def eigenvalues(motion: SmallMotion, nu: float) -> Complex:
+def eigenvalues(impedance: Impedance, nu: float) -> Complex:
     """Eigenvalues of the impedance at whirl ratio `nu`, (d,) [N/m]."""
-    return np.asarray(np.linalg.eigvals(whirl_impedance(motion, nu)), dtype=np.complex128)
+    return np.asarray(np.linalg.eigvals(impedance.at_ratio(nu)), dtype=np.complex128)
 
 
 def matched(before: Complex, after: Complex) -> Complex:
@@ -74,18 +67,18 @@ def matched(before: Complex, after: Complex) -> Complex:
     return out
 
 
-def crossing(motion: SmallMotion, between: tuple[float, float], start: complex, speed: float) -> list[Whirl]:
+def crossing(impedance: Impedance, between: tuple[float, float], start: complex, speed: float) -> list[Whirl]:
     """The neutral whirl in a bracket of whirl ratios, if it belongs to a positive mass."""
     nearest = start
 
     def imaginary(nu: float) -> float:
-        values = eigenvalues(motion, nu)
+        values = eigenvalues(impedance, nu)
         return float(values[np.argmin(np.abs(values - nearest))].imag)
 
     low, high = imaginary(between[0]), imaginary(between[1])
     if np.sign(low) == np.sign(high):
         return []
     nu = float(brentq(imaginary, *between, xtol=1e-6, rtol=1e-8))
-    values = eigenvalues(motion, nu)
+    values = eigenvalues(impedance, nu)
     mass = float(values[np.argmin(np.abs(values.imag))].real) / (nu * speed) ** 2
     return [Whirl(mass, nu)] if mass > 0.0 else []

@@ -1,7 +1,7 @@
 """Damped natural motions of a rigid rotor on film and petals: `det(m s^2 + Z(s)) = 0` with complex `s` (E7).
 
-`Z` is known on the imaginary axis from the scan for the threshold. A rational function through these values (E8) gives
-all modes near the axis at once; each is then solved for on the equations themselves, a factorisation a step.
+The reduced model of the bearing makes this a small linear eigenvalue problem (E8), which gives all modes at once. Each
+is then solved for by itself.
 """
 
 from __future__ import annotations
@@ -11,19 +11,17 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as la
-from numpy.typing import NDArray
 
-from petalfoil.dynamics.critical_mass import SCAN, Complex, whirl_impedance
-from petalfoil.equilibrium.linear_response import SmallMotion
+from petalfoil.dynamics.critical_mass import SCAN, Complex
+from petalfoil.dynamics.impedance import Impedance
 from petalfoil.equilibrium.run_context import current_run
-from petalfoil.solvers.reduced_model import Rational
 
 PEAK = 1.0 / math.sqrt(2.0)
 """Damping ratio from which on a mode shows no resonance: those are not told."""
 PRECISION = 1e-9
 """Last relative step towards a mode."""
 STEPS = 12
-"""Steps after which what the rational function gave is no mode of the equations."""
+"""Steps after which a start is no mode."""
 APART = 1e-6
 """Relative distance below which two modes are one."""
 FARTHER = 1.25
@@ -54,28 +52,25 @@ class Mode:
         return -self.s.real / abs(self.s)
 
 
-def natural_modes(motion: SmallMotion, inertia: float, scanned: Complex) -> list[Mode]:
+def natural_modes(impedance: Impedance, inertia: float) -> list[Mode]:
     """Find the modes that show a resonance or grow, by frequency.
 
     Parameters
     ----------
-    motion : SmallMotion
-        Small motions about the operating point.
+    impedance : Impedance
+        The bearing about the operating point, over the whirl ratios of `critical_mass.SCAN`.
     inertia : float
         Rotor's mass times the square of the speed [N/m].
-    scanned : (n, d, d) complex array
-        Impedances of `whirl.scan` [N/m].
     """
-    ratios, values = reaching(motion, inertia, scanned)
-    points, both = np.concatenate([1j * ratios, -1j * ratios]), np.concatenate([values, values.conj()])
+    impedance, farthest = reaching(impedance, inertia)
     found: list[Mode] = []
-    for start in Rational.fit(points, both).modes(inertia):
-        if start.imag < -APART * abs(start) or abs(start) > 2.0 * ratios[-1] or not shows(start):
+    for start in impedance.free_motions(inertia):
+        if start.imag < -APART * abs(start) or abs(start) > 2.0 * farthest or not shows(start):
             continue
-        mode = polished(motion, inertia, complex(start))
+        mode = polished(impedance, inertia, complex(start))
         if mode is None:
             current_run().note("modes", outcome=f"no mode near {start:.4g}")
-        elif abs(mode.s) <= ratios[-1] and shows(mode.s) and not any(same(mode, other) for other in found):
+        elif abs(mode.s) <= farthest and shows(mode.s) and not any(same(mode, other) for other in found):
             found.append(mode)
     return sorted(found, key=lambda mode: mode.s.imag)
 
@@ -90,22 +85,22 @@ def same(one: Mode, other: Mode) -> bool:
     return abs(one.s - other.s) <= APART * abs(one.s)
 
 
-def reaching(motion: SmallMotion, inertia: float, scanned: Complex) -> tuple[NDArray[np.float64], Complex]:
-    """Whirl ratios and impedances of the scan, continued to 1.5 times where the rotor resonates at the latest."""
-    ratios, values = list(SCAN), list(scanned)
-    while ratios[-1] < 1.5 * math.sqrt(np.linalg.norm(values[-1], 2) / inertia):
+def reaching(impedance: Impedance, inertia: float) -> tuple[Impedance, float]:
+    """The impedance continued to 1.5 times the whirl ratio where the rotor resonates at the latest, and that ratio."""
+    ratios = SCAN.tolist()
+    while ratios[-1] < 1.5 * math.sqrt(np.linalg.norm(impedance.at_ratio(ratios[-1]), 2) / inertia):
         ratios.append(ratios[-1] * FARTHER)
-        values.append(whirl_impedance(motion, ratios[-1]))
-    return np.array(ratios), np.array(values)
+    if len(ratios) == len(SCAN):
+        return impedance, ratios[-1]
+    return Impedance.over(impedance.motion, ratios), ratios[-1]
 
 
-def polished(motion: SmallMotion, inertia: float, s: complex) -> Mode | None:
+def polished(impedance: Impedance, inertia: float, s: complex) -> Mode | None:
     """The mode near `s`, by successive linear problems `D v = step D' v`, `D = m s^2 + Z`; None if they do not end."""
-    scales, one = motion.problem.layout.scales, np.eye(motion.problem.layout.n_position)
+    one = np.eye(impedance.motion.problem.layout.n_position)
     for _ in range(STEPS):
-        response = motion.growing(s, current_run().probe_solver)
-        D = inertia * s**2 * one - response.force_gradient * scales.force / scales.length
-        slope = 2.0 * inertia * s * one - response.slope() * scales.force / scales.length
+        Z, dZ = impedance.with_derivative(s)
+        D, slope = inertia * s**2 * one + Z, 2.0 * inertia * s * one + dZ
         steps, left, right = la.eig(D, slope, left=True)
         k = int(np.argmin(np.abs(steps)))
         s = complex(s - steps[k])

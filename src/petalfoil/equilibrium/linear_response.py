@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.travelling_contacts import TravellingContacts
 from petalfoil.solvers.problem import Border
+from petalfoil.solvers.reduced_model import MovedSystem
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.solvers.tangent import BorderedTangent, Tangent
 from petalfoil.system.coupled import CoupledProblem, Linearization
@@ -102,6 +103,23 @@ class SmallMotion:
     def elimination_key(self) -> Hashable | None:
         """Friction joins unknowns that do not meet otherwise, and has its own orders."""
         return self.problem.elimination_key if self.sticking is None else (self.problem.layout, "sticking")
+
+    def moved_system(self, solver: LinearSolver) -> MovedSystem:
+        """The same for a reduced model, in the free unknowns `y`: `dX = basis dy + N de`; one factorisation.
+
+        `N` makes the unknowns follow the journal where it touches; the reactions' force on it is `-N^T` times the rows.
+        """
+        constraints, J, S = self.contacts.constraints, self.steady, self.stored
+        N = np.column_stack([constraints.close(column) for column in self.contacts.gap_by_e.T])
+        steady, stored = J @ N + self.steady_forcing, S @ N + self.stored_forcing
+        rows = self.border.row_derivative
+        return MovedSystem(
+            solve=constraints.factor(J, solver, self.elimination_key).solve,
+            S=constraints.reduce(S),
+            forcing=(constraints.gather(steady), constraints.gather(stored)),
+            force=(constraints.gather(rows.T - J.T @ N), constraints.gather(-(S.T @ N))),
+            direct=(rows @ N - N.T @ steady - self.contacts.gradient, -N.T @ stored),
+        )
 
     def respond(self, nu: float, solver: LinearSolver) -> LinearResponse:
         """The response at whirl ratio `nu`; one factorisation."""

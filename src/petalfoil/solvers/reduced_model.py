@@ -1,93 +1,218 @@
-"""A matrix function of `s`, known at some points, as a rational one; and the modes of a mass on it.
+"""A large linear system that is moved by few coordinates, as a small one with the same force over some frequencies.
 
-Adaptive barycentric interpolation (AAA; Nakatsukasa, Sète and Trefethen 2018), one set of weights for all entries:
+Coordinates `e` move in `exp(s tau)`, unknowns `y` follow, and a force answers:
 
-    R(s) = sum_j w_j F_j / (s - z_j)  /  sum_j w_j / (s - z_j)                       (E8)
+    (J + s S) y = -(f0 + s f1) e ,     F = (l0 + s l1)^T y + (d0 + s d1) e                              (E14)
+
+With `K = J^-1 S`, `y` lies in the block Krylov space of `J^-1 f0` and `J^-1 f1`. In an orthonormal basis `V` of it,
+
+    y = V c ,     (I + s H) c = -V^T J^-1 (f0 + s f1) e ,     H = V^T K V                               (E15)
+
+which costs one factorisation of `J`, a solve for each basis vector, and dense algebra of that size for every `s`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as la
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
+Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-MOST = 24
-"""Most support points."""
-PRECISION = 1e-8
-"""Error over the largest entry at which enough points support the function."""
+MOST = 160
+"""Most basis vectors. Bearings take 28 to 48 of them for whirl ratios up to 3, and up to 96 for ratios up to 30."""
+
+DEPENDENT = 1e-10
+"""Part of a vector outside the space, over the vector, below which it is rounding and adds nothing."""
+
+SETTLED = 1e-10
+"""Change of the force by the last block of vectors, over the largest force, below which the space is large enough."""
 
 
 @dataclass(frozen=True)
-class Rational:
-    """`R(s)` of (E8).
+class MovedSystem:
+    """(E14), `n` unknowns moved by `d` coordinates.
 
     Attributes
     ----------
-    z, w : (k,) complex array
-        Support points and their weights.
-    F : (k, d, d) complex array
-        Values there.
+    solve : callable
+        `J^-1` times vectors (n,) or (n, k).
+    S : (n, n) sparse
+        What the unknowns store.
+    forcing : pair of (n, d) array
+        `f0`, `f1`.
+    force : pair of (n, d) array
+        `l0`, `l1`.
+    direct : pair of (d, d) array
+        `d0`, `d1`.
     """
 
-    z: Complex
-    w: Complex
-    F: Complex
+    solve: Callable[[Array], Array]
+    S: sp.csc_array
+    forcing: tuple[Array, Array]
+    force: tuple[Array, Array]
+    direct: tuple[Array, Array]
 
-    @classmethod
-    def fit(cls, points: Complex, values: Complex) -> Rational:
-        """Interpolate `values` (n, d, d) at `points` (n,)."""
-        n = len(points)
-        flat = values.reshape(n, -1)
-        size, near = np.max(np.abs(flat)), np.broadcast_to(flat.mean(axis=0), flat.shape)
-        support: list[int] = []
-        weights = np.zeros(0, dtype=np.complex128)
-        while len(support) < min(MOST, n // 2):
-            error = np.max(np.abs(flat - near), axis=1)
-            if np.max(error) <= PRECISION * size:
-                break
-            support.append(int(np.argmax(error)))
-            weights, near = interpolated(points, flat, support)
-        return cls(points[support], weights, values[support])
+
+@dataclass(frozen=True)
+class ReducedModel:
+    """(E15): the system in `q` basis vectors.
+
+    Attributes
+    ----------
+    H : (q, q) array
+        `V^T K V`.
+    forcing : pair of (q, d) array
+        `V^T J^-1 f0`, `V^T J^-1 f1`.
+    force : pair of (d, q) array
+        `l0^T V`, `l1^T V`.
+    direct : pair of (d, d) array
+        `d0`, `d1`.
+    """
+
+    H: Array
+    forcing: tuple[Array, Array]
+    force: tuple[Array, Array]
+    direct: tuple[Array, Array]
+
+    @property
+    def size(self) -> int:
+        """Basis vectors."""
+        return len(self.H)
 
     def at(self, s: complex) -> Complex:
-        """`R(s)`, away from the support points, (d, d)."""
-        parts = self.w / (s - self.z)
-        out: Complex = np.tensordot(parts, self.F, axes=1) / parts.sum()
-        return out
+        """`F` by unit displacements, (d, d)."""
+        moved = self._moved(s)
+        return np.asarray(_at(self.force, s) @ moved + _at(self.direct, s), dtype=np.complex128)
+
+    def derivative(self, s: complex) -> Complex:
+        """Derivative of `at` by `s`, (d, d)."""
+        moved = self._moved(s)
+        rate = -self._solve(s, self.H @ moved + self.forcing[1])
+        return np.asarray(self.force[1] @ moved + _at(self.force, s) @ rate + self.direct[1], dtype=np.complex128)
 
     def modes(self, mass: float) -> Complex:
-        """Every `s` with `det(mass s^2 + R(s)) = 0`, unordered.
+        """Every finite `s` at which the system and a mass on each coordinate move freely, `mass s^2 e = F`; unordered.
 
-        With `x_j = v / (s - z_j)` and `u = s v` the equation is linear in `s`:
-        `s x_j = z_j x_j + v`, `s v = u`, `sum_j w_j (mass (u + z_j v + z_j^2 x_j) + F_j x_j) = 0`.
+        With `v = s e` the equations are linear in `s`, in the unknowns `c`, `e` and `v`.
         """
-        k, d = len(self.z), self.F.shape[1]
-        one, at_v, at_u = np.eye(d), k * d, (k + 1) * d
-        A, B = (np.zeros(((k + 2) * d, (k + 2) * d), dtype=np.complex128) for _ in "AB")
-        B[:at_u, :at_u] = np.eye(at_u)
-        A[:at_v, :at_v] = np.kron(np.diag(self.z), one)
-        A[:at_v, at_v:at_u] = np.kron(np.ones((k, 1)), one)
-        A[at_v:at_u, at_u:] = one
-        held = [w * (F + mass * z**2 * one) for z, w, F in zip(self.z, self.w, self.F, strict=True)]
-        A[at_u:, :at_v] = np.hstack(held)
-        A[at_u:, at_v:at_u] = mass * (self.w @ self.z) * one
-        A[at_u:, at_u:] = mass * self.w.sum() * one
-        alpha, beta = la.eigvals(A, B, homogeneous_eigvals=True)
+        q, d = self.size, len(self.direct[0])
+        one, none = np.eye(d), np.zeros((d, d))
+        steady = [
+            [np.eye(q), self.forcing[0], np.zeros((q, d))],
+            [-self.force[0], -self.direct[0], none],
+            [np.zeros((d, q)), none, -one],
+        ]
+        rates = [
+            [self.H, self.forcing[1], np.zeros((q, d))],
+            [-self.force[1], -self.direct[1], mass * one],
+            [np.zeros((d, q)), one, none],
+        ]
+        alpha, beta = la.eigvals(-np.block(steady), np.block(rates), homogeneous_eigvals=True)
         finite = np.abs(beta) > np.finfo(float).eps * np.abs(alpha)
-        out: Complex = alpha[finite] / beta[finite]
-        return out
+        return np.asarray(alpha[finite] / beta[finite], dtype=np.complex128)
+
+    def _moved(self, s: complex) -> Complex:
+        return -self._solve(s, _at(self.forcing, s))
+
+    def _solve(self, s: complex, right: NDArray[np.complexfloating]) -> Complex:
+        return np.asarray(np.linalg.solve(np.eye(self.size) + s * self.H, right), dtype=np.complex128)
 
 
-def interpolated(points: Complex, flat: Complex, support: list[int]) -> tuple[Complex, Complex]:
-    """Weights that suit all columns of `flat` (n, m) best, and what they give at all points."""
-    others = np.setdiff1d(np.arange(len(points)), support)
-    cauchy = 1.0 / (points[others, None] - points[None, support])
-    loewner = [(column[others, None] - column[None, support]) * cauchy for column in flat.T]
-    weights = la.svd(np.vstack(loewner), full_matrices=False)[2][-1].conj()
-    near = flat.copy()
-    near[others] = (cauchy * weights) @ flat[support] / (cauchy @ weights)[:, None]
-    return weights, near
+def _at(pair: tuple[Array, Array], s: complex) -> Complex:
+    return np.asarray(pair[0] + s * pair[1], dtype=np.complex128)
+
+
+def reduce_system(system: MovedSystem, points: Sequence[complex]) -> ReducedModel:
+    """The smallest block Krylov model whose force has settled at `points` (`MOST` vectors at most)."""
+    start = system.solve(np.hstack(system.forcing))
+    block, space = start.shape[1], KrylovSpace(len(start))
+    space.extend(start.T)
+    last: Complex | None = None
+    while True:
+        for _ in range(block):
+            if space.complete:
+                break
+            space.extend([system.solve(system.S @ space.next())])
+        model = projected(system, space, start)
+        now = np.array([model.at(s) for s in points])
+        settled = last is not None and np.max(np.abs(now - last)) <= SETTLED * np.max(np.abs(now))
+        if settled or space.complete:
+            return model
+        last = now
+
+
+def projected(system: MovedSystem, space: KrylovSpace, start: Array) -> ReducedModel:
+    """The model in the vectors of `space` that `K` has been applied to; `start` is `J^-1` of the forcing (n, 2 d)."""
+    V, d = space.vectors[: space.applied].T, len(system.direct[0])
+    steady, rate = V.T @ start[:, :d], V.T @ start[:, d:]
+    return ReducedModel(
+        space.H[: space.applied, : space.applied],
+        (steady, rate),
+        (system.force[0].T @ V, system.force[1].T @ V),
+        system.direct,
+    )
+
+
+class KrylovSpace:
+    """An orthonormal basis that grows by images of its own vectors under `K`, in the order in which they came.
+
+    Attributes
+    ----------
+    vectors : (k, n) array
+        The basis.
+    H : (k, k) array
+        Their products with `K` times them, as far as it has been applied.
+    applied : int
+        Vectors that `K` has been applied to.
+    """
+
+    def __init__(self, n: int) -> None:
+        self.most = min(MOST, n)
+        self._vectors, self._H = np.zeros((self.most, n)), np.zeros((self.most, self.most))
+        self.count = self.applied = 0
+
+    @property
+    def vectors(self) -> Array:
+        """The basis, (count, n)."""
+        basis: Array = self._vectors[: self.count]
+        return basis
+
+    @property
+    def H(self) -> Array:
+        """Products of the basis with `K` times it, (count, count)."""
+        products: Array = self._H[: self.count, : self.count]
+        return products
+
+    @property
+    def complete(self) -> bool:
+        """`K` has been applied to all vectors: they span all that can be reached, or all that may be kept."""
+        return self.applied == self.count
+
+    def next(self) -> Array:
+        """The first vector that `K` has not been applied to; its image is the next to extend the space."""
+        self.applied += 1
+        vector: Array = self.vectors[self.applied - 1]
+        return vector
+
+    def extend(self, images: Sequence[Array] | Array) -> None:
+        """Add what vectors (n,) have outside the space."""
+        for image in images:
+            rest, whole = image, float(np.linalg.norm(image))
+            for _ in range(2):  # Gram-Schmidt, again for what rounding left
+                inside = self.vectors @ rest
+                rest = rest - self.vectors.T @ inside
+                if self.applied:
+                    self._H[: self.count, self.applied - 1] += inside
+            size = float(np.linalg.norm(rest))
+            if size <= DEPENDENT * whole or self.count == self.most:
+                continue
+            self._vectors[self.count] = rest / size
+            if self.applied:
+                self._H[self.count, self.applied - 1] = size
+            self.count += 1

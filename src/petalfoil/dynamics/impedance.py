@@ -1,0 +1,90 @@
+"""Impedance `Z(s)` of the bearing about an equilibrium, `dF = -Z de`, from a reduced model of the equations.
+
+The model is compared with the factorised equations at two whirl ratios. One that misses more than `MODEL_ERROR` is not
+used: then every `Z(s)` costs a factorisation. Error and size are in the run log.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.equilibrium.linear_response import LinearResponse, SmallMotion
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.solvers.reduced_model import ReducedModel, reduce_system
+
+Complex = NDArray[np.complex128]
+
+MODEL_ERROR = 1e-8
+"""Largest error of a reduced model that is used, over the largest entry of the impedance."""
+
+
+@dataclass(frozen=True)
+class Impedance:
+    """`Z` by the rate of change `s` per radian of rotation.
+
+    Attributes
+    ----------
+    motion : SmallMotion
+        Small motions about the equilibrium.
+    model : ReducedModel
+        Their reduced model.
+    error : float
+        Largest error of the model, over the largest entry of the impedance [1].
+    """
+
+    motion: SmallMotion
+    model: ReducedModel
+    error: float
+
+    @classmethod
+    def over(cls, motion: SmallMotion, ratios: Sequence[float]) -> Impedance:
+        """For whirl `ratios`, checked at the first and the last; one real factorisation and two complex ones."""
+        model = reduce_system(motion.moved_system(current_run().probe_solver), [1j * nu for nu in ratios])
+        error = max(model_error(motion, model, 1j * nu) for nu in (ratios[0], ratios[-1]))
+        current_run().note("reduced model", vectors=model.size, error=error)
+        return cls(motion, model, error)
+
+    @property
+    def reduced(self) -> bool:
+        """Whether the model is good enough to be used."""
+        return self.error <= MODEL_ERROR
+
+    def at(self, s: complex) -> Complex:
+        """`Z`, (d, d) [N/m]."""
+        gradient = self.model.at(s) if self.reduced else factorised(self.motion, s).force_gradient
+        return self._si(gradient)
+
+    def at_ratio(self, nu: float) -> Complex:
+        """`Z` at whirl ratio `nu`, (d, d) [N/m]."""
+        return self.at(1j * nu)
+
+    def with_derivative(self, s: complex) -> tuple[Complex, Complex]:
+        """`Z` and its derivative by `s`, (d, d) [N/m]."""
+        if self.reduced:
+            return self._si(self.model.at(s)), self._si(self.model.derivative(s))
+        response = factorised(self.motion, s)
+        return self._si(response.force_gradient), self._si(response.slope())
+
+    def free_motions(self, inertia: float) -> Complex:
+        """Every `s` of the model at which `inertia` [N/m] moves freely on the bearing, unordered."""
+        scales = self.motion.problem.layout.scales
+        return self.model.modes(inertia * scales.length / scales.force)
+
+    def _si(self, gradient: Complex) -> Complex:
+        scales = self.motion.problem.layout.scales
+        return np.asarray(-gradient * scales.force / scales.length, dtype=np.complex128)
+
+
+def factorised(motion: SmallMotion, s: complex) -> LinearResponse:
+    """The response from the equations themselves; one factorisation."""
+    return motion.growing(s, current_run().probe_solver)
+
+
+def model_error(motion: SmallMotion, model: ReducedModel, s: complex) -> float:
+    """Error of the force gradient at `s` over its largest entry; one factorisation."""
+    exact = factorised(motion, s).force_gradient
+    return float(np.max(np.abs(model.at(s) - exact)) / np.max(np.abs(exact)))
