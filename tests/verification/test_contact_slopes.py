@@ -182,7 +182,7 @@ def walk(bearing: Case, steps: int, step: float) -> list[Solution]:
 def test_stiffness_is_smooth_along_a_sweep() -> None:
     """In steps of 0.1 um the stiffness of points strays by 0.1 % from a smooth curve, that of nodes by per cents."""
     bearing = BEARINGS["turbocharger"].replace(**{"model.cells_per_pitch": 64})
-    found, speed = walk(bearing, 60, 0.1e-6), bearing.operation.speed
+    found, speed = walk(bearing, 40, 0.1e-6), bearing.operation.speed
     noise = []
     for kind in (SmallMotion.about, SmallMotion.at_nodes):
         with running():
