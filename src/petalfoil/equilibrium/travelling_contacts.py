@@ -64,6 +64,10 @@ class TravellingContacts:
         points = ContactPoints.of(contacts, problem.gaps(solution.x), solution.lam, active)
         matrix = linearized.matrix(np.zeros(len(active)))
         compliance = turning_compliance(problem.G, matrix, points, problem.elimination_key)
+        at_points = float(solution.lam[active & ~points.at_nodes].sum() / max(solution.lam.sum(), 1e-300))
+        current_run().note(
+            "contact points", points=len(compliance), nodes=int(points.at_nodes.sum()), carried=at_points
+        )
         return travelling_contacts(problem.G, contacts.by_e, points.placed(compliance))
 
     @classmethod

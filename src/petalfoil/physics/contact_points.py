@@ -1,7 +1,7 @@
 """Contact at isolated points, which lie between nodes and travel (K5)-(K9).
 
 Petals mostly touch at isolated points (in 3-D: one at each axial station). In the discrete equilibrium such a point is
-one closed node, or two while it passes from one to the next. One closed node is a pin and two are a clamp: a tangent
+one active node, or two while it passes from one to the next. One active node is a pin and two are a clamp: a tangent
 with contacts at nodes alternates between two stiffnesses on every grid. Here each becomes a point again, with the gap
 `p`, its slope and its curvature interpolated from the nodes:
 
@@ -10,7 +10,7 @@ with contacts at nodes alternates between two stiffnesses on every grid. Here ea
     phi_c = a (minimum of the gap) + (1 - a) (centroid of the reactions)                               (K7)
     a = 1 / (1 + C lam / p'') ,   C the turn of the gap there by a unit moment                         (K8)
 
-Longer runs of closed nodes are stretches along which petals lie on each other. They stay at their nodes, and so do
+Longer runs of active nodes are stretches along which petals lie on each other. They stay at their nodes, and so do
 contacts at the ends of a petal, which do not travel.
 """
 
@@ -30,7 +30,7 @@ Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
 POINT_NODES = 2
-"""Most neighbouring closed nodes of one contact point: it lies between them."""
+"""Most neighbouring active nodes of one contact point: it lies between them."""
 
 MARGIN = 2
 """Nodes between a contact point and the end of its line: the kink of the curvature is read that far on both sides."""
@@ -48,7 +48,7 @@ class ContactPoints:
     groups : tuple of PointsOnLines
         The points, kind by kind.
     at_nodes : (m,) bool array
-        Closed gaps that belong to no point.
+        Active contacts that belong to no point.
     """
 
     groups: tuple[PointsOnLines, ...]
@@ -56,7 +56,7 @@ class ContactPoints:
 
     @classmethod
     def of(cls, contacts: Contacts, gaps: Array, lam: Array, active: Mask) -> ContactPoints:
-        """Those of an equilibrium with the closed gaps `active`, from gaps and reactions at the nodes, all (m,)."""
+        """Those of an equilibrium with the contacts `active`, from gaps and reactions at the nodes, all (m,)."""
         groups = tuple(PointsOnLines.of(lines, gaps, lam, active) for lines in contacts.lines)
         at_nodes = active.copy()
         for group in groups:
@@ -110,7 +110,7 @@ class PointsOnLines:
     gaps, lam : (m,) array
         All gaps and reactions.
     line, first, last : (k,) int array
-        Line, first and last closed node of each point.
+        Line, first and last active node of each point.
     weight : (k,) array
         Weight `a` of the minimum of the gap in the position.
     """
@@ -125,7 +125,7 @@ class PointsOnLines:
 
     @classmethod
     def of(cls, lines: GapLines, gaps: Array, lam: Array, active: Mask) -> PointsOnLines:
-        """Those of an equilibrium: short runs of closed nodes away from the ends, where the gap curves upward."""
+        """Those of an equilibrium: short runs of active nodes away from the ends, where the gap curves upward."""
         closed = np.pad(active[lines.number], ((0, 0), (1, 1)))
         line, first = np.nonzero(closed[:, 1:-1] & ~closed[:, :-2])
         last = np.nonzero(closed[:, 1:-1] & ~closed[:, 2:])[1]
@@ -157,8 +157,8 @@ class PointsOnLines:
     def position(self) -> Array:
         """Angle of each point (K7), (k,) [rad].
 
-        While one node is closed the reaction stays on it, and the minimum passes from the middle of one cell to that of
-        the next. While two are closed the minimum stays between them, and the centroid of the reactions passes from one
+        While one node is active the reaction stays on it, and the minimum passes from the middle of one cell to that of
+        the next. While two are active the minimum stays between them, and the centroid of the reactions passes from one
         to the other. The two phases last as `a` to `1 - a` (K8), so that the mean with these weights moves evenly.
         """
         phi, first, last = self.lines.phi, self.first, self.last
@@ -209,7 +209,7 @@ class PointsOnLines:
 
     @cached_property
     def kink(self) -> Array:
-        """Change of the derivative of `p''` across the closed nodes, which their reactions make, (k,)."""
+        """Change of the derivative of `p''` across the active nodes, which their reactions make, (k,)."""
         phi, first, last = self.lines.phi, self.first, self.last
         before, at_first, at_last, after = (self._differences(node)[1] for node in (first - 1, first, last, last + 1))
         rise, fall = (

@@ -43,7 +43,7 @@ def test_slope_of_a_cubic_is_exact() -> None:
 
 
 def test_a_parabola_has_its_curvature_and_minimum() -> None:
-    """One closed node; the weight of the minimum is 1 where the gap turns at will."""
+    """One active node; the weight of the minimum is 1 where the gap turns at will."""
     bottom = UNEVEN[5] + 0.01
     gaps = 1.5 * (UNEVEN - bottom) ** 2
     found = points(UNEVEN, gaps, {5: 2.0})
@@ -68,7 +68,7 @@ def test_two_closed_nodes_are_a_point_between_them() -> None:
 
 
 def test_the_position_does_not_jump_when_a_second_node_closes() -> None:
-    """Where the neighbour's gap vanishes, one closed node and two with a reaction of zero put the point alike."""
+    """Where the neighbour's gap vanishes, one active node and two with a reaction of zero put the point alike."""
     phi = np.linspace(0.0, 1.0, N)
     gaps = (phi - phi[5]) * (phi - phi[6])
     for compliance in (0.1, 1.0, 10.0):
