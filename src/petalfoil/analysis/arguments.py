@@ -111,16 +111,24 @@ class Quantity(Measured):
 
 @dataclass(frozen=True, kw_only=True)
 class Values(Measured):
-    """Several quantities: a list, a range as text, or a single one."""
+    """Several quantities: a list, a range as text, or a single one.
+
+    Attributes
+    ----------
+    whirl : bool
+        They are whirl frequencies, which may be given in Hz.
+    """
+
+    whirl: bool = False
 
     def read(self, given: Any) -> list[float]:
         """The quantities [unit]."""
         if isinstance(given, str):
-            return [self.checked(value, given) for value in parse_range(given, self.unit)]
+            return [self.checked(value, given) for value in parse_range(given, self.unit, whirl=self.whirl)]
         entries = given if _is_sequence(given) else [given]
         if len(entries) == 0:
             raise UsageError("give at least one value")
-        return [self.checked(parse_quantity(entry, self.unit), entry) for entry in entries]
+        return [self.checked(parse_quantity(entry, self.unit, whirl=self.whirl), entry) for entry in entries]
 
     def text(self, value: Any) -> str:
         """The values with their unit."""

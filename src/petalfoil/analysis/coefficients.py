@@ -33,7 +33,8 @@ Frequencies = Annotated[
         unit="rad/s",
         option="frequency",
         metavar="LIST",
-        help='Whirl frequencies: "4000 rad/s, 8000 rad/s", or "0 rad/s : 9000 rad/s : 10"; by default the speed.',
+        help='Whirl frequencies: "600 Hz, 1200 Hz", or "0 Hz : 1500 Hz : 11"; by default the speed.',
+        whirl=True,
         at_least=0.0,
     ),
 ]
