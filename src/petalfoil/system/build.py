@@ -26,6 +26,7 @@ def build_pair(case: Case) -> CoupledProblem:
     if case.rotor is None or case.rotor.span is None:
         raise ValueError("this rotor runs in one bearing")
     whole = case.replace(**{"model.symmetry": False})
+    check_memory(whole, bearings=2)
     wall = paired(build_wall(whole), case.rotor.span)
     slopes = np.zeros(wall.n_position - len(case.operation.eccentricity))
     return discretised(whole, wall, np.append(case.operation.eccentricity, slopes))
