@@ -74,7 +74,7 @@ def petalfoil(
     short table or, with --json, one JSON object in SI units.
 
     Exit codes: 0 done, 2 bad case or bad usage, 3 no converged answer,
-    130 interrupted.
+    130 interrupted, 143 terminated, 129 hung up.
 
     Example: petalfoil solve case.toml --speed "8000 rad/s" --plot petals.png
     """

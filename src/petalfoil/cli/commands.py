@@ -72,8 +72,8 @@ def call(analysis: Analysis, given: dict[str, Any]) -> None:
         case = Case.load(path)
         with bar(analysis.verb) as report:
             run = analysis.start(case, values, report)
-            answer = follow(analysis, run, Autosave(out), report)
-        outputs.deliver(answer)
+            answer, stopped = follow(analysis, run, Autosave(out), report)
+        outputs.deliver(answer, stopped=stopped)
 
 
 def option_of(name: str, argument: Argument) -> str:

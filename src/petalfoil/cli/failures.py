@@ -13,12 +13,12 @@ from contextlib import contextmanager
 import typer
 
 from petalfoil import __version__
+from petalfoil.cli.signals import exit_code_of, stopping_in_order
 from petalfoil.cli.streams import emit, say, silence
 from petalfoil.errors import ConvergenceError, PetalfoilError
 
 FAULT = 1
 NOT_CONVERGED = 3
-INTERRUPTED = 130  # 128 + SIGINT, as shells have it
 READER_GONE = 141  # 128 + SIGPIPE
 
 
@@ -38,13 +38,14 @@ def handled(as_json: bool = False) -> Iterator[None]:
     """
     try:
         try:
-            yield
+            with stopping_in_order():
+                yield
         except PetalfoilError as error:
             _explain(error, as_json)
             raise typer.Exit(error.exit_code) from error
-        except KeyboardInterrupt as error:
+        except KeyboardInterrupt as interrupt:
             say("interrupted: nothing was finished")
-            raise typer.Exit(INTERRUPTED) from error
+            raise typer.Exit(exit_code_of(interrupt)) from interrupt
         except (typer.Exit, BrokenPipeError):
             raise
         except Exception as error:

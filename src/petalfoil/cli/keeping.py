@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from petalfoil.cli.signals import exit_code_of
 from petalfoil.cli.streams import say
 from petalfoil.errors import StoreError
 
@@ -20,7 +21,7 @@ PERIOD = 2.0  # [s] between rewrites: a fast series is not slowed by its own fil
 MAX_SHARE = 0.1  # of the time goes into rewriting: the file grows with the series, and is rewritten whole
 
 
-def follow(analysis: Analysis, run: Run, autosave: Autosave, report: Report) -> Answer:
+def follow(analysis: Analysis, run: Run, autosave: Autosave, report: Report) -> tuple[Answer, int]:
     """Compute until the end.
 
     Parameters
@@ -36,8 +37,8 @@ def follow(analysis: Analysis, run: Run, autosave: Autosave, report: Report) -> 
 
     Returns
     -------
-    Answer
-        The whole answer; or, when the user interrupted, what was finished.
+    tuple of (Answer, int)
+        The whole answer and 0; or, when the run was interrupted, what was finished and the exit code.
 
     Raises
     ------
@@ -48,16 +49,16 @@ def follow(analysis: Analysis, run: Run, autosave: Autosave, report: Report) -> 
         for _ in analysis.advance(run, report):
             if run.finished():
                 autosave.offer(lambda: analysis.answer(run, "not finished"))
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as interrupt:
         finished = run.finished()
         if not finished:
             raise
         say(f"interrupted: {finished} and kept")
-        return analysis.answer(run, "interrupted")
+        return analysis.answer(run, "interrupted"), exit_code_of(interrupt)
     except Exception:  # the run is lost, what was finished need not be
         _keep(analysis, run, autosave)
         raise
-    return analysis.answer(run)
+    return analysis.answer(run), 0
 
 
 def _keep(analysis: Analysis, run: Run, autosave: Autosave) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Self, TypeAlias
 
 import typer
 
-from petalfoil.cli.failures import INTERRUPTED, NOT_CONVERGED
+from petalfoil.cli.failures import NOT_CONVERGED
 from petalfoil.cli.streams import emit, say
 from petalfoil.errors import UsageError
 
@@ -92,7 +92,7 @@ class Outputs:
             _check(export.path, export.option, export.suffixes)
         return cls(as_json=as_json, out=out, plot=plot, exports=exports)
 
-    def deliver(self, answer: Answer, dataset: xr.Dataset | None = None) -> None:
+    def deliver(self, answer: Answer, dataset: xr.Dataset | None = None, *, stopped: int = 0) -> None:
         """Write the files, print the answer, and say what did not converge.
 
         Parameters
@@ -101,6 +101,8 @@ class Outputs:
             What was computed.
         dataset : xarray.Dataset, optional
             The same as labelled data, where it is at hand.
+        stopped : int
+            Exit code of a run that was interrupted, else 0.
 
         Raises
         ------
@@ -114,8 +116,8 @@ class Outputs:
         failures = answer.failures()
         for line in (*failures, *(remark for record in answer.records for remark in record.remarks)):
             say(line)
-        if answer.interrupted:
-            raise typer.Exit(INTERRUPTED)
+        if stopped:
+            raise typer.Exit(stopped)
         if failures or any(record.errors == {} for record in answer.records):
             raise typer.Exit(NOT_CONVERGED)
 

@@ -1,4 +1,7 @@
-"""The two doors to the outside: the answer to standard output, everything else to standard error."""
+"""The two doors to the outside: the answer to standard output, everything else to standard error.
+
+What is said of a run may quote titles, keys and file names of strangers: control characters are shown by their codes.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ from io import TextIOWrapper, UnsupportedOperation
 from typing import TextIO
 
 from petalfoil.errors import StoreError
+from petalfoil.text import for_terminal
 
 
 def emit(text: str) -> None:
@@ -32,9 +36,20 @@ def emit(text: str) -> None:
 
 
 def say(text: str) -> None:
-    """Write one line about the run to standard error."""
-    sys.stderr.write(text + "\n")
-    sys.stderr.flush()
+    """Write one line about the run to standard error; to a terminal that is gone, nothing.
+
+    Raises
+    ------
+    BrokenPipeError
+        The reader went away.
+    """
+    try:
+        sys.stderr.write(for_terminal(text) + "\n")
+        sys.stderr.flush()
+    except BrokenPipeError:
+        raise
+    except OSError:  # the terminal was closed: nobody reads any more, and files are still to be written
+        silence(sys.stderr)
 
 
 def accept_any_text() -> None:

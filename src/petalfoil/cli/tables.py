@@ -16,6 +16,7 @@ from petalfoil.results.layout import Answer, Cell, Layout, Point, Series
 from petalfoil.results.record import Record
 from petalfoil.results.study import GridStudy, grid_text
 from petalfoil.results.summary import ABSENT, cell, in_order, number, rows, with_bar
+from petalfoil.text import for_terminal
 
 PIPE_WIDTH = 120  # where no terminal says how wide it is: no column of a series is cut off
 
@@ -36,7 +37,8 @@ def render(answer: Answer) -> str:
     width = None if sys.stdout.isatty() else PIPE_WIDTH
     console = Console(width=width, markup=False, highlight=False, emoji=False)
     with console.capture() as capture:
-        console.print(f"{answer.verb}: {answer.title}" if answer.title else answer.verb, style="bold")
+        heading = f"{answer.verb}: {answer.title}" if answer.title else answer.verb
+        console.print(for_terminal(heading), style="bold")
         for table in _tables(answer):
             console.print(table)
     return "\n".join(line.rstrip() for line in capture.get().rstrip().splitlines()) + "\n"
@@ -63,7 +65,7 @@ def _rows(lines: Iterable[tuple[str, ...]]) -> Table:
     for line in lines:
         while len(table.columns) < len(line):
             table.add_column(justify="right" if len(table.columns) < len(line) - 1 else "left")
-        table.add_row(*line)
+        _add(table, *line)
     return table
 
 
@@ -89,7 +91,7 @@ def _study(records: Sequence[Record], found: Sequence[Estimate]) -> Table:
         estimate, row = estimates[name], cell(name, 0.0)
         (*values, limit), bar = with_bar(name, [*estimate.values, estimate.limit], estimate.error)
         order = ABSENT if math.isnan(estimate.order) else f"{estimate.order:.2f}"
-        table.add_row(row.label.strip(), row.unit, *values, order, limit, f"± {bar}", estimate.trust)
+        _add(table, row.label.strip(), row.unit, *values, order, limit, f"± {bar}", estimate.trust)
     return table
 
 
@@ -101,7 +103,7 @@ def _series(layout: Series, records: Sequence[Record]) -> Table:
     table = _headed([("point", "right"), *columns, ("", "left")])
     for position, (point, record) in enumerate(zip(points, records, strict=True), start=1):
         values = [cell(name, point.get(name, math.nan)).value for name in names]
-        table.add_row(str(position), *values, _remark(record))
+        _add(table, str(position), *values, _remark(record))
     return table
 
 
@@ -119,7 +121,7 @@ def _grids(layout: Grid, records: Sequence[Record]) -> Iterator[Table]:
         table = _headed([("load\nN", "right"), *speeds])
         table.title, table.title_justify, table.title_style = title, "left", ""
         for load, line in zip(layout.loads(records), layout.over(records, name), strict=True):
-            table.add_row(number(load), *(number(math.nan if value is None else float(value)) for value in line))
+            _add(table, number(load), *(number(math.nan if value is None else float(value)) for value in line))
         yield table
 
 
@@ -130,9 +132,9 @@ def _arrays(layout: Layout, records: Sequence[Record]) -> Table:
     table = _headed([*((heading, "right") for heading in layout.table.columns), ("", "left")])
     for position, record in enumerate(records, start=1):
         for line in layout.table.lines(record):
-            table.add_row(*map(_text, line), "")
+            _add(table, *map(_text, line), "")
         if not record.converged:
-            table.add_row(*[""] * len(layout.table.columns), f"{layout.place(position, record)} failed")
+            _add(table, *[""] * len(layout.table.columns), f"{layout.place(position, record)} failed")
     return table
 
 
@@ -141,6 +143,11 @@ def _headed(columns: Iterable[tuple[str, str]]) -> Table:
     for heading, side in columns:
         table.add_column(heading, justify="right" if side == "right" else "left")
     return table
+
+
+def _add(table: Table, *values: str) -> None:
+    """Add a line; a status of a foreign file may hold anything."""
+    table.add_row(*map(for_terminal, values))
 
 
 def _text(value: Cell) -> str:

@@ -32,6 +32,7 @@ from petalfoil.plot.section import Shades, Stretch, default_scale, draw_film_pre
 from petalfoil.plot.views import array, journal_surface, mid_plane, number
 from petalfoil.results.atomic import replacing
 from petalfoil.results.motion import TURN, Path
+from petalfoil.text import for_html
 
 FORMS = (".html", ".gif")
 DPI = 80
@@ -253,7 +254,7 @@ def _page(title: str, pictures: list[Image.Image]) -> str:
     """The page with its pictures and its player inside."""
     shell = files("petalfoil.plot").joinpath("player.html").read_text(encoding="utf-8")
     inline = json.dumps([_inline(picture) for picture in pictures])
-    inside = {"TITLE": labels.page_text(title) or "petalfoil", "DELAY": str(DELAY), "FRAMES": inline}
+    inside = {"TITLE": for_html(title) or "petalfoil", "DELAY": str(DELAY), "FRAMES": inline}
     # One pass over the shell: a title that looks like a placeholder is text, not the next one to be filled.
     return re.sub("@([A-Z]+)@", lambda mark: inside[mark[1]], shell)
 

@@ -7,10 +7,11 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from petalfoil.errors import UsageError
-from petalfoil.plot import labels, style
+from petalfoil.plot import style
 from petalfoil.plot.labels import QUANTITIES, Quantity, quantity
 from petalfoil.plot.views import Floats, array, one_point, unconverged
 from petalfoil.results.schema import COORDINATES, SCALARS, Role
+from petalfoil.text import for_terminal
 
 _MOST_LINES = 24
 """Quantities that one table of a point has space for."""
@@ -166,4 +167,4 @@ def _written(shown: Quantity, value: float) -> str:
 
 
 def _analysis_fact(ds: xr.Dataset) -> str:
-    return labels.printable(str(ds.attrs.get("analysis", "")))
+    return for_terminal(str(ds.attrs.get("analysis", "")))

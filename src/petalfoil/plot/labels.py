@@ -1,15 +1,14 @@
-"""What figures say: quantities with symbol and unit, the facts of a title, text from outside made safe to show."""
+"""What figures say: quantities with symbol and unit, and the facts of a title."""
 
 from __future__ import annotations
 
-import html
 import math
-import unicodedata
 from dataclasses import dataclass
 
 import xarray as xr
 
 from petalfoil.plot.views import displacement, is_3d, mid_plane, number
+from petalfoil.text import for_figure
 
 RPM = 30.0 / math.pi
 HERTZ = 0.5 / math.pi
@@ -79,9 +78,9 @@ def quantity(ds: xr.Dataset, name: str) -> Quantity:
     if name in QUANTITIES:
         return QUANTITIES[name]
     attributes = ds[name].attrs
-    declared = figure_text(str(attributes.get("units", "")))
+    declared = for_figure(str(attributes.get("units", "")))
     unit, factor = ("rpm", RPM) if declared == "rad s-1" and "speed" in name else _UNITS.get(declared, (declared, 1.0))
-    return Quantity(figure_text(str(attributes.get("long_name", name.replace("_", " ")))), unit, factor)
+    return Quantity(for_figure(str(attributes.get("long_name", name.replace("_", " ")))), unit, factor)
 
 
 # ------------------------------------------------------------------------------------------ facts of a title
@@ -137,25 +136,3 @@ def grouped(value: float) -> str:
 def signed(value: float) -> str:
     """A whole number with a true minus sign."""
     return f"{round(value) + 0:d}".replace("-", "−")
-
-
-# ------------------------------------------------------------------------------------------ text from outside
-
-_CODED = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"}
-"""Unicode categories shown by code: controls, marks of direction, lone surrogates, unassigned, line separators."""
-
-
-def printable(text: str) -> str:
-    """One line in which control characters and invisible marks are shown by their codes."""
-    shown = (c.encode("unicode_escape").decode("ascii") if unicodedata.category(c) in _CODED else c for c in text)
-    return "".join(shown)
-
-
-def figure_text(text: str) -> str:
-    """Text for a label that matplotlib would search for formulas."""
-    return printable(text).replace("$", r"\$")
-
-
-def page_text(text: str) -> str:
-    """Text for an HTML page."""
-    return html.escape(printable(text))

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from petalfoil.plot.canvas import DPI, ResultFigure
-from petalfoil.plot.labels import printable
+from petalfoil.text import for_terminal
 
 Look: TypeAlias = dict[str, Any]
 """Keywords of an artist: colour, size and the like."""
@@ -103,7 +103,7 @@ def set_title(fig: Figure, ds: xr.Dataset, *facts: str) -> None:
         Speed, displacement, grid and the like.
     """
     columns = int(fig.get_figwidth() * 72.0 / (0.6 * TITLE))  # a letter of the sans-serif is about 0.6 em wide
-    lines = textwrap.wrap(printable(str(ds.attrs.get("title", ""))), columns) + textwrap.wrap(
+    lines = textwrap.wrap(for_terminal(str(ds.attrs.get("title", ""))), columns) + textwrap.wrap(
         " · ".join(filter(None, facts)), columns
     )
-    fig.suptitle("\n".join(lines), fontsize=TITLE, color=INK, parse_math=False)  # a title may hold a dollar sign
+    fig.suptitle("\n".join(lines), fontsize=TITLE, color=INK, parse_math=False)  # `$` is no formula

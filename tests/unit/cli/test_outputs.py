@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,8 @@ import pytest
 from petalfoil.cli.outputs import FIGURE_SUFFIXES
 from petalfoil.errors import StoreError
 from petalfoil.plot.canvas import figure_format
+from petalfoil.results.layout import Point
+from petalfoil.results.store import save
 
 from .conftest import point
 
@@ -95,3 +98,14 @@ def test_known_suffixes_are_those_the_figures_can_be_written_in() -> None:
     assert [f".{figure_format(Path('figure').with_suffix(suffix))}" for suffix in FIGURE_SUFFIXES] == list(
         FIGURE_SUFFIXES
     )
+
+
+def test_a_foreign_file_brings_no_control_character_to_the_terminal(cli, tmp_path: Path) -> None:
+    title, status = "a\x1b]0;owned\x07", "converged; \x1b[2Jgone"
+    record = replace(point(0.0, -1e-4, status=status), title=title)
+    save(Point().to_dataset([record], "solve"), tmp_path / "foreign.nc")
+    result = cli("show", str(tmp_path / "foreign.nc"))
+    assert result.exit_code == 0
+    assert "\x1b" not in result.stdout + result.stderr
+    assert r"a\x1b]0;owned\x07" in result.stdout
+    assert r"\x1b[2Jgone" in result.stdout

@@ -49,25 +49,30 @@ def test_interrupted_curve_keeps_its_finished_points(cli, played, case, tmp_path
     assert sorted(path.name for path in tmp_path.iterdir()) == ["case.toml", "curve.nc"]
 
 
-CTRL_C = """
+STOPPED = """
 import os, signal, sys
 import pytest
 from tests.unit.cli.conftest import Played, install
 from petalfoil.cli import main
 
-signal.signal(signal.SIGINT, signal.default_int_handler)  # whoever runs the tests may have it ignored
+number = signal.Signals[sys.argv.pop(1)]
+# Whoever runs the tests may have it ignored.
+signal.signal(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
 plays = Played()
-plays.after[2] = lambda: os.kill(os.getpid(), signal.SIGINT)
+plays.after[2] = lambda: os.kill(os.getpid(), number)
 install(plays, pytest.MonkeyPatch())
 main()
 """
 
 
-def test_ctrl_c_of_a_process(case, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("signal", "exit_code"), [("SIGINT", 130), ("SIGTERM", 143), ("SIGHUP", 129)])
+def test_a_process_that_a_signal_stops_keeps_what_is_finished(
+    case, tmp_path: Path, signal: str, exit_code: int
+) -> None:
     out = tmp_path / "curve.nc"
-    command = [sys.executable, "-c", CTRL_C, "curve", case, *THREE, "--out", str(out)]
+    command = [sys.executable, "-c", STOPPED, signal, "curve", case, *THREE, "--out", str(out)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (130, "interrupted: 2 of 3 points are finished and kept\n")
+    assert (done.returncode, done.stderr) == (exit_code, "interrupted: 2 of 3 points are finished and kept\n")
     assert load(out).sizes["point"] == 2
 
 
@@ -110,8 +115,8 @@ def test_file_is_rewritten_as_points_finish(tmp_path: Path) -> None:
             yield point(0.0, -1e-6 * index)
             seen.append(load(out).sizes["point"] if out.exists() else 0)
 
-    answer = follow(find("curve"), Points(points(), 6), Autosave(out, clock), lambda done, text: None)
-    assert len(answer.records) == 6
+    answer, stopped = follow(find("curve"), Points(points(), 6), Autosave(out, clock), lambda done, text: None)
+    assert (len(answer.records), stopped) == (6, 0)
     assert seen == [0, 0, 3, 3, 3, 6]
 
 

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from petalfoil.cli.streams import say
+
 PETALFOIL = [sys.executable, "-m", "petalfoil"]
 
 
@@ -38,3 +40,17 @@ def test_a_title_the_terminal_cannot_show_is_no_failure() -> None:
     environment = os.environ | {"PYTHONIOENCODING": "ascii"}
     done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
     assert done.stdout == "e = 5 ?m\n"
+
+
+def test_what_is_said_shows_control_characters_by_their_codes(capsys) -> None:
+    say("no case file \x1b[31ma\x9b\u202e.toml")
+    assert capsys.readouterr().err == "no case file \\x1b[31ma\\x9b\\u202e.toml\n"
+
+
+def test_a_terminal_that_is_gone_does_not_end_the_run() -> None:
+    code = (
+        "import os, pty, sys; from petalfoil.cli.streams import say; near, far = pty.openpty(); os.dup2(far, 2); "
+        "os.close(far); os.close(near); say('interrupted'); print('files are written')"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "files are written\n")

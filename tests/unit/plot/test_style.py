@@ -60,20 +60,9 @@ def test_a_title_brings_no_control_character_to_a_figure(flat: xr.Dataset) -> No
     assert fig.get_suptitle().splitlines()[0] == r"a\x1b[31mRED\x9b \u202egnp\nline\x00\x7f \ud800end"
 
 
-@pytest.mark.parametrize(
-    ("raw", "shown"), [("", ""), ("plain µm °", "plain µm °"), ("a\tb", r"a\tb"), ("a\u2028b\ue000", r"a\u2028b\ue000")]
-)
-def test_text_from_outside_is_one_printable_line(raw: str, shown: str) -> None:
-    assert labels.printable(raw) == shown
-
-
 def test_names_and_units_of_a_foreign_result_are_drawn_as_they_stand() -> None:
     attributes = {"long_name": r"cost $\frac{a$ $x^{$", "units": "$\x07"}
     ds = xr.Dataset({"gain": ("place", [1.0, 4.0], attributes)}, {"place": ("place", [1.0, 2.0], attributes)})
     fig = plot.summary(ds.assign_attrs(title="$", analysis="$_$"))
     fig.draw_without_rendering()
     assert fig.axes[0].get_xlabel() == r"cost \$\frac{a\$ \$x^{\$ [\$\x07]"
-
-
-def test_text_for_a_page_is_escaped() -> None:
-    assert labels.page_text("<b>\x1b&") == r"&lt;b&gt;\x1b&amp;"
