@@ -39,11 +39,14 @@ class Argument(ABC):
         What stands for its value there.
     option : str
         Name of the option, if it is not that of the argument.
+    also : str
+        Another name of the option.
     """
 
     help: str
     metavar: str = "QUANTITY"
     option: str = ""
+    also: str = ""
 
     @abstractmethod
     def read(self, given: Any) -> Any:
@@ -165,6 +168,8 @@ class LoadVector(Argument):
 
     def read(self, given: Any) -> tuple[float, float]:
         """The load (x, y) [N]."""
+        if isinstance(given, str) and ":" in given:
+            raise UsageError(f"{shown(given)} is a range of loads; one load is meant here: a value or a pair (x, y)")
         if isinstance(given, str) and "," in given:
             return parse_pair(given, "N")
         if not _is_sequence(given):
@@ -235,8 +240,11 @@ class StoredResult(Argument):
 
 
 def _is_sequence(value: object) -> TypeGuard[Sequence[Any]]:
-    """Whether `value` has entries in order; a text is one value, NumPy arrays are sequences in all but name."""
-    if isinstance(value, str):
+    """Whether `value` has entries in order.
+
+    A text is one value. NumPy arrays are sequences in all but name, but for those without dimensions.
+    """
+    if isinstance(value, str) or getattr(value, "ndim", 1) == 0:
         return False
     return isinstance(value, Sequence) or (hasattr(value, "__len__") and hasattr(value, "__getitem__"))
 
@@ -267,7 +275,7 @@ Displacements: TypeAlias = Annotated[
 Direction: TypeAlias = Annotated[
     float, Quantity(unit="rad", metavar="ANGLE", help="Direction of the displacements, from x toward y.")
 ]
-Load: TypeAlias = Annotated[tuple[float, float] | None, LoadVector(metavar="LOAD", help=LOAD_HELP)]
+Load: TypeAlias = Annotated[tuple[float, float] | None, LoadVector(also="loads", metavar="LOAD", help=LOAD_HELP)]
 Loads: TypeAlias = Annotated[
     Sequence[float] | None,
     Values(unit="N", metavar="LIST", help='Several loads along -y instead of one: "10 N, 20 N".', above=0.0),

@@ -43,12 +43,10 @@ def side_leakage(answer: Solution, fluxes: Fluxes) -> float:
     """Gas that leaves at both ends, pressure times volume a second, over `p_a^2 h_ref^3 / (12 mu)` [1].
 
     Gas that enters again where the film is below ambient pressure is not subtracted. In a film that runs on all round
-    the difference is nothing.
+    the difference is nothing. A 2-D film has no ends.
     """
     balance = answer.problem.layout.balance
     axial, unknown = balance.mesh.axial, balance.mesh.unknown
-    if axial.is_2d:
-        return 0.0
     leaving = -balance.outflow(fluxes)
     ends = leaving[..., [0] if axial.half else [0, -1]]
     shared = unknown[:, -1, unknown.shape[2] // 2] >= 0  # the film runs on over the edge: two halves of one cell

@@ -92,7 +92,7 @@ class Evaluation:
     def film(self) -> Film:
         """Extremes of film and pressure, friction and leakage."""
         film, case = self.answer.problem.layout.wall.film, self.case
-        radius, omega, z = case.bearing.journal_radius, case.operation.speed, film.axial.whole_z
+        radius, omega = case.bearing.journal_radius, case.operation.speed
         thin, high = lowest(self.film_thickness, film.phi), highest(self.pressure, film.phi)
         thinnest = closed_film(case, self.film_thickness, thin.value)
         torque = viscous_torque(
@@ -106,13 +106,13 @@ class Evaluation:
         return Film(
             min_film_thickness=thinnest,
             min_film_thickness_angle=self._bushing_angle(thin.strip, thin.phi),
-            min_film_thickness_z=float(z[thin.axial]),
+            min_film_thickness_z=None if film.axial.is_2d else float(film.axial.whole_z[thin.axial]),
             knudsen_number=case.gas.mean_free_path / thinnest,
             peak_pressure=high.value,
             peak_pressure_angle=self._bushing_angle(high.strip, high.phi),
             friction_torque=torque,
             power_loss=torque * omega,
-            side_leakage=self._leakage(),
+            side_leakage=None if film.axial.is_2d else self._leakage(),
         )
 
     def balances(self) -> Balances:

@@ -218,11 +218,17 @@ def _estimate(name: str, records: Sequence[Record], scale: float) -> Estimate:
     return Estimate(
         name=name,
         values=tuple(float(value) for value in values),
-        limit=found.limit,
+        limit=_in_one_turn(found.limit, values) if name in ANGLES else found.limit,
         order=found.order,
         error=min(found.error, math.pi) if name in ANGLES else found.error,
         trusted=found.trusted,
     )
+
+
+def _in_one_turn(angle: float, values: Array) -> float:
+    """An angle in the turn that the values are given in: from 0, or about 0 where one is negative."""
+    turn = 2.0 * math.pi
+    return math.remainder(angle, turn) if np.nanmin(values) < 0.0 else angle % turn
 
 
 def _bar(estimate: Estimate, value: float) -> float:

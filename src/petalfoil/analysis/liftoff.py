@@ -21,19 +21,20 @@ from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, running
-from petalfoil.errors import ConvergenceError
+from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.layout import Columns, load_of, of_load
 from petalfoil.results.parts import AppliedLoad, Outcome
 from petalfoil.results.record import Record
 from petalfoil.walls import Capability, required
 
 LoadList = Annotated[
-    Sequence[float],
+    Sequence[float] | None,
     Values(
         unit="N",
         option="load",
+        also="loads",
         metavar="LOADS",
-        help='Loads along -y: "46.4 N, 55.6 N", or "10 N : 100 N : 10".',
+        help='Loads along -y: "46.4 N, 55.6 N", or "10 N : 100 N : 10"; by default the case\'s.',
         above=0.0,
     ),
 ]
@@ -75,7 +76,11 @@ LAYOUT = Columns(
 
 @analysis(LAYOUT)
 def liftoff(
-    case: Case, loads: LoadList, *, contact_fraction: Limit = CONTACT_FRACTION, progress: Progress | None = None
+    case: Case,
+    loads: LoadList = None,
+    *,
+    contact_fraction: Limit = CONTACT_FRACTION,
+    progress: Progress | None = None,
 ) -> Points:
     """Find the speeds of lift-off and touchdown for each load along -y.
 
@@ -88,11 +93,31 @@ def liftoff(
     Raises
     ------
     UsageError
-        The wall does not rest on the journal at zero speed.
+        The wall does not rest on the journal at zero speed; or neither loads nor a case's load along -y are given.
     """
     newton_only(case)
     required(case, Capability.LIFT_OFF, "lift-off")
-    return Points(_points(case, list(loads), contact_fraction, progress), len(loads))
+    asked = [own_load(case)] if loads is None else list(loads)
+    return Points(_points(case, asked, contact_fraction, progress), len(asked))
+
+
+def own_load(case: Case) -> float:
+    """The case's load along -y [N].
+
+    Raises
+    ------
+    UsageError
+        It has none, or one that acts along another line.
+    """
+    if case.operation.load is None:
+        raise UsageError("no load to lift off under: give loads, or set operation.load in the case")
+    x, y = case.operation.load
+    if x != 0.0 or not y < 0.0:
+        raise UsageError(
+            f"operation.load ({x:g} N, {y:g} N) does not act along -y, as loads of a lift-off do: give loads, or turn "
+            "the bearing"
+        )
+    return -y
 
 
 def _points(case: Case, loads: list[float], limit: float, progress: Progress | None) -> Iterator[Record]:

@@ -47,7 +47,7 @@ class Verbs(TyperGroup):
 app = typer.Typer(
     cls=Verbs,
     no_args_is_help=True,
-    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,  # `failures` speaks to the user, not a decorated traceback
     rich_markup_mode="rich",
 )

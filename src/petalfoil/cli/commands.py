@@ -26,6 +26,8 @@ CASE_FILE = Annotated[Path, typer.Argument(metavar="CASE", help="Case to run, a 
 JSON = Annotated[bool, typer.Option("--json", help="Print one JSON object in SI units instead of the table.")]
 OUT = Annotated[Path | None, typer.Option("--out", metavar="FILE.nc", help="Write the whole result to a NetCDF file.")]
 PLOT = Annotated[Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw a figure: .png, .svg or .pdf.")]
+HELP = ["-h", "--help"]
+"""Options that print the help text."""
 OUTPUTS = {"as_json": (JSON, False), "out": (OUT, None), "plot": (PLOT, None)}
 """Options that every command has, with their defaults."""
 
@@ -50,7 +52,12 @@ def command_of(verb: str) -> Any:
     ask.__signature__ = inspect.Signature(sorted(options, key=lambda o: o.default is not REQUIRED))  # type: ignore[attr-defined]
     ask.__annotations__ = {option.name: option.annotation for option in options}
     ask.__doc__ = analysis.help
-    alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode="rich")
+    alone = typer.Typer(
+        add_completion=False,
+        pretty_exceptions_enable=False,
+        rich_markup_mode="rich",
+        context_settings={"help_option_names": HELP},
+    )
     alone.command(verb)(ask)
     return typer.main.get_command(alone)
 
@@ -84,11 +91,12 @@ def option_of(name: str, argument: Argument) -> str:
 def _options(analysis: Analysis) -> list[inspect.Parameter]:
     """The options of the arguments, in their order: texts and flags, absent where nothing is given."""
     options = []
+    taken = {option_of(name, argument) for name, argument in analysis.arguments.items()}
     for name, argument in analysis.arguments.items():
         default, is_flag = analysis.default(name), isinstance(argument, Flag)
         shown = argument.text(default) if default not in (REQUIRED, None) and not is_flag else False
         option = typer.Option(
-            option_of(name, argument),
+            *_names(name, argument, taken),
             metavar=None if is_flag else argument.metavar,
             help=argument.help,
             show_default=shown,
@@ -97,6 +105,12 @@ def _options(analysis: Analysis) -> list[inspect.Parameter]:
         absent = REQUIRED if default is REQUIRED else False if is_flag else None
         options.append(inspect.Parameter(name, KEYWORD, annotation=Annotated[kind, option], default=absent))
     return options
+
+
+def _names(name: str, argument: Argument, taken: set[str]) -> list[str]:
+    """The names of an option; its second one only where no other argument has it."""
+    also = f"--{argument.also}" if argument.also else ""
+    return [option_of(name, argument), *([also] if also and also not in taken else [])]
 
 
 def _refuse_overwriting(analysis: Analysis, given: dict[str, Any], out: Path | None) -> None:

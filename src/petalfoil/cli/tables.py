@@ -15,7 +15,7 @@ from petalfoil.results.grid import Grid
 from petalfoil.results.layout import Answer, Cell, Layout, Point, Series
 from petalfoil.results.record import Record
 from petalfoil.results.study import GridStudy, grid_text
-from petalfoil.results.summary import ABSENT, cell, in_order, number, rows, with_bar
+from petalfoil.results.summary import ABSENT, cell, in_order, number, rows, with_bar, without_rounding
 from petalfoil.text import for_terminal
 
 PIPE_WIDTH = 120  # where no terminal says how wide it is: no column of a series is cut off
@@ -70,7 +70,7 @@ def _rows(lines: Iterable[tuple[str, ...]]) -> Table:
 
 
 def _with_bars(record: Record) -> Iterator[tuple[str, ...]]:
-    reported, errors = record.reported(), record.errors or {}
+    reported, errors = without_rounding(record), record.errors or {}
     if not errors:
         yield from rows(record)
         return
@@ -96,7 +96,7 @@ def _study(records: Sequence[Record], found: Sequence[Estimate]) -> Table:
 
 
 def _series(layout: Series, records: Sequence[Record]) -> Table:
-    points = [record.reported() for record in records]
+    points = [without_rounding(record) for record in records]
     headings = layout.columns or {name: cell(name, 0.0).label for name in in_order(set().union(*points))}
     names = [name for name in headings if any(name in point for point in points)]
     columns = [(f"{headings[name]}\n{cell(name, 0.0).unit}".rstrip(), "right") for name in names]

@@ -65,7 +65,7 @@ def _facts(ds: xr.Dataset) -> list[str]:
         "layers": "{:.0f} layers",
         "radial_clearance": "radial clearance {:.4g} µm",
         "pack_clearance": "{:.4g} µm above the solid pack height",
-        "compressibility_number": "Λ = {:.3g}",
+        "compressibility_number": "Λ on radial clearance = {:.3g}",
     }
     if "radius" not in ds:
         del formats["pack_clearance"]

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 from petalfoil.results.estimate import Estimate
 from petalfoil.results.record import Record, Scalar
 from petalfoil.results.schema import SCALARS, DataType
-from petalfoil.results.summary import Row, as_json
+from petalfoil.results.summary import Row, as_json, without_rounding
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,7 +48,8 @@ class ArrayTable:
 
 def at_position(record: Record) -> str:
     """The position of the journal in words."""
-    x, y = (1e6 * float(record.scalars[f"eccentricity_{axis}"]) for axis in "xy")
+    shown = without_rounding(record)
+    x, y = (1e6 * float(shown[f"eccentricity_{axis}"]) for axis in "xy")
     return f"at ({x:.4g}, {y:.4g}) um"
 
 

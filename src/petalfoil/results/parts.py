@@ -65,17 +65,20 @@ class Forces:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Film:
-    """Extremes of the film, friction and leakage."""
+    """Extremes of the film, friction and leakage.
+
+    A 2-D film has no axial place and does not model the leakage.
+    """
 
     min_film_thickness: float
     min_film_thickness_angle: float
-    min_film_thickness_z: float
+    min_film_thickness_z: float | None
     knudsen_number: float
     peak_pressure: float
     peak_pressure_angle: float
     friction_torque: float
     power_loss: float
-    side_leakage: float
+    side_leakage: float | None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

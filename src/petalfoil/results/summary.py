@@ -22,6 +22,16 @@ class Row(NamedTuple):
 ABSENT = "-"
 FINEST_SHARE = 1e-7
 """Share of a value below which its error bar adds no digits."""
+ROUNDING = 1e-12
+"""Part of a vector, and of ambient pressure on the bearing, below which a component is rounding: thousands of pressures
+are added."""
+_VECTORS = (
+    (("force_x", "force_y"), "N"),
+    (("load_x", "load_y"), "N"),
+    (("bearing_force",), "N"),
+    (("eccentricity_x", "eccentricity_y"), "m"),
+)
+"""Components of vectors that tables show, with their unit."""
 _DEG = 180.0 / math.pi
 _RPM = 30.0 / math.pi
 
@@ -72,7 +82,7 @@ _SHOWN: dict[str, Shown] = {
     "free_petal_height": Shown("free petal height", "µm", 1e6),
     "first_contact_angle": Shown("first contact at", "deg", _DEG),
     "bending_stiffness": Shown("bending stiffness", "N·mm", 1e3),
-    "compressibility_number": Shown("compressibility number"),
+    "compressibility_number": Shown("compressibility number on radial clearance"),
     "viscosity": Shown("viscosity", "µPa·s", 1e6),
     "mean_free_path": Shown("mean free path", "nm", 1e9),
     "stable": Shown("stable"),
@@ -121,8 +131,31 @@ def rows(record: Record) -> list[Row]:
     list of Row
         Label, value and unit.
     """
-    reported = record.reported()
+    reported = without_rounding(record)
     return [cell(name, reported[name]) for name in in_order(reported)]
+
+
+def without_rounding(record: Record) -> dict[str, Scalar]:
+    """Reported scalars as tables show them: 0 for what is nothing but rounding.
+
+    Parameters
+    ----------
+    record : Record
+        One answer.
+
+    Returns
+    -------
+    dict
+        Scalars by name, SI.
+    """
+    reported = record.reported()
+    sizes = [reported.get(name) for name in ("ambient_pressure", "journal_radius", "length")]
+    pressed = math.prod(float(size) for size in sizes) if all(sizes) else 0.0  # ambient pressure on the bearing
+    for names, scale in ((names, pressed if kind == "N" else 0.0) for names, kind in _VECTORS):
+        here = [float(reported[name]) for name in names if name in reported]
+        least = ROUNDING * max(scale, math.hypot(*here))
+        reported |= {name: 0.0 for name in names if name in reported and abs(float(reported[name])) < least}
+    return reported
 
 
 def cell(name: str, value: Scalar) -> Row:
@@ -177,10 +210,17 @@ def with_bar(name: str, values: Sequence[float], error: float) -> tuple[list[str
     if bar == 0.0 or not math.isfinite(bar) or bar < size * FINEST_SHARE:
         return [cell(name, value).value for value in values], number(bar)
     if size >= 1e7 or bar < 1e-6:
-        return [ABSENT if math.isnan(v) else f"{v * factor:.2e}" for v in values], f"{bar:.0e}"
+        return [_beside(bar, v * factor) for v in values], f"{bar:.0e}"
     decimals = max(0, 1 - math.floor(math.log10(bar)))  # two digits of the bar
     texts = [ABSENT if math.isnan(v) else f"{v * factor:.{decimals}f}" for v in values]
     return texts, f"{bar:.{decimals}f}"
+
+
+def _beside(bar: float, value: float) -> str:
+    """A value with an exponent; 0 where two digits of its error bar leave no digit of it."""
+    if math.isnan(value):
+        return ABSENT
+    return "0" if abs(value) < 0.05 * bar else f"{value:.2e}"
 
 
 def _shown(name: str) -> Shown:

@@ -1,34 +1,69 @@
-"""Arguments of an analysis: what a user may write for them."""
+"""What callers may give for an argument: numbers or text, and a typed refusal of everything else."""
 
 from __future__ import annotations
 
-import math
-import typing
+from typing import Any
 
+import numpy as np
 import pytest
 
-from petalfoil.analysis.arguments import Speed, Values
-from petalfoil.errors import UnitError, UsageError
+from petalfoil.analysis import registry
+from petalfoil.analysis.declaration import Analysis
+from petalfoil.analysis.liftoff import own_load
+from petalfoil.errors import PetalfoilError, UnitError, UsageError
+from tests.cases import case
 
-WHIRL = Values(unit="rad/s", whirl=True, at_least=0.0, help="Whirl frequencies.")
-
-
-@pytest.mark.parametrize("given", ["100 Hz", "0.1 kHz", ["100 Hz"], "6000 rpm", 200.0 * math.pi])
-def test_whirl_frequencies_are_read_in_hertz(given: object) -> None:
-    assert WHIRL.read(given) == pytest.approx([200.0 * math.pi], rel=1e-14)
-
-
-def test_speeds_in_hertz_are_told_both_readings() -> None:
-    with pytest.raises(UnitError, match="for turns write '6000 rpm', for radians '100 rad/s'"):
-        Values(unit="rad/s", help="Speeds.").read("100 Hz")
-
-
-@pytest.mark.parametrize("given", ["-100 rpm", "-100 Hz"])
-def test_what_is_outside_its_range_is_shown_as_typed(given: str) -> None:
-    with pytest.raises(UsageError, match=f"'{given}' is outside its range; allowed: at least 0 rad/s"):
-        WHIRL.read(given)
+ODD: list[Any] = [
+    *("abc", "", "1 m, 2", "0 : 1", "1 : 2 : 1000000000", "1e400"),
+    *([], {}, [1, "x"], [[1]], [object()], ((0,),), (0, 1, 2), [(0, "x")]),
+    *(object(), float("nan"), float("inf"), b"x", 1 + 2j, {1, 2}, np.datetime64("2020")),
+    *(np.array([1.0, np.nan]), np.array("x"), np.array(np.nan)),
+]
+ARGUMENTS = [
+    (verb, name) for verb in registry.summaries() for name in registry.find(verb).arguments if name != "restart"
+]
 
 
-def test_a_negative_speed_is_shown_as_typed() -> None:
-    with pytest.raises(UsageError, match="'-100 rpm' is outside its range"):
-        typing.get_args(Speed)[1].read("-100 rpm")
+def refusal_of(declared: Analysis, name: str, value: Any) -> PetalfoilError | None:
+    """The typed refusal of a value; None where it is read."""
+    try:
+        declared.read({name: value})
+    except PetalfoilError as refusal:
+        return refusal
+    return None
+
+
+@pytest.mark.parametrize(("verb", "name"), ARGUMENTS)
+def test_odd_values_are_read_or_refused_by_name(verb: str, name: str) -> None:
+    declared = registry.find(verb)
+    assert declared is not None
+    refusals = [str(refusal) for value in ODD if (refusal := refusal_of(declared, name, value)) is not None]
+    assert refusals
+    assert all(refusal.startswith(name) for refusal in refusals)
+
+
+@pytest.mark.parametrize(("verb", "name"), [("converge", "levels"), ("runup", "points"), ("orbit", "revolutions")])
+def test_text_that_is_no_number_is_refused_where_a_number_is_meant(verb: str, name: str) -> None:
+    declared = registry.find(verb)
+    assert declared is not None
+    with pytest.raises((UsageError, UnitError), match=f"{name}: 'many'"):
+        declared.read({name: "many"})
+
+
+def test_an_array_without_dimensions_is_no_list() -> None:
+    declared = registry.find("liftoff")
+    assert declared is not None
+    with pytest.raises(UnitError, match="loads"):
+        declared.read({"loads": np.array(3.0)})
+    assert declared.read({"loads": np.float64(3.0)}) == {"loads": [3.0]}
+
+
+def test_a_lift_off_takes_the_load_of_the_case() -> None:
+    assert own_load(case(**{"operation.load": (0.0, -15.0)})) == 15.0
+
+
+@pytest.mark.parametrize("load", [None, (1.0, -15.0), (0.0, 15.0), (0.0, 0.0)])
+def test_a_lift_off_needs_a_load_along_its_line(load: tuple[float, float] | None) -> None:
+    changes = {} if load is None else {"operation.load": load}
+    with pytest.raises(UsageError, match=r"operation\.load"):
+        own_load(case(**changes))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -187,3 +188,37 @@ def test_progress_rises_from_grid_to_grid() -> None:
     assert told[0][1].startswith("grid 16, ")
     assert told[-2][1].startswith("grid 32, ")
     assert told[-1] == (1.0, "converge: 2 of 2 grids")
+
+
+# ---------------------------------------------------------------------------------------------- what a film has
+
+
+@pytest.mark.parametrize(
+    ("name", "angles", "limit"),
+    [
+        ("min_film_thickness_angle", [350.0, 358.0, 360.0], 0.67),
+        ("min_film_thickness_angle", [5.0, 1.0, 359.0], 357.0),
+        ("attitude_angle", [-170.0, -178.0, 180.0], 179.33),
+    ],
+)
+def test_the_limit_of_an_angle_is_in_one_turn(name: str, angles: list[float], limit: float) -> None:
+    values = [math.radians(math.remainder(angle, 360.0) if min(angles) < 0.0 else angle % 360.0) for angle in angles]
+    records = [
+        Record(analysis="solve", scalars={name: value, "converged": True, "cells_per_pitch": 16 << number})
+        for number, value in enumerate(values)
+    ]
+    (estimate,) = [one for one in table([with_sizes(record) for record in records]) if one.name == name]
+    assert math.degrees(estimate.limit) == pytest.approx(limit, abs=0.5)
+
+
+def with_sizes(record: Record) -> Record:
+    """The record with the sizes that the resolution of forces is told by."""
+    return replace(record, scalars=record.scalars | {"ambient_pressure": 1e5, "journal_radius": 0.025, "length": 0.05})
+
+
+@pytest.mark.parametrize(("bearing", "has"), [("2d", False), ("3d", True)])
+def test_only_a_3d_film_has_an_axial_place_and_leaks(bearing: str, has: bool) -> None:
+    changes: dict[str, object] = {"model.kind": bearing, "model.cells_per_pitch": 16}
+    journal = case("plain_journal", **(changes | ({"model.axial_cells": 4} if has else {})))
+    record = solved(journal)
+    assert [name in record.scalars for name in ("side_leakage", "min_film_thickness_z")] == [has, has]

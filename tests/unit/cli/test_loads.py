@@ -374,7 +374,7 @@ REFUSED = {
     "a load of another kind": (("balance", "--load", "50 m"), "--load"),
     "three parts of a load": (("balance", "--load", "1 N, 2 N, 3 N"), "--load"),
     "no number": (("balance", "--load", "much"), "--load"),
-    "no load at all": (("liftoff",), "--load"),
+    "a range where one load is meant": (("stability", "--load", "1 N : 9 N : 3"), "--load"),
     "a range without count": (("liftoff", "--load", "1 N : 2 N"), "--load"),
     "a contact fraction that is none": (
         ("liftoff", "--load", "1 N", "--contact-fraction", "few"),
@@ -396,6 +396,20 @@ REFUSED = {
     "a mass for a chart": (("stability", "--loads", "1 N", "--mass", "1 kg"), "--mass"),
     "one load and several": (("stability", "--loads", "1 N", "--load", "1 N"), "--load"),
 }
+
+
+@pytest.mark.parametrize("option", ["--load", "--loads"])
+@pytest.mark.parametrize(("verb", "asked"), [("liftoff", {"loads": [5.0]}), ("balance", {"load": (0.0, -5.0)})])
+def test_load_and_loads_are_one_option(cli, loads, case, option: str, verb: str, asked: dict[str, Any]) -> None:
+    assert cli(verb, case, option, "5 N").exit_code == 0
+    ((_, given),) = loads.calls
+    assert given.items() >= asked.items()
+
+
+def test_liftoff_json_has_its_lists_when_every_load_fails(cli, loads, case) -> None:
+    loads.failing = {0, 1}
+    answer = json.loads(cli("liftoff", case, "--load", "20 N, 30 N", "--json").stdout)
+    assert answer["liftoff_speed"] == answer["touchdown_speed"] == [None, None]
 
 
 @pytest.mark.parametrize("name", REFUSED)

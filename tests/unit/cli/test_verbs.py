@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -25,6 +28,19 @@ def test_help_has_an_example(cli, verb: str) -> None:
     result = cli(verb, "--help")
     assert result.exit_code == 0
     assert f"Example: petalfoil {verb} " in result.stdout
+
+
+@pytest.mark.parametrize("call", [["-h"], ["solve", "-h"], ["show", "-h"]])
+def test_h_is_help(cli, call: list[str]) -> None:
+    assert cli(*call).stdout == cli(*call[:-1], "--help").stdout
+
+
+@pytest.mark.parametrize(("typed", "expected"), [("petalfoil lift", "liftoff"), ("petalfoil liftoff --lo", "--loads")])
+def test_a_shell_completes_verbs_and_their_options(typed: str, expected: str) -> None:
+    asked = {"_PETALFOIL_COMPLETE": "complete_zsh", "_TYPER_COMPLETE_ARGS": typed}
+    command = [sys.executable, "-m", "petalfoil"]
+    done = subprocess.run(command, env=os.environ | asked, capture_output=True, text=True, check=True)
+    assert expected in done.stdout
 
 
 def test_solve_passes_its_options_on(cli, played, case) -> None:

@@ -51,7 +51,8 @@ def test_error_bars_are_attributes_of_their_figures() -> None:
         ("min_film_thickness", [7.7438e-6], 4.1e-8, (["7.744"], "0.041")),
         ("bearing_force", [16.8763], 0.0, (["16.88"], "0")),
         ("bearing_force", [16.8763], 1e-12, (["16.88"], "1.00e-12")),
-        ("bearing_force", [2e-13], 5e-8, (["2.00e-13"], "5e-08")),
+        ("bearing_force", [2e-13], 5e-8, (["0"], "5e-08")),
+        ("bearing_force", [2e-7], 5e-8, (["2.00e-07"], "5e-08")),
     ],
 )
 def test_a_value_has_the_digits_that_its_bar_leaves(

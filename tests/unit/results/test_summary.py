@@ -77,3 +77,26 @@ def test_a_cell_of_a_name_without_a_unit_of_its_own_is_shown_in_si() -> None:
 )
 def test_numbers_have_four_significant_digits(value: float, text: str) -> None:
     assert summary.number(value) == text
+
+
+SIZES = {"ambient_pressure": 1e5, "journal_radius": 0.025, "length": 0.05}
+
+
+@pytest.mark.parametrize(
+    ("scalars", "shown"),
+    [
+        ({"force_x": 5e-16, "force_y": -3e-15, "bearing_force": 3e-15}, ["0", "0", "0"]),
+        ({"force_x": -7.64e-14, "force_y": 20.0, "bearing_force": 20.0}, ["0", "20.00", "20.00"]),
+        ({"force_x": 1e-8, "force_y": 1e-6, "bearing_force": 1e-6}, ["1.00e-08", "1.00e-06", "1.00e-06"]),
+        ({"eccentricity_x": 6.1e-21, "eccentricity_y": -1e-4}, ["0", "-100.0"]),
+    ],
+)
+def test_rounding_is_shown_as_zero(scalars: dict[str, float], shown: list[str]) -> None:
+    record = Record(analysis="solve", scalars=scalars | SIZES)
+    rows = {row.label: row.value for row in summary.rows(record)}
+    assert [rows[summary.cell(name, 0.0).label] for name in scalars] == shown
+    assert [summary.as_json(record)[name] for name in scalars] == list(scalars.values())
+
+
+def test_the_compressibility_number_says_on_which_length() -> None:
+    assert "radial clearance" in summary.cell("compressibility_number", 5.55).label
