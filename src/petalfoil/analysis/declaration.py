@@ -27,7 +27,7 @@ from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, new_run
 from petalfoil.errors import UsageError
 from petalfoil.results.layout import Answer, Layout
-from petalfoil.results.record import Record
+from petalfoil.results.record import Record, warnings_of_all
 from petalfoil.results.schema import Variable, declare
 from petalfoil.units.reading import shown
 
@@ -176,7 +176,12 @@ class Analysis:
         layout = next(layout for layout in self.layouts if bool(layout.dimension) is run.is_series)
         estimates = layout.estimates(records)
         return Answer(
-            verb=self.verb, layout=layout, records=records, estimates=estimates, interrupted=ended == "interrupted"
+            verb=self.verb,
+            layout=layout,
+            records=records,
+            estimates=estimates,
+            warnings=warnings_of_all(records),
+            interrupted=ended == "interrupted",
         )
 
     def layout_of(self, ds: xr.Dataset) -> Layout:

@@ -6,7 +6,7 @@ import math
 
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.fields import all_fields, coordinates
-from petalfoil.case import Case
+from petalfoil.case import Case, warnings_of
 from petalfoil.equilibrium.run_context import HistoryRow, RunContext, current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.results.parts import Branch, Effort, Geometry, Outcome, Position, scalars_of
@@ -45,15 +45,20 @@ def record_of(
     coords: dict[str, Array] | None = None,
     history: list[HistoryRow] | None = None,
 ) -> Record:
-    """A record from its parts, with the history of the current run unless another is given."""
+    """A record from its parts, with what is implausible about them.
+
+    The history is that of the current run unless another is given.
+    """
+    scalars = scalars_of(*parts)
     return Record(
         analysis=analysis,
-        scalars=scalars_of(*parts),
+        scalars=scalars,
         fields=fields or {},
         coords=coords or {},
         case_toml=case.to_toml(),
         title=case.title,
         history=list(current_run().history if history is None else history),
+        warnings=tuple(warnings_of(case, scalars)),
     )
 
 

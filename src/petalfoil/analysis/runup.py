@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
@@ -16,7 +16,7 @@ from petalfoil.analysis.records import effort, failed_record
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
 from petalfoil.analysis.speeds import SpeedLine
-from petalfoil.case import Case
+from petalfoil.case import Case, warnings_of
 from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import ConvergenceError
 from petalfoil.results.layout import Series, at_speed
@@ -84,4 +84,5 @@ def _points(
             except ConvergenceError as failure:
                 line.known = None
                 record = failed_record("runup", here, failure, *asked)
-        yield record
+        # Contact on the way up is what a run-up is about; at the case's own speed it is told.
+        yield replace(record, warnings=tuple(warnings_of(case, record.scalars)))

@@ -41,6 +41,8 @@ def render(answer: Answer) -> str:
         console.print(for_terminal(heading), style="bold")
         for table in _tables(answer):
             console.print(table)
+        for warning in answer.warnings:
+            console.print(for_terminal(f"Warning: {warning}"))
     return "\n".join(line.rstrip() for line in capture.get().rstrip().splitlines()) + "\n"
 
 

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 Json: TypeAlias = Any
 Cell: TypeAlias = float | str
+WARNINGS = "warnings"
+"""Attribute of a dataset that holds warnings, one a line; absent where there are none."""
 _PLAIN = {DataType.FLOAT: float, DataType.INT: int, DataType.BOOL: bool, DataType.STR: str}
 
 
@@ -261,6 +263,8 @@ class Answer:
         One, or the points in order.
     estimates : tuple of Estimate
         What a grid study tells.
+    warnings : tuple of str
+        What is implausible about the case and its results, one line each.
     interrupted : bool
         Whether points are missing because the user stopped the run.
     """
@@ -269,13 +273,17 @@ class Answer:
     layout: Layout
     records: tuple[Record, ...]
     estimates: tuple[Estimate, ...] = ()
+    warnings: tuple[str, ...] = ()
     interrupted: bool = False
 
     @classmethod
     def stored(cls, ds: xr.Dataset, layout: Layout) -> Answer:
         """The answer that a dataset holds; variables that this version does not know are left out."""
         records, estimates = layout.records(ds), layout.stored_estimates(ds)
-        return cls(verb=str(ds.attrs["analysis"]), layout=layout, records=records, estimates=estimates)
+        warnings = tuple(str(ds.attrs.get(WARNINGS, "")).splitlines())
+        return cls(
+            verb=str(ds.attrs["analysis"]), layout=layout, records=records, estimates=estimates, warnings=warnings
+        )
 
     @property
     def title(self) -> str:
@@ -287,11 +295,14 @@ class Answer:
         plain = self.layout.to_json(self.records)
         if self.estimates:
             plain["quantities"] = {estimate.name: estimate.to_json() for estimate in self.estimates}
+        plain["warnings"] = list(self.warnings)
         return json.dumps(plain | ({"interrupted": True} if self.interrupted else {}), allow_nan=False)
 
     def to_dataset(self) -> xr.Dataset:
         """Labelled data of the whole answer."""
         ds = self.layout.to_dataset(self.records, self.verb)
+        if self.warnings:
+            ds = ds.assign_attrs({WARNINGS: "\n".join(self.warnings)})
         if not self.estimates:
             return ds
         from petalfoil.results.study import with_estimates

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
@@ -47,6 +47,8 @@ class Record:
         Error bars of the results from a grid study; None where none was asked for, empty where none was found.
     remarks : tuple of str
         What the user is told beside the results.
+    warnings : tuple of str
+        What is implausible about the case and its results: key or quantity before a colon, then what and why.
 
     Raises
     ------
@@ -63,6 +65,7 @@ class Record:
     history: list[dict[str, float | int | str]] = field(default_factory=list)
     errors: Mapping[str, float] | None = None
     remarks: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         _refuse_unknown("scalar", self.scalars, SCALARS)
@@ -84,6 +87,29 @@ class Record:
     def reported(self) -> dict[str, Scalar]:
         """Scalars as plain Python values; results of a state that did not converge are NaN, its flags false."""
         return {name: _plain(name, value, self.converged) for name, value in self.scalars.items()}
+
+
+def warnings_of_all(records: Sequence[Record]) -> tuple[str, ...]:
+    """Warnings of records, one for each key or quantity: the first, and how many more points have one.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        The points in order.
+
+    Returns
+    -------
+    tuple of str
+        One line each.
+    """
+    by_key: dict[str, list[str]] = {}
+    for record in records:
+        for warning in record.warnings:
+            by_key.setdefault(warning.partition(":")[0], []).append(warning)
+    return tuple(
+        first if not more or all(text == first for text in more) else f"{first} ({len(more)} more points alike)"
+        for first, *more in by_key.values()
+    )
 
 
 def _plain(name: str, value: Scalar, converged: bool) -> Scalar:

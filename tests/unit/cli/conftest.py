@@ -63,6 +63,7 @@ class Played:
         self.calls: list[tuple[str, tuple[Any, ...], dict[str, Any]]] = []
         self.failing: set[int] = set()
         self.after: dict[int, Callable[[], None]] = {}
+        self.dressed: Callable[[Record], Record] = lambda record: record
         self.single: Callable[[], Record] = lambda: point(0.0, -1e-4)
 
     def one(self, name: str) -> Answering:
@@ -84,7 +85,7 @@ class Played:
             self.after.get(index, lambda: None)()
             x, y = distance * math.cos(angle), distance * math.sin(angle)
             more = {"starting_torque": 0.25} if name == "static" else {}
-            yield point(x, y, converged=index not in self.failing, analysis=name, **more)
+            yield self.dressed(point(x, y, converged=index not in self.failing, analysis=name, **more))
 
 
 def play(verb: str, played: Answering, monkeypatch: pytest.MonkeyPatch) -> None:

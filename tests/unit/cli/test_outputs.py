@@ -13,7 +13,7 @@ from petalfoil.cli.outputs import FIGURE_SUFFIXES
 from petalfoil.errors import StoreError
 from petalfoil.plot.canvas import figure_format
 from petalfoil.results.layout import Point
-from petalfoil.results.store import save
+from petalfoil.results.store import load, save
 
 from .conftest import point
 
@@ -109,3 +109,33 @@ def test_a_foreign_file_brings_no_control_character_to_the_terminal(cli, tmp_pat
     assert "\x1b" not in result.stdout + result.stderr
     assert r"a\x1b]0;owned\x07" in result.stdout
     assert r"\x1b[2Jgone" in result.stdout
+
+
+DOUBTS = ("gas.viscosity: 18.5 Pa*s is outside 5e-06 to 0.0001 Pa*s", "knudsen_number: 0.2")
+
+
+def test_warnings_are_in_table_json_and_file_and_shown_again(cli, played, case, tmp_path: Path) -> None:
+    played.single = lambda: replace(point(0.0, -1e-4), warnings=DOUBTS)
+    out = str(tmp_path / "result.nc")
+    run = cli("solve", case, "--json", "--out", out)
+    assert (run.exit_code, run.stderr) == (0, "")
+    assert json.loads(run.stdout)["warnings"] == list(DOUBTS)
+    assert load(out).attrs["warnings"].splitlines() == list(DOUBTS)
+    assert cli("show", out, "--json").stdout == run.stdout
+    table = cli("solve", case).stdout
+    assert table == cli("show", out).stdout
+    assert [line for line in table.splitlines() if line.startswith("Warning: ")] == [f"Warning: {d}" for d in DOUBTS]
+
+
+def test_the_warnings_of_a_series_are_told_once_with_their_number(cli, played, case, tmp_path: Path) -> None:
+    played.after = {}
+    texts = iter(["max_bending_stress: 3 GPa", "max_bending_stress: 4 GPa", "max_bending_stress: 5 GPa"])
+    played.dressed = lambda record: replace(record, warnings=(next(texts),))
+    answer = json.loads(cli("curve", case, "--eccentricity", "0 um : 200 um : 3", "--json").stdout)
+    assert answer["warnings"] == ["max_bending_stress: 3 GPa (2 more points alike)"]
+
+
+def test_no_warnings_are_an_empty_list(cli, played, case, tmp_path: Path) -> None:
+    out = str(tmp_path / "result.nc")
+    assert json.loads(cli("solve", case, "--json", "--out", out).stdout)["warnings"] == []
+    assert "warnings" not in load(out).attrs

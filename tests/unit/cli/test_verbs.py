@@ -84,7 +84,7 @@ def test_curve_goes_along_its_direction(cli, played, case) -> None:
     assert distances == [0.0, 1e-4, 2e-4]
     assert_allclose(options["direction"], math.pi, rtol=1e-14, atol=0.0)
     answer = json.loads(result.stdout)
-    assert list(answer) == ["points"]
+    assert list(answer) == ["points", "warnings"]
     assert_allclose([p["eccentricity_x"] for p in answer["points"]], [0.0, -1e-4, -2e-4], rtol=1e-12, atol=0.0)
 
 
