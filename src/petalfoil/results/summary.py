@@ -149,8 +149,8 @@ def without_rounding(record: Record) -> dict[str, Scalar]:
         Scalars by name, SI.
     """
     reported = record.reported()
-    sizes = [reported.get(name) for name in ("ambient_pressure", "journal_radius", "length")]
-    pressed = math.prod(float(size) for size in sizes) if all(sizes) else 0.0  # ambient pressure on the bearing
+    sizes = [float(reported.get(name, 0.0)) for name in ("ambient_pressure", "journal_radius", "length")]
+    pressed = math.prod(sizes)  # ambient pressure on the bearing [N]
     for names, scale in ((names, pressed if kind == "N" else 0.0) for names, kind in _VECTORS):
         here = [float(reported[name]) for name in names if name in reported]
         least = ROUNDING * max(scale, math.hypot(*here))

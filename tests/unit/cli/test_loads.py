@@ -229,7 +229,7 @@ def test_runup_json_has_two_legs(cli, loads, case) -> None:
     ((_, given),) = loads.calls
     assert (given["load"], given["points"]) == ((0.0, -20.0), 3)
     assert_allclose(given["to"], 300.0 * RPM, rtol=1e-14, atol=0.0)
-    assert list(answer) == ["up", "down"]
+    assert list(answer) == ["up", "down", "warnings"]
     assert_allclose([point["speed"] / RPM for point in answer["up"]], [0.0, 150.0, 300.0], rtol=1e-12, atol=0.0)
     assert_allclose([point["speed"] / RPM for point in answer["down"]], [150.0, 0.0], rtol=1e-12, atol=0.0)
 
