@@ -13,13 +13,13 @@ from petalfoil.solvers import contact_newton
 from petalfoil.solvers.constraints import ContactConstraints
 from petalfoil.solvers.sparse_lu import Factor, LinearSolver
 from petalfoil.system.coupled import Linearization
-from petalfoil.system.package import PackageLinearization
+from petalfoil.system.foil_pack import FoilPackLinearization
 
 Place = tuple[Any, str]
 
 PLACES: dict[str, tuple[Place, ...]] = {
     "factorisation": ((LinearSolver, "factor"),),
-    "assembly": ((Linearization, "matrix"), (PackageLinearization, "matrix"), (ContactConstraints, "reduce")),
+    "assembly": ((Linearization, "matrix"), (FoilPackLinearization, "matrix"), (ContactConstraints, "reduce")),
     "solves": ((Factor, "solve"),),
     "stability": ((curve, "leading_eigenvalue"),),
     "contact_search": ((contact_newton, "search"),),

@@ -26,6 +26,11 @@ ROOTS = (
     "src/petalfoil/mesh",
     "src/petalfoil/classic",
     "src/petalfoil/report",
+    "src/petalfoil/sparsity",
+    "src/petalfoil/solvers",
+    "src/petalfoil/system",
+    "src/petalfoil/equilibrium",
+    "src/petalfoil/dynamics",
 )
 """Files and folders that are searched."""
 

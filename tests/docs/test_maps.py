@@ -10,7 +10,10 @@ import pytest
 
 from tests.docs.texts import SOURCE, tree
 
-FOLDERS = ("analysis", "classic", "cli", "mesh", "physics", "plot", "report", "results", "units", "walls")
+FOLDERS = (
+    *("analysis", "classic", "cli", "dynamics", "equilibrium", "mesh", "physics", "plot", "report", "results"),
+    *("solvers", "sparsity", "system", "units", "walls"),
+)
 """Folders whose maps are checked."""
 
 

@@ -8,7 +8,7 @@ import pytest
 from petalfoil.analysis.curve import curve
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
-from petalfoil.equilibrium.package_at_rest import at_rest
+from petalfoil.equilibrium.pack_at_rest import at_rest
 from petalfoil.equilibrium.run_context import running
 from petalfoil.system.build import build_problem
 from tests.cases import case
@@ -30,7 +30,7 @@ def cold(cells: int) -> list[int]:
         for e in DISPLACEMENTS:
             with running() as run:
                 solve_cold(build_problem(bearing(name, cells, e)))
-            counts.append(run.film.factorizations + run.package.factorizations)
+            counts.append(run.film.factorizations + run.pack.factorizations)
     return counts
 
 
@@ -88,4 +88,4 @@ def test_warm_points_cost_the_same_on_a_fine_grid() -> None:
 def test_package_from_nothing(name: str, cells: int) -> None:
     with running() as run:
         assert at_rest(build_problem(bearing(name, cells))) is not None
-    assert run.package.factorizations <= 20
+    assert run.pack.factorizations <= 20

@@ -15,7 +15,7 @@ from petalfoil.mesh.axial import AxialGrid, axis_2d
 from petalfoil.mesh.pitch import petal_angles
 from petalfoil.mesh.quadrature import trapezoid
 from petalfoil.physics.shell import PetalShell
-from petalfoil.solvers.contact_equations import Outcome
+from petalfoil.solvers.contact_equations import ContactOutcome
 from petalfoil.solvers.contact_newton import ActiveContacts, solve_contacts
 from petalfoil.solvers.interior_point import InteriorOptions, InteriorStep, interior_point
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, ContactProblem, PrimalDualPoint
@@ -234,7 +234,9 @@ def follow(problem: ContactProblem, start: PrimalDualPoint, barrier: float = 1e-
     return point, solver.counter.factorizations
 
 
-def polish(problem: ContactProblem, x: Array, active: NDArray[np.bool_]) -> tuple[ActiveContacts | None, Outcome, int]:
+def polish(
+    problem: ContactProblem, x: Array, active: NDArray[np.bool_]
+) -> tuple[ActiveContacts | None, ContactOutcome, int]:
     """Newton from `x` and `active`; the answer, how it ended, the factorisations."""
     solver = LinearSolver()
     answer, outcome = solve_contacts(problem, (x, active), solver)
@@ -249,7 +251,7 @@ fine grid it must start close."""
 def solve(problem: ContactProblem, n: int) -> Solved:
     """From nothing to exact zeros: interior point, then the active set from where it ends."""
     point, steps = cold_point(problem, n), 0
-    outcome = Outcome.STEPS
+    outcome = ContactOutcome.STEPS
     for barrier in BARRIERS:
         point, more = follow(problem, point, barrier)
         steps = steps or more

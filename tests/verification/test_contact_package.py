@@ -9,9 +9,9 @@ from numpy.testing import assert_allclose
 from scipy.optimize import nnls
 
 from petalfoil.case import Case, Mount
-from petalfoil.equilibrium.package_at_rest import at_rest
+from petalfoil.equilibrium.pack_at_rest import at_rest
 from petalfoil.system.build import build_problem
-from petalfoil.system.package import PackageProblem
+from petalfoil.system.foil_pack import FoilPackProblem
 from petalfoil.walls.petals import build_mesh, petals_of
 from tests.cases import case
 from tests.random_packages import random_case
@@ -21,16 +21,16 @@ EXAMPLES = ("paper_n6", "paper_n8", "paper_n10", "rig")
 SEED = 2901
 
 
-def package(of: Case) -> PackageProblem:
+def package(of: Case) -> FoilPackProblem:
     problem = build_problem(of)
-    return PackageProblem(problem, np.zeros(problem.layout.n_wall))
+    return FoilPackProblem(problem, np.zeros(problem.layout.n_wall))
 
 
 def example(name: str, cells: int, **changes: object) -> Case:
     return case(name, **{"model.kind": "2d", "model.cells_per_pitch": cells, **changes})
 
 
-def answer_of(problem: PackageProblem) -> Solved:
+def answer_of(problem: FoilPackProblem) -> Solved:
     return solve(problem, problem.layout.n_wall)
 
 
@@ -130,7 +130,7 @@ def test_random_packages_are_optimal() -> None:
 # ------------------------------------------------------------------------------------------ other routes
 
 
-def by_piqp(problem: PackageProblem) -> tuple[Array, Array]:
+def by_piqp(problem: FoilPackProblem) -> tuple[Array, Array]:
     """Deflections and reactions by PIQP."""
     solver = piqp.SparseSolver()
     for name in ("eps_abs", "eps_rel", "eps_duality_gap_abs", "eps_duality_gap_rel"):
@@ -142,7 +142,7 @@ def by_piqp(problem: PackageProblem) -> tuple[Array, Array]:
     return solver.result.x, solver.result.z_l
 
 
-def agree(problem: PackageProblem) -> None:
+def agree(problem: FoilPackProblem) -> None:
     """Deflections, reactions and active contacts are those of PIQP."""
     answer, (x, lam) = answer_of(problem), by_piqp(problem)
     assert_allclose(answer.x, x, rtol=0.0, atol=1e-8 * np.abs(x).max())
@@ -172,11 +172,11 @@ def test_piqp_agrees(name: str, cells: int) -> None:
 def test_piqp_agrees_under_film_pressure() -> None:
     coupled = build_problem(example("paper_n8", 32))
     P = 1.0 + np.random.default_rng(SEED).uniform(0.0, 1.0, coupled.layout.wall.film.n_unknown)
-    problem = PackageProblem(coupled, coupled.layout.push @ (P - 1.0))
+    problem = FoilPackProblem(coupled, coupled.layout.push @ (P - 1.0))
     agree(problem)
 
 
-def by_least_distance(problem: PackageProblem) -> tuple[Array, Array]:
+def by_least_distance(problem: FoilPackProblem) -> tuple[Array, Array]:
     """Lawson and Hanson's least-distance programming over SciPy's NNLS; K must be definite.
 
     With `K = R^T R` and `y = R x` the package is the point nearest to the origin over `G R^-1 y >= -rest`.

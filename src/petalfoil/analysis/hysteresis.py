@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from petalfoil.case import Case
 from petalfoil.equilibrium.friction_path import FrictionResult, slide
-from petalfoil.equilibrium.package_at_rest import at_rest, unloaded
+from petalfoil.equilibrium.pack_at_rest import at_rest, unloaded
 from petalfoil.equilibrium.run_context import RunContext, current_run, running
 from petalfoil.equilibrium.solution import RefinedState, Solution
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.contact_newton import solve_contacts
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.foil_pack import FoilPackProblem
 from petalfoil.system.friction import FrictionState, friction_of
-from petalfoil.system.package import PackageProblem
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -89,7 +89,7 @@ def assembled(friction: Friction, problem: CoupledProblem) -> FrictionResult | N
     found = at_rest(problem)
     if found is None:
         return None
-    contacts, _ = solve_contacts(unloaded(problem), (found.x, found.active), current_run().package_solver)
+    contacts, _ = solve_contacts(unloaded(problem), (found.x, found.active), current_run().pack_solver)
     if contacts is None:
         return None
     fresh = FrictionState.fresh(friction, contacts.x, contacts.lam)
@@ -106,8 +106,8 @@ def moved(
     while parts:
         there = done + parts[-1]
         here = problem.at(displacement=start + there * (end - start))
-        package = PackageProblem(here, np.zeros(problem.layout.n_wall))
-        slid = slide(package, friction, state, current_run().package_solver)
+        package = FoilPackProblem(here, np.zeros(problem.layout.n_wall))
+        slid = slide(package, friction, state, current_run().pack_solver)
         current_run().note("friction", share=there, outcome="found" if slid is not None else "halved")
         if slid is None:
             if len(parts) > HALVINGS:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from petalfoil.case import Case
 from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
-from petalfoil.dynamics.impedance import Impedance
+from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution

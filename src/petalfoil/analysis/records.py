@@ -92,7 +92,7 @@ def effort(wall_time: float | None = None, run: RunContext | None = None) -> Eff
     return Effort(
         iterations=sum("residual" in row or row["phase"] in ("contacts", "classic") for row in run.history),
         factorizations=run.film.factorizations,
-        pack_iterations=run.package.factorizations,
+        pack_iterations=run.pack.factorizations,
         probe_factorizations=run.probes.factorizations,
         wall_time=wall_time,
     )

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from petalfoil.analysis.operating_point import Vector, at, at_position, under_load
 from petalfoil.case import Case
 from petalfoil.dynamics.adaptive_steps import MarchOptions
-from petalfoil.dynamics.rotor import RotorMotion, constant_load
+from petalfoil.dynamics.rotor_motion import RotorMotion, constant_load
 from petalfoil.dynamics.speed_schedule import Schedule
 from petalfoil.dynamics.time_state import Instant, TimeState
 from petalfoil.dynamics.tr_bdf2 import RotorBearing

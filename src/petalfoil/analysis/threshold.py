@@ -13,7 +13,7 @@ from petalfoil.analysis.operating_point import Vector, applied_load, at, operati
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
 from petalfoil.dynamics.critical_mass import Whirl, neutral_whirl, whirl_impedance
-from petalfoil.dynamics.rotor import GRAVITY
+from petalfoil.dynamics.rotor_motion import GRAVITY
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.errors import ConvergenceError
 

@@ -1,12 +1,16 @@
-"""Film, petals, contacts and rotor through time.
+"""Film, petals, contacts and rotor in motion.
 
-In the order data flows:
-
-- `schedule`: speed and angle of the shaft over time.
-- `rotor`: mass, loads and unbalance in the units of the problem.
-- `state`: what is known at an instant.
-- `tangent`: the factorised system, and how it follows contacts that change.
-- `stage`: one implicit stage: film, wall, contacts and rotor in one Newton.
-- `scheme`: a step of second order from two stages, with an error estimate.
-- `march`: steps that adapt, from start to end.
+=========================  ====================================================================
+`film_stability.py`        whether an equilibrium is stable at a fixed journal position
+`reduced_impedance.py`     impedance over frequency, from a reduced model
+`critical_mass.py`         smallest unstable mass of a rigid rotor
+`natural_modes.py`         damped natural motions of a rigid rotor
+`harmonic_balance.py`      friction between petals in a whirl of given amplitude
+`speed_schedule.py`        speed and angle of the shaft over time
+`rotor_motion.py`          mass, loads and unbalance in the units of the problem
+`time_state.py`            state at an instant
+`stage.py`                 one implicit stage: film, wall, contacts and rotor in one Newton
+`tr_bdf2.py`               a step of second order from two stages, with an error estimate
+`adaptive_steps.py`        steps that adapt to a tolerance, from start to end
+=========================  ====================================================================
 """

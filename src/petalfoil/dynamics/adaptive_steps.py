@@ -15,7 +15,7 @@ from petalfoil.solvers.tangent import BorderedTangent
 
 @dataclass(frozen=True)
 class MarchOptions:
-    """Numbers of the march."""
+    """Numbers of the adaptive steps."""
 
     tolerance: float = 1e-3
     """Local error of a step [reference films, ambient pressures]."""
@@ -24,7 +24,7 @@ class MarchOptions:
     longest: float = 0.25
     """Longest step: no less than 25 to a turn [units of time]."""
     shortest: float = 1e-9
-    """A step below this leads nowhere [units of time]."""
+    """Shortest step that is tried [units of time]."""
     fixed: bool = False
     """All steps as long as the first, whatever their error."""
 
@@ -40,7 +40,7 @@ class NextStep:
 
 SAFETY = 0.85
 LARGER, LARGEST = 1.3, 3.0
-"""A step grows if it may grow by the first factor, for a renewed tangent has its price; by the second at most."""
+"""A step grows only if it may grow by the first factor, since a longer step needs a new tangent; by the second at most."""
 CALM = 3
 """Steps with a small error before the step may grow."""
 SAME_STEP = 1e-9
@@ -53,7 +53,7 @@ def march(bearing: RotorBearing, start: Instant, end: float, options: MarchOptio
     Raises
     ------
     ConvergenceError
-        No step, however short, leads on.
+        No step, however short, has a solution.
     """
     path, ahead = [start], NextStep(min(options.first, options.longest))
     stage_options = StageOptions(accuracy=1e-2 * options.tolerance)
@@ -67,7 +67,7 @@ def march(bearing: RotorBearing, start: Instant, end: float, options: MarchOptio
             why = "no answer" if stepped is None else "error"
             current_run().note("motion", time=path[-1].tau, step=step, outcome=why)
             if ahead.step < options.shortest:
-                raise stuck(path[-1])
+                raise stuck(bearing, path[-1])
             continue
         path = [*path[-2:], stepped.inner, stepped.end][-3:]
         yield stepped
@@ -75,14 +75,14 @@ def march(bearing: RotorBearing, start: Instant, end: float, options: MarchOptio
 
 
 def refused(ahead: NextStep, step: float, stepped: AcceptedStep | None, options: MarchOptions) -> NextStep:
-    """A shorter step: by its error, or a quarter where a stage had no answer."""
+    """A shorter step: by its error, or a quarter where a stage had no solution."""
     if stepped is None:
         return NextStep(0.25 * step)
     return NextStep(step * max(0.2, SAFETY * (options.tolerance / stepped.error) ** (1.0 / 3.0)))
 
 
 def accepted(ahead: NextStep, step: float, stepped: AcceptedStep, options: MarchOptions) -> NextStep:
-    """The next step: the same while that is about right, so that the tangent goes on serving."""
+    """The next step: the same as long as that is about right, so that the tangent still serves."""
     if options.fixed:
         return replace(ahead, tangent=stepped.tangent)
     right = SAFETY * (options.tolerance / max(stepped.error, 1e-300)) ** (1.0 / 3.0)
@@ -94,11 +94,13 @@ def accepted(ahead: NextStep, step: float, stepped: AcceptedStep, options: March
     return NextStep(step, stepped.tangent, calm)
 
 
-def stuck(instant: Instant) -> ConvergenceError:
-    """No step leads on."""
-    where = f"({instant.e[0]:.4g}, {instant.e[1]:.4g}) reference films"
+def stuck(bearing: RotorBearing, instant: Instant) -> ConvergenceError:
+    """The error of a motion that no step continues."""
+    milliseconds = 1e3 * instant.tau / bearing.rotor.clock.rate
+    x, y = 1e6 * instant.e[:2] * bearing.problem.layout.scales.length
     return ConvergenceError(
-        f"the motion found no step that leads on from time {instant.tau:.6g} (units of time) at {where}",
+        f"no time step, however short, has a solution after {milliseconds:.6g} ms, with the journal at "
+        f"({x:.4g} µm, {y:.4g} µm)",
         history=list(current_run().history),
         advice="refine the grid, lower the load or the unbalance, or ask for a smaller tolerance",
     )

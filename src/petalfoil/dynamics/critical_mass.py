@@ -8,26 +8,26 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq, linear_sum_assignment
 
-from petalfoil.dynamics.impedance import Impedance
+from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.equilibrium.linear_response import SmallMotion
 
 Complex = NDArray[np.complex128]
 
 SCAN = np.concatenate([[0.006, 0.012, 0.025], np.linspace(0.05, 1.2, 24), [1.5, 2.0, 3.0]])
-"""Whirl ratios between which changes of sign are looked for; whirl of gas bearings is near a half and below, that of a
+"""Whirl ratios between which changes of sign are searched for. Gas bearings whirl near a ratio of a half and below, a
 heavy rotor on soft petals far below."""
 
 
 @dataclass(frozen=True)
 class Whirl:
-    """The first neutral whirl.
+    """A neutral whirl: neither grows nor dies out.
 
     Attributes
     ----------
     mass : float
-        Smallest mass of a rigid rotor (share on this bearing) that whirls [kg]; infinite where none does.
+        Mass of the rigid rotor on this bearing [kg]; infinite if it is stable for any mass.
     ratio : float
-        Whirl frequency over speed [1]; nan where none does.
+        Whirl frequency over speed [1]; nan if there is none.
     """
 
     mass: float
@@ -40,10 +40,10 @@ def whirl_impedance(motion: SmallMotion) -> Impedance:
 
 
 def neutral_whirl(impedance: Impedance, speed: float) -> Whirl:
-    """Find the smallest whirling mass.
+    """Find the critical rotor mass.
 
-    For a mass at the threshold the eigenvalues of `Z(i Omega)` include a real one, `m Omega^2`: the branches of
-    their imaginary part are followed over whirl ratio and their zeros bracketed.
+    At the threshold one eigenvalue of `Z(i Omega)` is real and equals `m Omega^2`. The branches of the imaginary parts
+    are followed over whirl ratio, and their zeros bracketed.
     """
     roots: list[Whirl] = []
     values = [eigenvalues(impedance, nu) for nu in SCAN]

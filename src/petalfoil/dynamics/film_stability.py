@@ -1,4 +1,4 @@
-"""Is an equilibrium stable at a fixed journal position?
+"""Whether an equilibrium is stable at a fixed journal position.
 
 The wall has no mass; the film has. With the contacts that carry load kept active, small disturbances obey
 `J u + s M u = 0` (E1) in `exp(s tau)`, `tau = omega t`: stable if every `s` has a negative real part.
@@ -15,11 +15,11 @@ from petalfoil.solvers.eigenvalues import Pencil, rightmost
 from petalfoil.system.unknowns import DEFLECTION
 
 TIME_STEP = 0.15
-"""Radians of rotation a step of the eigenvalue's time map: what grows or dies out in a few of them is seen first."""
+"""Step of the eigenvalue's time map, in radians of rotation: what grows or decays within a few steps converges first."""
 
 
 def leading_eigenvalue(solution: Solution) -> complex:
-    """Leading eigenvalue in radians of rotation; nan for a shaft at rest, whose film does not move."""
+    """Leading eigenvalue in radians of rotation; nan at zero speed, where the film does not move."""
     problem = solution.problem
     if problem.bearing_number == 0.0:
         return complex(np.nan, np.nan)

@@ -1,8 +1,8 @@
 """Friction between petals in a small whirl: stuck, or in cycles of a stated amplitude by harmonic balance (E10), (E11).
 
-Contacts that carry load stay closed with the reactions of the equilibrium, at which friction is taken to be without
-force. One direction of the journal's displacement at a time: with `R` the slips by unit friction forces and `s_0` those
-by the journal without friction, both of one factorisation, the slips solve
+Contacts that carry load stay active with the reactions of the equilibrium. Friction has no force at the equilibrium.
+The directions of the journal's displacement are taken one at a time. With `R` the slips by unit friction forces and
+`s_0` those by the journal without friction, both of one factorisation, the slips solve
 
     s + R kappa(|s|) s = s_0
 
@@ -34,17 +34,17 @@ NEAR = 1e-3
 """The same while contacts are softened."""
 
 EASY, STIFFEN = 10.0, 10.0
-"""Stiffness of the contacts, over that of what they hold, with which Newton's method has no trouble; factor from one
-stiffness to the next."""
+"""Stiffness of the contacts, over that of the structure they connect, at which Newton's method converges from sticking;
+factor from one stiffness to the next."""
 
 STEPS = 200
 """Most steps of Newton with one stiffness: friction has a kink where slipping begins."""
 
 SHORTEST = 1e-3
-"""Shortest step, over Newton's: one is taken that does not lessen the residual rather than none."""
+"""Shortest step over Newton's; it is taken even if the residual does not fall."""
 
 AT_ONCE = 32
-"""Contacts whose unit forces are answered together: what stands in memory."""
+"""Contacts whose unit forces are solved for together; limits the memory."""
 
 
 @dataclass(frozen=True)
@@ -132,13 +132,13 @@ class FrictionCycle:
     def settled(self, free: Complex, compliance: Complex) -> Complex:
         """Slips by a unit displacement (k,) that agree with their friction, from those without it.
 
-        Contacts much stiffer than what they hold leave Newton's method little way between sticking and slipping: they
-        are stiffened by and by.
+        Contacts much stiffer than the structure leave Newton's method a narrow range between sticking and slipping.
+        They are softened first and stiffened step by step.
 
         Raises
         ------
         ConvergenceError
-            They did not agree.
+            They do not agree.
         """
         stiffness, largest = self.sliding.friction.stiffness, float(np.max(np.abs(free), initial=0.0))
         size = float(np.linalg.norm(compliance * stiffness, 2)) if len(free) else 0.0

@@ -1,7 +1,7 @@
 """Damped natural motions of a rigid rotor on film and petals: `det(m s^2 + Z(s)) = 0` with complex `s` (E7).
 
 The reduced model of the bearing makes this a small linear eigenvalue problem (E8), which gives all modes at once. Each
-is then solved for by itself.
+mode is then refined.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ import numpy as np
 import scipy.linalg as la
 
 from petalfoil.dynamics.critical_mass import SCAN, Complex
-from petalfoil.dynamics.impedance import Impedance
+from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.equilibrium.run_context import current_run
 
 PEAK = 1.0 / math.sqrt(2.0)
-"""Damping ratio from which on a mode shows no resonance: those are not told."""
+"""Damping ratio above which a mode shows no resonance; such modes are left out."""
 PRECISION = 1e-9
 """Last relative step towards a mode."""
 STEPS = 12
-"""Steps after which a start is no mode."""
+"""Most steps of a refinement; a start that takes more is no mode."""
 APART = 1e-6
 """Relative distance below which two modes are one."""
 FARTHER = 1.25
@@ -39,7 +39,7 @@ class Mode:
     participation : float
         Participation of the rotor (E9): twice `|d ln s / d ln m|`. 1 on a spring, 0 for film and petals alone [1].
     direction : float
-        1 for a circle with the rotation, -1 against it, 0 along a line [1].
+        1 for a circular forward whirl, -1 for a circular backward whirl, 0 along a line [1].
     """
 
     s: complex
@@ -86,7 +86,7 @@ def same(one: Mode, other: Mode) -> bool:
 
 
 def reaching(impedance: Impedance, inertia: float) -> tuple[Impedance, float]:
-    """The impedance continued to 1.5 times the whirl ratio where the rotor resonates at the latest, and that ratio."""
+    """The impedance up to 1.5 times the highest whirl ratio at which the rotor can resonate, and that ratio."""
     ratios = SCAN.tolist()
     while ratios[-1] < 1.5 * math.sqrt(np.linalg.norm(impedance.at_ratio(ratios[-1]), 2) / inertia):
         ratios.append(ratios[-1] * FARTHER)
@@ -96,7 +96,7 @@ def reaching(impedance: Impedance, inertia: float) -> tuple[Impedance, float]:
 
 
 def polished(impedance: Impedance, inertia: float, s: complex) -> Mode | None:
-    """The mode near `s`, by successive linear problems `D v = step D' v`, `D = m s^2 + Z`; None if they do not end."""
+    """The mode near `s`, by successive linear problems `D v = step D' v`, `D = m s^2 + Z`; None without convergence."""
     one = np.eye(impedance.motion.problem.layout.n_position)
     for _ in range(STEPS):
         Z, dZ = impedance.with_derivative(s)
@@ -112,10 +112,10 @@ def polished(impedance: Impedance, inertia: float, s: complex) -> Mode | None:
 
 
 def upper(s: complex) -> complex:
-    """Of a conjugate pair the one with a frequency; a motion without one as real."""
+    """The eigenvalue of a conjugate pair with a positive frequency; a motion without frequency as a real number."""
     return complex(s.real, abs(s.imag) if abs(s.imag) > APART * abs(s) else 0.0)
 
 
 def orbit(v: Complex) -> float:
-    """Direction of the ellipse `Re(v exp(i tau))`: areas with the rotation over those of circles of its size."""
+    """Direction of the ellipse `Re(v exp(i tau))`: its signed area over that of a circle of its size."""
     return float(-2.0 * (v[::2].conj() @ v[1::2]).imag / np.linalg.norm(v) ** 2)

@@ -26,7 +26,7 @@ from petalfoil.solvers.contact_equations import (
     ContactState,
     Correction,
     Step,
-    Verdict,
+    StepVerdict,
 )
 from petalfoil.solvers.contact_newton import contact_newton
 from petalfoil.solvers.problem import Border, ContactProblem, fraction_to_boundary
@@ -157,22 +157,22 @@ class Stage(ContactEquations):
         secant = friction.between(state.x, before.x) if count >= CYCLING else friction
         return replace(self, friction=secant, tangents=count)
 
-    def verdict(self, step: Step, options: ContactOptions) -> Verdict:
+    def verdict(self, step: Step, options: ContactOptions) -> StepVerdict:
         """By the size of the correction, and how fast it falls."""
         sliding = self.friction is not None
         if step.size > DIVERGING * step.last_size:
-            return Verdict.REJECT if sliding else Verdict.FAIL
+            return StepVerdict.REJECT if sliding else StepVerdict.FAIL
         if step.after is None:
-            return Verdict.FAIL
+            return StepVerdict.FAIL
         contraction = step.size / step.last_size if step.number else self.options.slow
         error = step.size * min(1.0, contraction / max(1.0 - contraction, 0.1))
         if step.length < 1.0:
-            return Verdict.RENEW
+            return StepVerdict.RENEW
         if error <= self.options.accuracy:
-            return Verdict.CONVERGED
+            return StepVerdict.CONVERGED
         slow = self.options.slow_sliding if sliding else self.options.slow
         one_step = sliding and self.tangents >= CYCLING - 1
-        return Verdict.RENEW if one_step or (step.number and contraction > slow) else Verdict.GO_ON
+        return StepVerdict.RENEW if one_step or (step.number and contraction > slow) else StepVerdict.GO_ON
 
     def moving(self, x: Array, e: Array) -> TimeState:
         """Gas, position and velocity of a state of this stage."""

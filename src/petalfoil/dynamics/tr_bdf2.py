@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.dynamics.rotor import RotorMotion
+from petalfoil.dynamics.rotor_motion import RotorMotion
 from petalfoil.dynamics.stage import Stage, StageOptions, StageSolution, solve_stage
 from petalfoil.dynamics.time_state import Instant, TimeState
 from petalfoil.physics.dry_friction import Friction

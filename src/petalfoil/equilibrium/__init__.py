@@ -1,17 +1,15 @@
-"""HOW AN ANSWER IS REACHED: the solvers put to work on the coupled problem. No reports, no files.
+"""Equilibria of film, wall and contacts, and small motions about them: the solvers applied to the system.
 
-================  ===========================================================================
-`answer.py`       an equilibrium, how it was reached and at what cost
-`work.py`         the solver of a run, its counts, its history, its progress
-`package.py`      the package alone, from nothing: shaft at rest
-`cold.py`         film and package from nothing, through the interior point
-`warm.py`         from a known equilibrium to a neighbour: predictor and contact set
-`ascent.py`       the branch from rest up to speed
-`stability.py`    does an equilibrium return when it is disturbed?
-`response.py`     what a small motion of the journal does to it
-`harmonic.py`    the same where petals rub: stuck, or in cycles by harmonic balance
-`loaded.py`       an equilibrium under a load, and the force left over
-`balancing.py`    the position under a load, from nothing and from a neighbour
-`solid.py`        a package that a load has pressed solid
-================  ===========================================================================
+=========================  ====================================================================
+`run_context.py`           counts, history, clock, progress and solvers of a run
+`solution.py`              an equilibrium, its operating state, how it was reached
+`pack_at_rest.py`          the foil pack alone, at zero speed
+`cold_start.py`            film and pack from nothing, through the interior point
+`continuation.py`          from a known equilibrium to a neighbour; from rest up to speed
+`branches.py`              whether there is more than one equilibrium at a position
+`under_load.py`            the journal's position under a load
+`friction_path.py`         equilibria with friction between petals, one after another
+`linear_response.py`       the response to a small motion of the journal
+`travelling_contacts.py`   contacts of that response that move between nodes
+=========================  ====================================================================
 """

@@ -1,7 +1,7 @@
-"""Is there more than one equilibrium at this position? A coarse grid tells at little cost.
+"""Whether there is more than one equilibrium at a position; a coarse grid answers at little cost.
 
-Petals may sit in more than one state (resting on the next along a stretch or along a line), and they do so on every
-grid. Which state the interior point finds depends on the barrier at which the film joins.
+Petals may rest on the next along a stretch or along a line, and they do so on every grid. Which state the interior
+point finds depends on the barrier at which the film joins.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ Array = NDArray[np.float64]
 
 PROBE_BARRIERS = (3.0, 30.0, 0.3)
 DIFFERENT = 1e-3
-"""Equilibria whose total push on the journal differs by more than this share are different ones."""
+"""Equilibria whose normal forces on the journal differ by more than this fraction are different ones."""
 
 
 def fingerprint(answer: Solution) -> Array:
-    """Push of film and contact on the journal: total size, sum, and along both axes; (4,) [N]."""
+    """Normal forces on the journal: sum of magnitudes, sum, and components along both axes; (4,) [N]."""
     problem = answer.problem
     film, radius = problem.layout.wall.film, problem.layout.balance.radius
     push = (problem.pressure(answer.x) - 1.0) * node_area(film, radius) * problem.layout.scales.pressure
@@ -49,7 +49,7 @@ def probe(problem: CoupledProblem) -> int:
     """Number of different equilibria that a few cold starts find, at least 1."""
     with running() as question:
         answers = [attempt(problem, barrier) for barrier in PROBE_BARRIERS]
-    current_run().probes.factorizations += question.film.factorizations + question.package.factorizations
+    current_run().probes.factorizations += question.film.factorizations + question.pack.factorizations
     count = max(1, distinct([answer for answer in answers if answer is not None]))
     current_run().note("probe", equilibria=count)
     return count

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from petalfoil.equilibrium.package_at_rest import assembled
+from petalfoil.equilibrium.pack_at_rest import assembled
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution, from_contacts, from_point
 from petalfoil.errors import ConvergenceError
@@ -19,7 +19,7 @@ from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.system.coupled import CoupledProblem
 
 BARRIERS = (3.0, 30.0, 0.3, 300.0)
-"""Barriers at which the film joins, in ambient pressure times 10 um; the first serves 97 % of random packages."""
+"""Barriers at which the film joins, in ambient pressure times 10 um; the first serves 97 % of random bearings."""
 
 FILM_ALONE = ContactOptions(tangents=60, near=0.3, gain=0.2, steps=9)
 """Over a rigid wall Newton converges from afar, and a step with the factor at hand costs a fifth of another."""
@@ -47,16 +47,16 @@ def solve_cold(problem: CoupledProblem, barriers: tuple[float, ...] = BARRIERS) 
 def nothing_found() -> ConvergenceError:
     """The error of a search that came to nothing, with its history."""
     return ConvergenceError(
-        "no equilibrium found: film, petals and contacts did not settle from any start",
+        "no equilibrium found: film, petals and contacts did not converge from any start",
         history=current_run().history,
         advice="refine the grid, lower the eccentricity or approach it along a curve; extreme preload (thick or short "
-        "petals, a rigid mount with a steep root) makes equilibria that switch from node to node",
+        "petals, a clamped mount with a steep root) makes equilibria that switch from node to node",
     )
 
 
 def attempt(problem: CoupledProblem, barrier: float) -> Solution | None:
-    """Solve from the assembled package at one barrier; None if that leads nowhere."""
-    path = f"interior point from the assembled package, barrier {barrier:g}"
+    """Solve from the assembled pack at one barrier; None if that leads nowhere."""
+    path = f"interior point from the assembled pack, barrier {barrier:g}"
     if not problem.layout.n_wall:
         return over_rigid_wall(problem)
     try:

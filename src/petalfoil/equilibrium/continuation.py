@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from petalfoil.equilibrium.branches import fingerprint
 from petalfoil.equilibrium.cold_start import finish, solve_cold
-from petalfoil.equilibrium.package_at_rest import at_rest
+from petalfoil.equilibrium.pack_at_rest import at_rest
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution, from_contacts
 from petalfoil.solvers.contact_equations import ContactOptions
@@ -220,10 +220,10 @@ def ascend(problem: CoupledProblem, options: AscentOptions | None = None) -> tup
 def rest(problem: CoupledProblem) -> Solution | None:
     """The assembled foil pack at zero speed, its film at rest; None if it did not settle."""
     still, run = problem.at(bearing_number=0.0), current_run()
-    package = at_rest(still)
-    if package is None:
+    pack = at_rest(still)
+    if pack is None:
         return None
-    start = problem.layout.ambient(package.state.x), package.active
+    start = problem.layout.ambient(pack.x), pack.active
     contacts, outcome = solve_contacts(still, start, run.film_solver)
     run.note("contacts", outcome=outcome.value)
-    return from_contacts(still, contacts, "assembled package at rest")
+    return from_contacts(still, contacts, "assembled foil pack at zero speed")

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.physics.dry_friction import Friction
-from petalfoil.solvers.contact_equations import ContactEquations, ContactOptions, ContactState, Step, Verdict
+from petalfoil.solvers.contact_equations import ContactEquations, ContactOptions, ContactState, Step, StepVerdict
 from petalfoil.solvers.contact_newton import contact_newton
 from petalfoil.solvers.problem import ContactProblem
 from petalfoil.solvers.sparse_lu import LinearSolver
@@ -41,14 +41,14 @@ class FrictionEquations(ContactEquations):
             self, problem=replace(self.problem, step=step.between(state.x, before.x) if count >= CYCLING else step)
         )
 
-    def verdict(self, step: Step, options: ContactOptions) -> Verdict:
+    def verdict(self, step: Step, options: ContactOptions) -> StepVerdict:
         """By the residual; and the limits must agree with the reactions."""
         verdict = super().verdict(step, options)
-        if verdict is not Verdict.CONVERGED or step.after is None:
+        if verdict is not StepVerdict.CONVERGED or step.after is None:
             return verdict
         normal = self.problem.step.friction.normal(step.after.lam)
         away = np.max(np.abs(normal - self.problem.step.normal), initial=0.0)
-        return verdict if away <= AGREE * np.max(normal, initial=0.0) else Verdict.RENEW
+        return verdict if away <= AGREE * np.max(normal, initial=0.0) else StepVerdict.RENEW
 
 
 @dataclass(frozen=True)

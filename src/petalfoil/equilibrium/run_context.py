@@ -33,7 +33,7 @@ class RunContext:
 
     Attributes
     ----------
-    film, package, probes : Counter
+    film, pack, probes : Counter
         Factorisations of the coupled system, of the foil pack alone, and of systems that only answer a question
         (stability, other equilibria).
     history : list
@@ -47,7 +47,7 @@ class RunContext:
     """
 
     film: Counter = field(default_factory=Counter)
-    package: Counter = field(default_factory=Counter)
+    pack: Counter = field(default_factory=Counter)
     probes: Counter = field(default_factory=Counter)
     history: list[HistoryRow] = field(default_factory=list)
     elimination_orders: dict[Hashable, Elimination] = field(default_factory=dict)
@@ -65,9 +65,9 @@ class RunContext:
         return LinearSolver(self.film, self.elimination_orders)
 
     @property
-    def package_solver(self) -> LinearSolver:
+    def pack_solver(self) -> LinearSolver:
         """Solver of the foil pack alone."""
-        return LinearSolver(self.package, self.elimination_orders)
+        return LinearSolver(self.pack, self.elimination_orders)
 
     @property
     def probe_solver(self) -> LinearSolver:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from petalfoil.equilibrium.cold_start import GOALS, nothing_found, reached
 from petalfoil.equilibrium.continuation import predicted, widened
-from petalfoil.equilibrium.package_at_rest import assembled
+from petalfoil.equilibrium.pack_at_rest import assembled
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution, from_contacts, unrefined
 from petalfoil.solvers.contact_equations import (
@@ -25,7 +25,7 @@ from petalfoil.solvers.contact_equations import (
     ContactState,
     Correction,
     Step,
-    Verdict,
+    StepVerdict,
 )
 from petalfoil.solvers.contact_newton import ActiveContacts, contact_newton
 from petalfoil.solvers.interior_point import InteriorOptions, InteriorStep, contact_set, interior_point
@@ -56,7 +56,7 @@ MOST_FILMS = 10.0
 """Longest move of the journal in a step, in reference films (100 um for petals, ten clearances for a plain bore)."""
 
 CORRECTIONS = 3
-"""Refinements of a balance: the second is for loads that are small beside what pushes on the journal all round."""
+"""Refinements of a balance: the second is for loads much smaller than the forces that cancel around the journal."""
 
 # ---------------------------------------------------------------------------------------------- from nothing
 
@@ -179,13 +179,13 @@ class LoadedEquations(ContactEquations):
         farthest = MOST_FILMS / max(float(np.linalg.norm(correction.b)), 1e-300)
         return min(super().step_length(state, correction), farthest)
 
-    def verdict(self, step: Step, options: ContactOptions) -> Verdict:
+    def verdict(self, step: Step, options: ContactOptions) -> StepVerdict:
         """By the residual; and the forces must balance."""
         verdict = super().verdict(step, options)
-        if verdict is not Verdict.CONVERGED or step.after is None:
+        if verdict is not StepVerdict.CONVERGED or step.after is None:
             return verdict
         unbalanced = np.linalg.norm(self.imbalance(step.after.x, step.after.lam, step.after.b))
-        return verdict if unbalanced <= FORCE_TOLERANCE * load_scale(self.load) else Verdict.RENEW
+        return verdict if unbalanced <= FORCE_TOLERANCE * load_scale(self.load) else StepVerdict.RENEW
 
 
 def newton(
@@ -226,14 +226,14 @@ BOTTOMED_GOALS = (1e-13, 1e-14, 1e-15, 1e-16)
 BOTTOMED_STEPS = InteriorOptions(max_steps=4)
 """Newton's answer loses digits at such barriers: more steps gain nothing."""
 
-BOTTOMED_OUT = "interior point; petals are pressed solid between journal and bushing"
+BOTTOMED_OUT = "interior point; the pack is bottomed out between journal and bushing"
 """How such a solution was reached."""
 
 
 def bottomed_out(whole: LoadedProblem, point: PrimalDualPoint) -> Solution | None:
     """The interior point's own solution: it goes on from `point` until gap or reaction of every pair has vanished."""
     run = current_run()
-    look = run.watch("solid", lambda step: False)
+    look = run.watch("bottomed out", lambda step: False)
 
     def finished(at: PrimalDualPoint, step: InteriorStep) -> bool:
         return look(at, step) or without_slacks(whole, at).residual <= RESIDUAL_TOLERANCE

@@ -136,7 +136,7 @@ class PointsOnLines:
 
     @property
     def replaced(self) -> Index:
-        """Numbers of the closed gaps that the points stand for."""
+        """Numbers of the active contacts that the points stand for."""
         return np.concatenate([self.lines.number[self.line, node] for node in (self.first, self.last)])
 
     @property

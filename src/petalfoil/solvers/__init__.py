@@ -1,13 +1,17 @@
-"""HOW, in arrays alone: nothing here knows what a bearing is.
+"""Numerical methods, in arrays alone: nothing here knows what a bearing is.
 
-====================  =======================================================================
-`cone.py`             the protocol of a problem with one-sided gaps, and a point of it
-`linear.py`           sparse factorisation: equilibrated, counted, one thread
-`interior_point.py`   primal-dual interior point: cold starts, on any grid
-`active_set.py`       Newton on a known set of closed gaps: exact zeros, warm starts
-`ties.py`             closed gaps as eliminated unknowns
-`set_search.py`       the contact set of the linearised equations, found at once
-`complementarity.py`  small dense complementarity problems
-`eigen.py`            rightmost eigenvalue of a singular pencil: is an equilibrium stable?
-====================  =======================================================================
+========================  ===================================================================
+`problem.py`              what the solvers ask of a problem with one-sided gaps; its tolerance
+`sparse_lu.py`            sparse factorisation: equilibrated, counted, one thread
+`constraints.py`          active contacts as constraints that eliminate unknowns
+`point_constraints.py`    the same for contact points between nodes
+`tangent.py`              the factorised tangent, with a few bordered unknowns
+`interior_point.py`       primal-dual interior point: cold starts, on any grid
+`contact_equations.py`    what Newton's method on active contacts solves; its variants
+`contact_newton.py`       Newton's method on active contacts: exact zeros, warm starts
+`contact_search.py`       the active contacts of the linearised equations, found at once
+`lcp.py`                  small dense complementarity problems
+`eigenvalues.py`          rightmost eigenvalue of a singular pencil
+`reduced_model.py`        a large linear system with few inputs as a small one
+========================  ===================================================================
 """

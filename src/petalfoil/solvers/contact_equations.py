@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
-class Outcome(Enum):
+class ContactOutcome(Enum):
     """How an attempt ended."""
 
     CONVERGED = "converged"
@@ -40,7 +40,7 @@ class Outcome(Enum):
     DIVERGED = "the steps grew"
 
 
-class Verdict(Enum):
+class StepVerdict(Enum):
     """What a step says about the next one."""
 
     GO_ON = "another step with the same tangent"
@@ -53,7 +53,7 @@ class Verdict(Enum):
 class ContactFailure(ArithmeticError):
     """An attempt that cannot go on; it does not leave this file."""
 
-    def __init__(self, outcome: Outcome) -> None:
+    def __init__(self, outcome: ContactOutcome) -> None:
         super().__init__(outcome.value)
         self.outcome = outcome
 
@@ -81,14 +81,14 @@ class ContactOptions:
     revise_early: bool = True
     """Correct the active contacts after every tangent, not only when the equations are solved or a gap is negative."""
     tangent_at_entry: bool = False
-    """Take the first tangent on a set where the set was entered, before its gaps are closed."""
+    """Take the first tangent on a set where the set was entered, before its gaps close."""
     borrow: bool = False
     """A tangent of a neighbour may end the iteration, and follows contacts that change; else it serves one step."""
 
 
 @dataclass(frozen=True)
 class ContactState:
-    """An iterate; its active gaps are closed exactly.
+    """An iterate; its active gaps vanish exactly.
 
     Attributes
     ----------
@@ -199,18 +199,18 @@ class ContactEquations:
         """The same for a new tangent at `state`, the one before having been at `before`; `count` with one set."""
         return self
 
-    def verdict(self, step: Step, options: ContactOptions) -> Verdict:
+    def verdict(self, step: Step, options: ContactOptions) -> StepVerdict:
         """What a step says about the next one: by the residual."""
         after = step.after
         if after is None:
-            return Verdict.REJECT if step.number else Verdict.FAIL
+            return StepVerdict.REJECT if step.number else StepVerdict.FAIL
         if step.number and after.residual > options.gain * step.before.residual:
-            return Verdict.REJECT
+            return StepVerdict.REJECT
         stagnant = after.residual > 0.5 * step.before.residual
         if after.residual <= (options.rounded if stagnant else RESIDUAL_TOLERANCE):
-            return Verdict.CONVERGED
+            return StepVerdict.CONVERGED
         settled = np.array_equal(revise(self.problem, after), after.active)
-        return Verdict.GO_ON if after.residual <= options.near and settled else Verdict.RENEW
+        return StepVerdict.GO_ON if after.residual <= options.near and settled else StepVerdict.RENEW
 
 
 def evaluate(
@@ -222,13 +222,13 @@ def evaluate(
 ) -> ContactState:
     """Close the held gaps exactly; find residual and reactions there, stops pushing by `pushes` (j,) or not at all."""
     if not constraints.determinate:
-        raise ContactFailure(Outcome.OVERDETERMINED)
+        raise ContactFailure(ContactOutcome.OVERDETERMINED)
     problem, held, stops = equations.at(at[1]), constraints.held, constraints.stops
     x = at[0] + constraints.close(problem.gaps(at[0])[held])
     gaps = problem.gaps(x)
     outside = np.min(gaps, initial=0.0) < options.deepest or np.min(x[problem.positive], initial=1.0) <= 0.0
     if outside or not np.all(np.isfinite(x)) or not problem.admits(x):
-        raise ContactFailure(Outcome.PENETRATED)
+        raise ContactFailure(ContactOutcome.PENETRATED)
     linearized = problem.linearize(x)
     lam, active = np.zeros(len(gaps)), held.copy()
     if pushes is not None:

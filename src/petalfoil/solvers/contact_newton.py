@@ -21,11 +21,11 @@ from petalfoil.solvers.contact_equations import (
     ContactEquations,
     ContactFailure,
     ContactOptions,
+    ContactOutcome,
     ContactState,
     Correction,
-    Outcome,
     Step,
-    Verdict,
+    StepVerdict,
     evaluate,
     revise,
 )
@@ -78,13 +78,13 @@ def contact_newton(
     solver: LinearSolver,
     options: ContactOptions,
     tangent: BorderedTangent | None = None,
-) -> tuple[ActiveContacts | None, Outcome]:
+) -> tuple[ActiveContacts | None, ContactOutcome]:
     """Solve `equations` from `start`, correcting the active contacts, until residual and signs agree.
 
     `tangent`, that of a neighbour, serves the first steps if it fits the contacts.
     """
     try:
-        return iterate(equations, start, solver, options, tangent), Outcome.CONVERGED
+        return iterate(equations, start, solver, options, tangent), ContactOutcome.CONVERGED
     except ContactFailure as failure:
         return None, failure.outcome
 
@@ -95,7 +95,7 @@ def solve_contacts(
     solver: LinearSolver,
     options: ContactOptions | None = None,
     tangent: BorderedTangent | None = None,
-) -> tuple[ActiveContacts | None, Outcome]:
+) -> tuple[ActiveContacts | None, ContactOutcome]:
     """`contact_newton` of a problem as it is, from unknowns (n,) and active contacts (m,)."""
     x, active = start
     return contact_newton(
@@ -155,7 +155,7 @@ def iterate(
         start = x, state.b, active
         tangent = fitting(equations, tangent if options.borrow else None, start)
         state = before = evaluate(equations, start[:2], options, constraints_of(equations, start, tangent))
-    raise ContactFailure(Outcome.STEPS)
+    raise ContactFailure(ContactOutcome.STEPS)
 
 
 def steps_with(
@@ -172,19 +172,19 @@ def steps_with(
         length = equations.step_length(state, correction)
         ahead = state.x + length * correction.x, state.b + length * correction.b
         after: ContactState | None = None
-        failure = Outcome.DIVERGED
+        failure = ContactOutcome.DIVERGED
         try:
             after = evaluate(equations, ahead, options, state.constraints, correction.stops)
         except ContactFailure as failed:
             failure = failed.outcome
         verdict = equations.verdict(Step(number, state, after, length, correction.size, last), options)
-        if verdict is Verdict.FAIL:
+        if verdict is StepVerdict.FAIL:
             raise ContactFailure(failure)
-        if verdict is Verdict.REJECT or after is None:
+        if verdict is StepVerdict.REJECT or after is None:
             break
         state, last = after, correction.size
-        if verdict is not Verdict.GO_ON:
-            return equations, state, verdict is Verdict.CONVERGED
+        if verdict is not StepVerdict.GO_ON:
+            return equations, state, verdict is StepVerdict.CONVERGED
     return equations, state, False
 
 
@@ -203,7 +203,7 @@ def corrected(equations: ContactEquations, state: ContactState, tangent: Bordere
         give = np.linalg.solve(stiffness, arms.T)
         found = solve_lcp(arms @ give, state.gaps[stops] + arms @ db, np.zeros(len(arms), dtype=bool))
         if found is None:
-            raise ContactFailure(Outcome.OVERDETERMINED)
+            raise ContactFailure(ContactOutcome.OVERDETERMINED)
         db, pushes = db + give @ found, found
     return Correction(settled + tangent.units @ db, db, pushes)
 
@@ -233,7 +233,7 @@ def factorise(
     try:
         factor = state.constraints.factor(matrix, solver, equations.problem.elimination_key)
     except SingularMatrixError:
-        raise ContactFailure(Outcome.SINGULAR) from None
+        raise ContactFailure(ContactOutcome.SINGULAR) from None
     return BorderedTangent.at(Tangent(matrix, state.constraints, factor), border, linearized)
 
 

@@ -1,4 +1,4 @@
-"""Rightmost eigenvalue of `J u = -s M u` (E1) with a singular `M`: does a disturbance die out?
+"""Rightmost eigenvalue of `J u = -s M u` (E1) with a singular `M`: whether a disturbance dies out.
 
 Algebraic rows (a wall without mass) make `M` singular and put eigenvalues at infinity. The pencil is therefore seen
 through one implicit Euler step, `theta = 1 / (1 - h s)` (E2), (E3): infinity goes to zero, and what lies nearest to
@@ -23,16 +23,17 @@ from petalfoil.sparsity import Order
 Array = NDArray[np.float64]
 
 LEAST, MOST, EVERY = 16, 80, 8
-"""Steps before the first look, at most, and between looks. Random packages need 16 to 64 of them, 29 in the mean."""
+"""Steps before the first test of convergence, at most, and between tests. Random bearings need 16 to 64 of them, 29 in
+the mean."""
 
 SETTLED = 1e-3
 """Relative residual in `theta` of a settled eigenvalue."""
 
 UNSEEN = 1e-6
-"""Eigenvalues `theta` below this are infinity's, rounded: growth rates below `-1e6 / h` are told as that."""
+"""Eigenvalues `theta` below this are those at infinity, rounded: growth rates below `-1e6 / h` are given as that."""
 
 EXHAUSTED = 1e-12
-"""Part of a step that the space has not seen yet, below which it is rounding: the space holds all there is."""
+"""Part of a step outside the space, over the step, below which it is rounding: the space is invariant."""
 
 
 @dataclass(frozen=True)

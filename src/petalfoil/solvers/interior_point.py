@@ -131,9 +131,9 @@ def interior_point(
 def contact_set(
     problem: ContactProblem, point: PrimalDualPoint, solver: LinearSolver
 ) -> tuple[Array, NDArray[np.bool_]]:
-    """Which gaps are closed in the answer ahead of `point`, and where it lies.
+    """The active contacts of the solution ahead of `point`, and its unknowns.
 
-    Along the direction that aims at a barrier of zero, slacks of closed gaps vanish while those of open gaps stay
+    Along the direction that aims at a barrier of zero, slacks of active contacts vanish while those of open gaps stay
     (Tapia's indicators): it does not depend on units, as comparing reactions with gaps would.
     """
     shift = point.s - problem.gaps(point.x)

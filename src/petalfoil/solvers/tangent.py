@@ -85,7 +85,7 @@ class Exchange:
     changes, reactions : (n, a + b), (k, a + b) array
         Changes of the unknowns and of the factor's reactions by a unit opening or a unit reaction of each.
     lu : tuple
-        Factors of the conditions that openings carry no load and closed gaps stay closed.
+        Factors of the conditions that openings carry no load and added gaps stay closed.
     """
 
     opened: Index

@@ -1,4 +1,10 @@
-"""Sparse matrices of one pattern: where their entries go, and in which order they are best eliminated."""
+"""Sparse matrices of one pattern.
+
+==============  ========================================================
+`pattern.py`    where their entries go
+`ordering.py`   in which order they are best eliminated
+==============  ========================================================
+"""
 
 from petalfoil.sparsity.ordering import Elimination, Order, TiedOrder, postorder
 from petalfoil.sparsity.pattern import Pattern, add_up

@@ -1,10 +1,17 @@
-"""ONE SYSTEM: film, wall and contacts as a residual, its tangent and its gaps. It does not solve.
+"""Film, wall and contacts as one system: residual, tangent and gaps. Nothing here solves.
 
-===============  ====================================================================
-`scales.py`      units of the unknowns: lengths, pressures, nodal forces
-`coupled.py`     film and wall together, at one speed and journal position
-`package.py`     the wall alone under a given pressure: a convex quadratic programme
-===============  ====================================================================
+=====================  ========================================================================
+`scales.py`            units of the unknowns: lengths, pressures, nodal forces
+`unknowns.py`          named blocks of the unknowns; further fields on the film
+`bearing_layout.py`    what stays the same while speed and position change
+`film_rows.py`         the film's equations
+`coupled.py`           film and wall together, at one speed and journal position
+`foil_pack.py`         the wall alone under a given pressure: a convex programme
+`loaded.py`            the journal's position unknown, a load given
+`friction.py`          friction between petals, and a problem with it
+`time_step.py`         an implicit step in time: the film stores gas
+`build.py`             from a case to its problem
+=====================  ========================================================================
 
 Unknowns are dimensionless: deflections `w = W / h_ref`, pressures `P = p / p_a`, reactions over `p_a` times a
 typical node's area. The vector is `x = [w, P]`; contacts enter as `G^T lam`.

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from petalfoil.case import Case
 from petalfoil.memory import check_memory
 from petalfoil.physics.mass_balance import FilmBalance
+from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.coupled import CoupledProblem
-from petalfoil.system.layout import Layout
 from petalfoil.system.scales import scales_of
 from petalfoil.walls import Wall, build_wall
 from petalfoil.walls.two_bearings import paired
@@ -38,7 +38,7 @@ def discretised(case: Case, wall: Wall, displacement: NDArray[np.float64]) -> Co
     radius, speed = case.bearing.journal_radius, case.operation.speed
     balance = FilmBalance(wall.film, radius, case.slip_length / scales.length)
     return CoupledProblem(
-        layout=Layout(case, wall, balance, scales),
+        layout=BearingLayout(case, wall, balance, scales),
         bearing_number=scales.bearing_number(case.gas.viscosity, speed, radius),
         displacement=displacement / scales.length,
     )

@@ -17,8 +17,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, Border
+from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.film_rows import FilmState
-from petalfoil.system.layout import Layout
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE, FieldRows
 
 Array = NDArray[np.float64]
@@ -34,7 +34,7 @@ class CoupledProblem:
 
     Attributes
     ----------
-    layout : Layout
+    layout : BearingLayout
         Mesh, wall and constant entries.
     bearing_number : float
         `Lam` on the reference film [1].
@@ -42,7 +42,7 @@ class CoupledProblem:
         Journal displacement over the reference length [1].
     """
 
-    layout: Layout
+    layout: BearingLayout
     bearing_number: float
     displacement: Array
 
@@ -128,7 +128,7 @@ class Linearization:
     has not changed yet, so the residual is the steady one and only the tangent grows.
     """
 
-    layout: Layout
+    layout: BearingLayout
     x: Array
     film: FilmState
     low_order: Array | None = None
@@ -197,7 +197,7 @@ class Linearization:
         return out
 
 
-def wall_scale(layout: Layout, w: Array) -> Array:
+def wall_scale(layout: BearingLayout, w: Array) -> Array:
     """What the residual of the wall's rows is compared with while it is iterated on, (n_wall,) [1].
 
     Ambient pressure on the node; where the rounding of `w` alone makes more than the tolerance of that, this rounding

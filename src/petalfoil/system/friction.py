@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from petalfoil.case import Case
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.problem import ContactProblem, Linearized
-from petalfoil.system.layout import Layout
+from petalfoil.system.bearing_layout import BearingLayout
 
 Array = NDArray[np.float64]
 
@@ -203,7 +203,7 @@ class FrictionLinearization:
         return self.smooth.slack_derivative(change, rate)
 
 
-def friction_of(case: Case, layout: Layout) -> Friction | None:
+def friction_of(case: Case, layout: BearingLayout) -> Friction | None:
     """Friction between the petals of `case` in the units of the problem; None without any."""
     surface, wall = case.surface, layout.wall
     if not surface.petal_friction or not wall.slip.shape[0]:

@@ -1,7 +1,7 @@
 """The vector of unknowns in named blocks, and the tangent assembled from blocks.
 
 A further field on the film, or a few unknowns beside it, is an `ExtraField` in a file of its own that is named where
-the problem is built (`build.discretised`). Nothing else changes: all rooms address blocks by name.
+the problem is built (`build.discretised`). Nothing else changes: blocks are addressed by name everywhere.
 """
 
 from __future__ import annotations

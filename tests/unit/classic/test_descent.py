@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from petalfoil.classic.descent import PackDescent
 from petalfoil.classic.method_options import ClassicOptions
 from petalfoil.classic.numpy_kernels import elastic_force, project
-from petalfoil.equilibrium.ascent import rest
+from petalfoil.equilibrium.continuation import rest
 from petalfoil.system.coupled import CoupledProblem
 from tests.unit.classic.bearings import bearing, package
 

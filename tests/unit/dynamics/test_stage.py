@@ -16,7 +16,7 @@ from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import GAMMA, IMPLICIT, RotorBearing, lagrange, take_step
 from petalfoil.equilibrium.run_context import RunContext
 from petalfoil.solvers.constraints import constrain
-from petalfoil.solvers.contact_equations import ContactOptions, Step, Verdict, evaluate
+from petalfoil.solvers.contact_equations import ContactOptions, Step, StepVerdict, evaluate
 from petalfoil.solvers.contact_newton import factorise
 from petalfoil.solvers.sparse_lu import LinearSolver
 from tests.cases import case
@@ -93,7 +93,7 @@ def test_the_tangent_of_a_stage_serves_the_next(run: RunContext) -> None:
     assert run.film.factorizations - before == 1
 
 
-def verdict(stage: Stage, size: float, last: float, number: int, length: float = 1.0) -> Verdict:
+def verdict(stage: Stage, size: float, last: float, number: int, length: float = 1.0) -> StepVerdict:
     """Of a step with corrections of such sizes."""
     start = np.zeros(stage.problem.layout.n_position)
     x = stage.problem.layout.ambient(np.zeros(stage.problem.layout.n_wall))
@@ -106,11 +106,11 @@ def verdict(stage: Stage, size: float, last: float, number: int, length: float =
 def test_a_stage_ends_by_its_correction() -> None:
     stage, _ = first_stage("plain")
     stage = replace(stage, options=StageOptions(accuracy=1e-6))
-    assert verdict(stage, 1e-3, np.inf, 0) is Verdict.GO_ON
-    assert verdict(stage, 1e-5, 1e-3, 1) is Verdict.CONVERGED  # contracts by 100: the next one is 1e-7
-    assert verdict(stage, 1e-4, 2e-4, 1) is Verdict.RENEW  # contracts too slowly
-    assert verdict(stage, 3e-3, 1e-3, 1) is Verdict.FAIL  # grows
-    assert verdict(stage, 1e-9, np.inf, 0, length=0.5) is Verdict.RENEW  # shortened: not where it aimed
+    assert verdict(stage, 1e-3, np.inf, 0) is StepVerdict.GO_ON
+    assert verdict(stage, 1e-5, 1e-3, 1) is StepVerdict.CONVERGED  # contracts by 100: the next one is 1e-7
+    assert verdict(stage, 1e-4, 2e-4, 1) is StepVerdict.RENEW  # contracts too slowly
+    assert verdict(stage, 3e-3, 1e-3, 1) is StepVerdict.FAIL  # grows
+    assert verdict(stage, 1e-9, np.inf, 0, length=0.5) is StepVerdict.RENEW  # shortened: not where it aimed
 
 
 def test_the_tangent_of_other_contacts_is_factorised_on_them() -> None:

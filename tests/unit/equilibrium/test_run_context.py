@@ -39,7 +39,7 @@ def test_the_same_problem_solved_in_two_runs_gives_the_same_bits() -> None:
     for _ in range(2):
         with RunContext().active() as run:
             answers.append(solve_cold(problem))
-            counts.append((run.film.factorizations, run.package.factorizations))
+            counts.append((run.film.factorizations, run.pack.factorizations))
     assert np.array_equal(answers[0].x, answers[1].x)
     assert np.array_equal(answers[0].lam, answers[1].lam)
     assert counts[0] == counts[1]

@@ -15,9 +15,9 @@ from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.contact_equations import (
     ContactEquations,
     ContactOptions,
+    ContactOutcome,
     ContactState,
-    Outcome,
-    Verdict,
+    StepVerdict,
     evaluate,
 )
 from petalfoil.solvers.contact_newton import ActiveContacts, contact_newton, corrected, factorise, solve_contacts
@@ -34,7 +34,7 @@ OPEN = np.zeros(CELLS - 1, dtype=bool)
 
 def solve(
     problem: ContactProblem, x: Array, active: Mask, tangents: int = 12
-) -> tuple[ActiveContacts | None, Outcome, int]:
+) -> tuple[ActiveContacts | None, ContactOutcome, int]:
     solver = LinearSolver()
     found, outcome = solve_contacts(problem, (x, active), solver, ContactOptions(tangents=tangents))
     return found, outcome, solver.counter.factorizations
@@ -46,7 +46,7 @@ def solve(
 def test_string_on_its_own_contacts() -> None:
     w, lam = string_answer()
     found, outcome, count = solve(string(), np.zeros(CELLS - 1), lam > 0.0)
-    assert outcome is Outcome.CONVERGED
+    assert outcome is ContactOutcome.CONVERGED
     assert found is not None
     assert count == 1
     assert_allclose(found.x, w, atol=1e-14)
@@ -58,7 +58,7 @@ def test_string_from_other_contacts(start: str) -> None:
     w, lam = string_answer()
     active = {"all": np.ones(CELLS - 1, dtype=bool), "shifted": np.roll(lam > 0.0, 3), "ends": lam == 0.5}[start]
     found, outcome, _ = solve(string(), np.zeros(CELLS - 1), active, tangents=30)
-    assert outcome is Outcome.CONVERGED
+    assert outcome is ContactOutcome.CONVERGED
     assert found is not None
     assert_allclose(found.x, w, atol=1e-14)
     assert np.array_equal(found.active, lam > 0.0)
@@ -82,7 +82,7 @@ def test_the_tangent_of_a_neighbour_shows_where_its_contacts_are_wrong() -> None
     for before in (None, known.tangent):
         solver = LinearSolver()
         contacts, outcome = solve_contacts(nearer, (known.x, known.active), solver, ContactOptions(), before)
-        assert outcome is Outcome.CONVERGED
+        assert outcome is ContactOutcome.CONVERGED
         assert contacts is not None
         counts.append(solver.counter.factorizations)
         found.append(contacts)
@@ -98,7 +98,7 @@ def test_sets_that_return() -> None:
     K = sp.csr_array([[1.0, 0.0, alpha], [alpha, 1.0, 0.0], [0.0, alpha, 1.0]])
     problem = ElasticProblem(K, np.ones(3), rows_of(3, ([0, 1, 2], 1.0)), np.zeros(3), np.ones(3))
     found, outcome, count = solve(problem, np.zeros(3), np.array([False, True, True]))
-    assert outcome is Outcome.CONVERGED
+    assert outcome is ContactOutcome.CONVERGED
     assert found is not None
     assert count <= 6
     assert_allclose(found.x, 1.0 / (1.0 + alpha), rtol=1e-12)
@@ -107,31 +107,31 @@ def test_sets_that_return() -> None:
 def test_steps_run_out() -> None:
     found, outcome, count = solve(string(), np.zeros(CELLS - 1), np.arange(CELLS - 1) == 5, tangents=1)
     assert found is None
-    assert outcome is Outcome.STEPS
+    assert outcome is ContactOutcome.STEPS
     assert count == 1
 
 
 def test_a_chain_held_at_both_ends() -> None:
     found, outcome, _ = solve(pressed(), np.zeros(2), np.ones(3, dtype=bool))
     assert found is None
-    assert outcome is Outcome.OVERDETERMINED
+    assert outcome is ContactOutcome.OVERDETERMINED
 
 
 def test_far_below_zero() -> None:
     _, outcome, _ = solve(string(), np.full(CELLS - 1, 0.6), OPEN)
-    assert outcome is Outcome.PENETRATED
+    assert outcome is ContactOutcome.PENETRATED
 
 
 def test_a_matrix_without_inverse() -> None:
     loose = ElasticProblem(sp.csr_array((1, 1)), np.ones(1), rows_of(1, ([0], -1.0)), np.ones(1), np.ones(1))
     _, outcome, _ = solve(loose, np.zeros(1), np.array([False]))
-    assert outcome is Outcome.SINGULAR
+    assert outcome is ContactOutcome.SINGULAR
 
 
 def test_film_that_reads_its_gap() -> None:
     """`x = c / (1 - x)`: the smaller root of `x (1 - x) = c`."""
     found, outcome, count = solve(Spring(0.1), np.array([0.3]), np.array([False]))
-    assert outcome is Outcome.CONVERGED
+    assert outcome is ContactOutcome.CONVERGED
     assert found is not None
     assert_allclose(found.x, 0.5 - np.sqrt(0.25 - 0.1), rtol=1e-8)
     assert count < 4  # steps that share a tangent save one
@@ -229,11 +229,11 @@ class Floating(ContactEquations):
         """Force of the contacts on the obstacle, its load and its spring."""
         return np.array([lam.sum() - self.load - self.spring * b[0]])
 
-    def verdict(self, step: object, options: ContactOptions) -> Verdict:
+    def verdict(self, step: object, options: ContactOptions) -> StepVerdict:
         """The obstacle must be in balance too."""
         verdict = super().verdict(step, options)
         left = self.imbalance(step.after.x, step.after.lam, step.after.b) if step.after is not None else np.ones(1)
-        return verdict if verdict is not Verdict.CONVERGED or abs(left[0]) < 1e-10 else Verdict.RENEW
+        return verdict if verdict is not StepVerdict.CONVERGED or abs(left[0]) < 1e-10 else StepVerdict.RENEW
 
 
 def test_an_obstacle_that_floats_on_its_contacts() -> None:
@@ -242,7 +242,7 @@ def test_an_obstacle_that_floats_on_its_contacts() -> None:
     equations = Floating(string(distance=0.7 * OBSTACLE), load=float(lam.sum()))
     start = np.zeros(CELLS - 1), np.zeros(1), lam > 0.0
     found, outcome = contact_newton(equations, start, LinearSolver(), ContactOptions(tangents=30))
-    assert outcome is Outcome.CONVERGED
+    assert outcome is ContactOutcome.CONVERGED
     assert found is not None
     assert_allclose(found.state.b, 0.3 * OBSTACLE, rtol=1e-10)
     assert_allclose(found.x, w, atol=1e-13)
@@ -271,7 +271,7 @@ def test_stops_carry_what_moves_the_chain_as_a_whole() -> None:
     options = ContactOptions(tangents=30, revise_early=False, borrow=True, deepest=-np.inf)
     start = np.zeros(2), np.zeros(1), np.ones(3, dtype=bool)
     found, outcome = contact_newton(equations, start, LinearSolver(), options)
-    assert outcome is Outcome.CONVERGED
+    assert outcome is ContactOutcome.CONVERGED
     assert found is not None
     problem = Level(equations.problem, float(found.state.b[0]))
     gaps = problem.gaps(found.x)
@@ -304,11 +304,11 @@ class Lagging(ContactEquations):
         loaded = replace(self.problem, force=np.ones(CELLS - 1) * (1.0 + self.share * total / CELLS))
         return replace(self, problem=loaded, normal=total)
 
-    def verdict(self, step: object, options: ContactOptions) -> Verdict:
+    def verdict(self, step: object, options: ContactOptions) -> StepVerdict:
         """The load must agree with the reactions."""
         verdict = super().verdict(step, options)
-        if verdict is Verdict.CONVERGED and abs(step.after.lam.sum() - self.normal) > 1e-10:
-            return Verdict.RENEW
+        if verdict is StepVerdict.CONVERGED and abs(step.after.lam.sum() - self.normal) > 1e-10:
+            return StepVerdict.RENEW
         return verdict
 
 
@@ -316,7 +316,7 @@ def test_terms_that_follow_the_reactions_agree_with_them_in_the_end() -> None:
     equations = Lagging(string(), 0.3)
     start = np.zeros(CELLS - 1), np.zeros(0), string_answer()[1] > 0.0
     found, outcome = contact_newton(equations, start, LinearSolver(), ContactOptions(tangents=60, revise_early=False))
-    assert outcome is Outcome.CONVERGED
+    assert outcome is ContactOutcome.CONVERGED
     assert found is not None
     total = found.lam.sum()
     again = replace(string(), force=np.ones(CELLS - 1) * (1.0 + 0.3 * total / CELLS))

@@ -11,9 +11,9 @@ from petalfoil.physics.forces import film_force
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 from petalfoil.system.build import build_pair, build_problem
 from petalfoil.system.coupled import CoupledProblem, wall_scale
+from petalfoil.system.foil_pack import FoilPackProblem
 from petalfoil.system.friction import FrictionProblem, FrictionState, FrictionStep, friction_of
 from petalfoil.system.loaded import LoadedProblem
-from petalfoil.system.package import PackageProblem
 from petalfoil.system.time_step import StepProblem
 from petalfoil.system.unknowns import DEFLECTION, POSITION, PRESSURE
 from tests.cases import case
@@ -129,7 +129,7 @@ def test_rows_of_a_pack_are_those_of_the_coupled_problem() -> None:
     coupled = build_problem(PETALS)
     x, lam = state(coupled)
     w = x[coupled.layout.unknowns[DEFLECTION]]
-    package = PackageProblem(coupled, coupled.layout.push @ (x[coupled.positive] - 1.0))
+    package = FoilPackProblem(coupled, coupled.layout.push @ (x[coupled.positive] - 1.0))
     n = len(w)
     assert_allclose(package.linearize(w).residual, coupled.linearize(x).residual[:n], atol=1e-9)
     both = package.linearize(w).matrix(lam).toarray(), coupled.linearize(x).matrix(lam).toarray()[:n, :n]

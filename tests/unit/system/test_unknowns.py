@@ -18,9 +18,9 @@ from petalfoil.equilibrium.continuation import follow
 from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.equilibrium.under_load import balance_cold
 from petalfoil.solvers.sparse_lu import LinearSolver
+from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
-from petalfoil.system.layout import Layout
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE, BlockEntries, BlockPattern, FieldRows, Unknowns
 from tests.cases import case
 from tests.contract.taylor import assert_tangent
@@ -65,7 +65,7 @@ def test_a_matrix_over_blocks_is_the_sum_of_its_entries() -> None:
 class Warmth:
     """A temperature `T = 1 + beta h^2` at every pressure unknown, which adds `epsilon (T - 1)` to its balance."""
 
-    layout: Layout
+    layout: BearingLayout
     beta: float = 0.2
     epsilon: float = 1e-3
     name: str = "temperature"

@@ -24,7 +24,7 @@ Index = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
-class Layout:
+class BearingLayout:
     """What stays the same while speed and position change: mesh, places of entries, constant entries.
 
     Attributes

@@ -10,15 +10,15 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.coupled import CoupledProblem, wall_scale
-from petalfoil.system.layout import Layout
 from petalfoil.system.unknowns import DEFLECTION, BlockPattern, Unknowns
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class PackageProblem:
+class FoilPackProblem:
     """Package equilibrium at one journal position; unknowns are the deflections `w` alone.
 
     Attributes
@@ -33,7 +33,7 @@ class PackageProblem:
     load: Array
 
     @property
-    def layout(self) -> Layout:
+    def layout(self) -> BearingLayout:
         """Mesh and constant entries."""
         return self.coupled.layout
 
@@ -68,19 +68,19 @@ class PackageProblem:
         return self.coupled.gaps(x)
 
     def admits(self, x: Array) -> bool:
-        """The package alone can be evaluated anywhere."""
+        """The pack alone can be evaluated anywhere."""
         return True
 
-    def linearize(self, x: Array, shift: Array | None = None) -> PackageLinearization:
+    def linearize(self, x: Array, shift: Array | None = None) -> FoilPackLinearization:
         """Residual and tangent; the gaps' shift does not enter them."""
-        return PackageLinearization(self, x)
+        return FoilPackLinearization(self, x)
 
 
 @dataclass(frozen=True)
-class PackageLinearization:
-    """The package at one state."""
+class FoilPackLinearization:
+    """The pack at one state."""
 
-    problem: PackageProblem
+    problem: FoilPackProblem
     x: Array
 
     @cached_property

@@ -14,7 +14,7 @@ from petalfoil.solvers.contact_newton import ActiveContacts, solve_contacts
 from petalfoil.solvers.interior_point import InteriorOptions, InteriorStep, contact_set, interior_point
 from petalfoil.solvers.problem import PrimalDualPoint
 from petalfoil.system.coupled import CoupledProblem
-from petalfoil.system.package import PackageProblem
+from petalfoil.system.foil_pack import FoilPackProblem
 
 Array = NDArray[np.float64]
 
@@ -23,7 +23,7 @@ FIRST_PRODUCT = 100.0
 stay short of the boundary for long (up to 58 steps where 20 serve)."""
 
 CONVEX = InteriorOptions(near=np.inf, calm=np.inf, boundary=0.995, correctors=5)
-"""The package alone is convex: Mehrotra's steps serve from the start, close to the boundary."""
+"""The pack alone is convex: Mehrotra's steps serve from the start, close to the boundary."""
 
 SEARCHING = ContactOptions(patience=0)
 """Its active contacts are searched for at once: changing all of them saves nothing here."""
@@ -32,48 +32,48 @@ REST_GOALS = (1e-6, 1e-9, 1e-12)
 """Barriers at which the active contacts of the pack alone are read and tried."""
 
 
-def unloaded(problem: CoupledProblem) -> PackageProblem:
-    """The package without film pressure."""
-    return PackageProblem(problem, np.zeros(problem.layout.n_wall))
+def unloaded(problem: CoupledProblem) -> FoilPackProblem:
+    """The pack without film pressure."""
+    return FoilPackProblem(problem, np.zeros(problem.layout.n_wall))
 
 
-def free_start(package: PackageProblem) -> PrimalDualPoint:
+def free_start(pack: FoilPackProblem) -> PrimalDualPoint:
     """A start from the free shape: slacks as wide as it penetrates, reactions to match."""
-    x = np.zeros(package.layout.n_wall)
-    gaps = package.gaps(x)
+    x = np.zeros(pack.layout.n_wall)
+    gaps = pack.gaps(x)
     depth = max(1.0, -float(np.min(gaps, initial=0.0)))
     s = np.maximum(gaps, depth)
-    return PrimalDualPoint(x, s, FIRST_PRODUCT * depth * package.weight / s)
+    return PrimalDualPoint(x, s, FIRST_PRODUCT * depth * pack.weight / s)
 
 
 def assembled(problem: CoupledProblem, barrier: float) -> PrimalDualPoint:
-    """The assembled package on its central path at `barrier`, extended by ambient pressures: a start for the film."""
-    package = unloaded(problem)
+    """The assembled pack on its central path at `barrier`, extended by ambient pressures: a start for the film."""
+    pack = unloaded(problem)
     if not problem.layout.n_wall:
-        s = package.gaps(np.zeros(0))
-        return PrimalDualPoint(problem.layout.ambient(np.zeros(0)), s, barrier * package.weight / s)
+        s = pack.gaps(np.zeros(0))
+        return PrimalDualPoint(problem.layout.ambient(np.zeros(0)), s, barrier * pack.weight / s)
     options = replace(CONVEX, least_barrier=barrier)
 
     def finished(step: InteriorStep) -> bool:
         return step.barrier < 2.0 * barrier and step.infeasibility < 1e-3 and step.residual < 1e-2
 
-    watch = current_run().watch("package", finished)
-    point, _ = interior_point(package, free_start(package), current_run().package_solver, options, watch)
+    watch = current_run().watch("pack", finished)
+    point, _ = interior_point(pack, free_start(pack), current_run().pack_solver, options, watch)
     return replace(point, x=problem.layout.ambient(point.x))
 
 
 def at_rest(problem: CoupledProblem) -> ActiveContacts | None:
     """Deflections and active contacts of the assembled pack; None if not found."""
-    package = unloaded(problem)
-    start = free_start(package)
+    pack = unloaded(problem)
+    start = free_start(pack)
     for goal in REST_GOALS:
-        watch = current_run().watch("package", settled(goal))
-        start, found = interior_point(package, start, current_run().package_solver, CONVEX, watch)
+        watch = current_run().watch("pack", settled(goal))
+        start, found = interior_point(pack, start, current_run().pack_solver, CONVEX, watch)
         if not found:
             return None
-        x, touching = contact_set(package, start, current_run().package_solver)
-        contacts, outcome = solve_contacts(package, (x, touching), current_run().package_solver, SEARCHING)
-        current_run().note("package contacts", outcome=outcome.value)
+        x, touching = contact_set(pack, start, current_run().pack_solver)
+        contacts, outcome = solve_contacts(pack, (x, touching), current_run().pack_solver, SEARCHING)
+        current_run().note("pack contacts", outcome=outcome.value)
         if contacts is not None:
             return contacts
     return None
