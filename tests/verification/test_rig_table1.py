@@ -103,7 +103,7 @@ def test_the_example_is_one_of_the_sets_of_the_page() -> None:
     rig = case("rig")
     petals = rig.petals
     assert petals is not None
-    sets = rows("What stays undetermined")
+    sets = rows("What remains undetermined")
     ours = [row for row in sets if "rig.toml" in row[0]]
     ((_, count, mount, radius, length, _, coating, _, _, floor, friction, *_),) = ours
     assert (int(count), mount) == (petals.count, petals.mount.value)
