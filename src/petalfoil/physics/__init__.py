@@ -6,7 +6,7 @@
 `gas_inventory.py`   the gas inventory of a 2-D film without ambient boundary (F6)
 `shell.py`           bending of a petal (33)-(39): stiffness matrix, curvatures, stress
 `contact.py`         gaps of the solid contacts (18)-(22), linear in the deflections
-`contact_points.py`  contacts between nodes: where they are, and how they travel
+`contact_points.py`  contact at isolated points between nodes (K5)-(K9)
 `dry_friction.py`    Coulomb friction between petals and on the bushing (D1)-(D3)
 `forces.py`          force and friction torque on the journal (62)-(64)
 ===================  ========================================================================================

@@ -1,4 +1,4 @@
-"""Contact at isolated points, which lie between nodes and travel (K5)-(K9).
+"""Contact at isolated points that lie between nodes and move with the load (K5)-(K9).
 
 Petals mostly touch at isolated points (in 3-D: one at each axial station). In the discrete equilibrium such a point is
 one active node, or two while it passes from one to the next. One active node is a pin and two are a clamp: a tangent
@@ -10,8 +10,8 @@ with contacts at nodes alternates between two stiffnesses on every grid. Here ea
     phi_c = a (minimum of the gap) + (1 - a) (centroid of the reactions)                               (K7)
     a = 1 / (1 + C lam / p'') ,   C the turn of the gap there by a unit moment                         (K8)
 
-Longer runs of active nodes are stretches along which petals lie on each other. They stay at their nodes, and so do
-contacts at the ends of a petal, which do not travel.
+Longer runs of active nodes are line contacts. They stay at their nodes, and so do contacts at the ends of a petal,
+which do not move.
 """
 
 from __future__ import annotations
@@ -136,7 +136,7 @@ class PointsOnLines:
 
     @property
     def replaced(self) -> Index:
-        """Numbers of the active contacts that the points stand for."""
+        """Indices of the active contacts at nodes that the points replace."""
         return np.concatenate([self.lines.number[self.line, node] for node in (self.first, self.last)])
 
     @property
