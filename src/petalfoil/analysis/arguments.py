@@ -209,6 +209,17 @@ class Whole(Range, Argument):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Name(Argument):
+    """A name of something: letters, digits, spaces, ``.``, ``_`` and ``-``."""
+
+    def read(self, given: object) -> str:
+        """The name."""
+        if not isinstance(given, str) or not re.fullmatch(r"[\w .-]+", given):
+            raise UsageError(f"{shown(given)} is no name; allowed: letters, digits, spaces, '.', '_' and '-'")
+        return given
+
+
+@dataclass(frozen=True, kw_only=True)
 class Flag(Argument):
     """Yes or no."""
 

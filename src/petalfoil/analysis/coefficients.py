@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from petalfoil.analysis.arguments import Load, Quantity, Speed, Speeds, Values
+from petalfoil.analysis.arguments import Load, Name, Quantity, Speed, Speeds, Values, Whole
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.declaration import Export, analysis
 from petalfoil.analysis.evaluation import Evaluation
@@ -20,10 +20,10 @@ from petalfoil.analysis.session import part
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, current_run, running
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.results.export import LEAST_POINTS
 from petalfoil.results.layout import ArrayTable, Cell, Point, Series, at_speed
 from petalfoil.results.parts import AppliedLoad, Outcome
 from petalfoil.results.record import Record
+from petalfoil.results.ross import LEAST_POINTS, ross_frequencies
 from petalfoil.results.summary import cell
 from petalfoil.walls import Capability, required
 
@@ -33,7 +33,8 @@ Frequencies = Annotated[
         unit="rad/s",
         option="frequency",
         metavar="LIST",
-        help='Whirl frequencies: "600 Hz, 1200 Hz", or "0 Hz : 1500 Hz : 11"; by default the speed.',
+        help='Whirl frequencies: "600 Hz, 1200 Hz", or "0 Hz : 1500 Hz : 11"; by default the speed, for --ross dense '
+        "around half of every speed.",
         whirl=True,
         at_least=0.0,
     ),
@@ -95,14 +96,40 @@ LISTS = ("whirl_frequency", *MATRICES)
 
 def check_ross(values: Mapping[str, Any], known_as: Mapping[str, str]) -> None:
     """Refuse speeds and frequencies that make no table for ROSS."""
-    speeds = values.get("speeds") or []
-    for name, axis in (("speeds", speeds), ("frequencies", values.get("frequencies") or speeds)):
+    for name in ("speeds", "frequencies"):
+        axis = values.get(name) or []
         if len(set(axis)) < max(len(axis), LEAST_POINTS):
             raise UsageError(
                 f"a table for ROSS needs {LEAST_POINTS} different values of {known_as[name]} or more, "
                 f"got {len(set(axis))}"
             )
 
+
+def check_ross_synchronous(values: Mapping[str, Any], known_as: Mapping[str, str]) -> None:
+    """Refuse speeds that make no table for ROSS 2, and frequencies without the speeds."""
+    speeds = values.get("speeds") or []
+    check_ross({"speeds": speeds, "frequencies": speeds}, known_as)
+    if any(speed not in values.get("frequencies", speeds) for speed in speeds):
+        raise UsageError(
+            f"a synchronous table needs every speed among the frequencies: leave {known_as['frequencies']} out"
+        )
+
+
+def fill_ross(values: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Whirl frequencies that tell the stability of a rotor in ROSS, where none are given."""
+    speeds = values.get("speeds") or []
+    if values.get("frequencies") is not None or not speeds or not min(speeds) > 0.0:
+        return values
+    return {**values, "frequencies": ross_frequencies(speeds)}
+
+
+ROSS = {
+    "node": Whole(
+        metavar="NUMBER", help="Node of the rotor in ROSS that the bearing sits at; 0 by default.", at_least=0
+    ),
+    "tag": Name(metavar="NAME", help="Name of the bearing in ROSS; that of the file by default."),
+}
+"""Settings of the exports for ROSS."""
 
 EXPORTS = (
     Export(
@@ -115,10 +142,21 @@ EXPORTS = (
     Export(
         option="ross",
         metavar="FILE.toml",
-        help="Write them for ROSS 3: .toml or .json; needs 5 speeds or more.",
+        help="Write them for ROSS 3 over speed and whirl frequency: .toml or .json; needs 5 speeds or more.",
         suffixes=(".toml", ".json"),
-        writer="petalfoil.results.export:write_ross",
+        writer="petalfoil.results.ross:write_ross",
         check=check_ross,
+        fill=fill_ross,
+        settings=ROSS,
+    ),
+    Export(
+        option="ross2",
+        metavar="FILE.toml",
+        help="Write those of synchronous whirl for ROSS 2: for unbalance, not for stability.",
+        suffixes=(".toml", ".json"),
+        writer="petalfoil.results.ross:write_ross_synchronous",
+        check=check_ross_synchronous,
+        settings=ROSS,
     ),
 )
 

@@ -56,6 +56,10 @@ class Export:
     check : callable or None
         Refuses arguments whose results it could not write; takes them by name in SI units, and their names as the
         caller knows them.
+    fill : callable or None
+        Gives arguments that the caller left out the values that the file is best with; takes the others.
+    settings : mapping
+        Further arguments of the writer by name; exports that share one declare it alike.
     """
 
     option: str
@@ -64,6 +68,8 @@ class Export:
     suffixes: tuple[str, ...]
     writer: str
     check: Callable[[Values, Mapping[str, str]], None] | None = None
+    fill: Callable[[Values], Values] | None = None
+    settings: Mapping[str, Argument] = field(default_factory=dict)
 
 
 @dataclass(eq=False)

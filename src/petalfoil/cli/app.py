@@ -11,11 +11,13 @@ from petalfoil import __version__
 from petalfoil.analysis import registry
 from petalfoil.cli.failures import handled
 from petalfoil.cli.reproduce import reproduce
-from petalfoil.cli.show import show
 from petalfoil.cli.streams import accept_any_text, emit
 
 if TYPE_CHECKING:
     Context = Any
+
+
+SHOW = "Show a result file once more, without running anything: table, figure, files for other programs."
 
 
 class Verbs(TyperGroup):
@@ -26,12 +28,14 @@ class Verbs(TyperGroup):
 
     def list_commands(self, ctx: Context) -> list[str]:
         """Names of all verbs."""
-        return [*registry.summaries(), *super().list_commands(ctx)]
+        return [*registry.summaries(), "show", *super().list_commands(ctx)]
 
     def get_command(self, ctx: Context, cmd_name: str) -> Any:
         """The command of a verb as the list of commands shows it."""
         if cmd_name in registry.summaries():
             return TyperCommand(cmd_name, help=registry.summaries()[cmd_name])
+        if cmd_name == "show":
+            return TyperCommand(cmd_name, help=SHOW)
         return super().get_command(ctx, cmd_name)
 
     def resolve_command(self, ctx: Context, args: list[str]) -> Any:
@@ -41,6 +45,10 @@ class Verbs(TyperGroup):
             from petalfoil.cli.commands import command_of
 
             command = command_of(str(name))
+        elif name == "show":
+            from petalfoil.cli.show import show_command
+
+            command = show_command()
         return name, command, rest
 
 
@@ -51,7 +59,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,  # `failures` speaks to the user, not a decorated traceback
     rich_markup_mode="rich",
 )
-app.command()(show)
 app.command()(reproduce)
 
 

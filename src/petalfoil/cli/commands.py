@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from importlib import import_module
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -13,9 +13,10 @@ from petalfoil.analysis import registry
 from petalfoil.analysis.arguments import Argument, Flag, StoredResult
 from petalfoil.analysis.declaration import Analysis
 from petalfoil.case import Case
+from petalfoil.cli.exports import chosen, export_options
 from petalfoil.cli.failures import handled
 from petalfoil.cli.keeping import Autosave, follow
-from petalfoil.cli.outputs import Export, Outputs, Writer
+from petalfoil.cli.outputs import Outputs
 from petalfoil.cli.progress import bar
 from petalfoil.errors import UsageError
 
@@ -44,21 +45,23 @@ def command_of(verb: str) -> Any:
     options = [inspect.Parameter("case", KEYWORD, annotation=CASE_FILE), *_options(analysis)]
     for name, (annotation, default) in OUTPUTS.items():
         options.append(inspect.Parameter(name, KEYWORD, annotation=annotation, default=default))
-    for export in analysis.exports:
-        wanted = typer.Option(f"--{export.option}", metavar=export.metavar, help=export.help)
-        options.append(
-            inspect.Parameter(export.option, KEYWORD, annotation=Annotated[Path | None, wanted], default=None)
-        )
-    ask.__signature__ = inspect.Signature(sorted(options, key=lambda o: o.default is not REQUIRED))  # type: ignore[attr-defined]
-    ask.__annotations__ = {option.name: option.annotation for option in options}
-    ask.__doc__ = analysis.help
+    options += export_options(analysis.exports)
+    return command(verb, ask, options, analysis.help)
+
+
+def command(name: str, function: Callable[..., None], options: list[inspect.Parameter], text: str) -> Any:
+    """A command of its own: its options, its help text, and the function that is called with them."""
+    ordered = sorted(options, key=lambda option: option.default is not REQUIRED)
+    function.__signature__ = inspect.Signature(ordered)  # type: ignore[attr-defined]
+    function.__annotations__ = {option.name: option.annotation for option in options}
+    function.__doc__ = text
     alone = typer.Typer(
         add_completion=False,
         pretty_exceptions_enable=False,
         rich_markup_mode="rich",
         context_settings={"help_option_names": HELP},
     )
-    alone.command(verb)(ask)
+    alone.command(name)(function)
     return typer.main.get_command(alone)
 
 
@@ -66,16 +69,11 @@ def call(analysis: Analysis, given: dict[str, Any]) -> None:
     """Run an analysis with the options of a call, and give its answer out."""
     path, as_json, out, plot = (given.pop(name) for name in ("case", *OUTPUTS))
     with handled(as_json):
-        exports = tuple(
-            Export(option=f"--{e.option}", path=given[e.option], suffixes=e.suffixes, write=_writer(e.writer))
-            for e in analysis.exports
-            if given[e.option] is not None
-        )
-        outputs = Outputs.checked(as_json=as_json, out=out, plot=plot, exports=exports)
+        outputs = Outputs.checked(as_json=as_json, out=out, plot=plot, exports=chosen(analysis.exports, given))
         known_as = {name: option_of(name, argument) for name, argument in analysis.arguments.items()}
         _refuse_overwriting(analysis, given, out)
         values = analysis.read({name: given[name] for name in known_as}, known_as)
-        _check_exports(analysis, given, values, known_as)
+        values = _fit_exports(analysis, given, values, known_as)
         case = Case.load(path)
         with bar(analysis.verb) as report:
             run = analysis.start(case, values, report)
@@ -124,22 +122,17 @@ def _refuse_overwriting(analysis: Analysis, given: dict[str, Any], out: Path | N
                 )
 
 
-def _check_exports(analysis: Analysis, given: dict[str, Any], values: dict[str, Any], known_as: dict[str, str]) -> None:
-    """Refuse arguments whose results an export could not write."""
-    for export in analysis.exports:
-        if export.check is None or given[export.option] is None:
-            continue
+def _fit_exports(
+    analysis: Analysis, given: dict[str, Any], values: dict[str, Any], known_as: dict[str, str]
+) -> dict[str, Any]:
+    """Arguments that the exports asked for can be written with; what they could not write is refused."""
+    wanted = [export for export in analysis.exports if given[export.option] is not None]
+    for export in wanted:
+        values = dict(export.fill(values)) if export.fill else values
+    for export in wanted:
         try:
-            export.check(values, known_as)
+            if export.check is not None:
+                export.check(values, known_as)
         except UsageError as refusal:
             raise UsageError(f"--{export.option}: {refusal}") from refusal
-
-
-def _writer(name: str) -> Writer:
-    """The function that `name` names, loaded when it is called."""
-    module, _, function = name.partition(":")
-
-    def write(ds: Any, path: Path) -> None:
-        getattr(import_module(module), function)(ds, path)
-
-    return write
+    return values

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -132,7 +133,11 @@ class Outputs:
         if self.plot is not None:
             self._draw(answer, ds, self.plot)
         for export in self.exports:
-            export.write(ds, export.path)
+            with warnings.catch_warnings(record=True) as told:
+                warnings.simplefilter("always", UserWarning)
+                export.write(ds, export.path)
+            for warning in told:
+                say(f"Warning: {export.option}: {warning.message}")
 
     @staticmethod
     def _draw(answer: Answer, ds: xr.Dataset, path: Path) -> None:

@@ -2,32 +2,60 @@
 
 from __future__ import annotations
 
+import inspect
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+from petalfoil.analysis.declaration import Export
+from petalfoil.analysis.registry import find, summaries
+from petalfoil.cli.commands import JSON, KEYWORD, PLOT, command
+from petalfoil.cli.exports import chosen, export_options
 from petalfoil.cli.failures import handled
 from petalfoil.cli.outputs import Outputs
+from petalfoil.errors import UsageError
+from petalfoil.results.layout import Answer, Point, Series
+from petalfoil.results.store import load
+
+HELP = """Show a result file once more, without running anything: table, figure, files for other programs.
+
+Example: petalfoil show curve.nc --plot curve.pdf
+"""
+RESULT = Annotated[Path, typer.Argument(metavar="RESULT", help="Result to show, written by --out.")]
 
 
-def show(
-    result: Annotated[Path, typer.Argument(metavar="RESULT", help="Result to show, written by --out.")],
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object in SI units.")] = False,
-    plot: Annotated[Path | None, typer.Option(metavar="FILE.png", help="Draw a figure: .png, .svg or .pdf.")] = None,
-) -> None:
-    """Show a result file once more: table and figure, without running anything.
+def show_command() -> Any:
+    """The command, with an option for every file that an analysis can be exported to."""
+    options = [
+        inspect.Parameter("result", KEYWORD, annotation=RESULT),
+        inspect.Parameter("as_json", KEYWORD, annotation=JSON, default=False),
+        inspect.Parameter("plot", KEYWORD, annotation=PLOT, default=None),
+        *export_options(declared_exports().values()),
+    ]
 
-    Example: petalfoil show curve.nc --plot curve.pdf
-    """
+    def ask(**given: Any) -> None:
+        show(**given)
+
+    return command("show", ask, options, HELP)
+
+
+def show(result: Path, *, as_json: bool, plot: Path | None, **files: Any) -> None:
+    """Give a stored result out."""
     with handled(as_json):
-        outputs = Outputs.checked(as_json=as_json, plot=plot)
-
-        from petalfoil.analysis.registry import find
-        from petalfoil.results.layout import Answer, Point, Series
-        from petalfoil.results.store import load
-
+        exports = declared_exports()
+        outputs = Outputs.checked(as_json=as_json, plot=plot, exports=chosen(exports.values(), files))
         ds = load(result)
         analysis = find(str(ds.attrs["analysis"]))
+        own = {export.option for export in analysis.exports} if analysis else set()
+        for option in exports:
+            if files[option] is not None and option not in own:
+                raise UsageError(f"--{option}: a result of {ds.attrs['analysis']} has nothing for such a file")
         unknown = Series() if "point" in ds.dims else Point()  # of an analysis that is not declared here
         outputs.deliver(Answer.stored(ds, analysis.layout_of(ds) if analysis else unknown), ds)
+
+
+def declared_exports() -> dict[str, Export]:
+    """The exports of all analyses by their option."""
+    analyses = [analysis for verb in summaries() if (analysis := find(verb)) is not None]
+    return {export.option: export for analysis in analyses for export in analysis.exports}

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import math
-import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -294,32 +293,6 @@ def test_csv_has_its_units_in_the_header(cli, loads, case, tmp_path: Path) -> No
 AXES = ("--speeds", "500, 100, 200, 300, 400", "--frequency", "50, 10, 20, 30, 40")
 
 
-@pytest.mark.parametrize("suffix", [".toml", ".json"])
-def test_ross_gets_a_bearing_element_over_speed_and_frequency(cli, loads, case, tmp_path: Path, suffix: str) -> None:
-    """As `BearingElement.load` of ROSS 3 reads it: increasing axes, tables (speed, frequency)."""
-    path = tmp_path / f"bearing{suffix}"
-    assert cli("coefficients", case, *AXES, "--ross", str(path)).exit_code == 0
-    text = path.read_text(encoding="utf-8")
-    data = tomllib.loads(text) if suffix == ".toml" else json.loads(text)
-    ((section, element),) = data.items()
-    assert section.split("_")[0] == "BearingElement"
-    assert element["speed"] == [100.0, 200.0, 300.0, 400.0, 500.0]
-    assert element["frequency"] == [10.0, 20.0, 30.0, 40.0, 50.0]
-    assert np.array(element["kxy"])[1, 3] == 1e6 * (200.0 + 40.0 + 1.0)
-    assert np.array(element["cyx"])[4, 0] == 500.0 + 10.0 + 2.0
-    assert {"n", "tag", "kxx", "kyx", "kyy", "cxx", "cxy", "cyy"} <= set(element)
-
-
-def test_ross_gets_no_table_with_holes(cli, loads, case, tmp_path: Path) -> None:
-    loads.failing = {2}
-    path = tmp_path / "bearing.toml"
-    result = cli("coefficients", case, *AXES, "--ross", str(path), "--json")
-    assert result.exit_code == 2
-    assert "some have none" in result.stderr
-    assert json.loads(result.stdout)["points"][2]["converged"] is False  # the answer is shown all the same
-    assert not path.exists()
-
-
 # ---------------------------------------------------------------------------------------------- stability
 
 
@@ -388,6 +361,11 @@ REFUSED = {
     "one speed and several": (("coefficients", "--speed", "1", "--speeds", "1, 2"), "--speeds"),
     "no speeds for ROSS": (("coefficients", "--ross", "b.toml"), "--ross"),
     "few frequencies for ROSS": (("coefficients", *AXES[:2], "--frequency", "1", "--ross", "b.toml"), "--ross"),
+    "a node without a table": (("coefficients", "--node", "2"), "--node"),
+    "a node that is none": (("coefficients", *AXES[:2], "--ross", "b.toml", "--node", "-1"), "--node"),
+    "a tag that is no name": (("coefficients", *AXES[:2], "--ross", "b.toml", "--tag", "a\\b"), "--tag"),
+    "few speeds for ROSS 2": (("coefficients", "--speeds", "1, 2", "--ross2", "b.toml"), "--ross2"),
+    "frequencies without the speeds for ROSS 2": (("coefficients", *AXES, "--ross2", "b.toml"), "--ross2"),
     "a speed twice for ROSS": (("coefficients", "--speeds", "1, 1, 2, 3, 4", "--ross", "b.toml"), "--ross"),
     "a suffix that ROSS does not read": (("coefficients", *AXES, "--ross", "b.xlsx"), "--ross"),
     "a suffix that is no table's": (("coefficients", "--csv", "b.txt"), "--csv"),
