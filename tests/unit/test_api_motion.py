@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -137,6 +138,65 @@ def test_a_motion_of_another_bearing_is_refused(four: xr.Dataset) -> None:
         petalfoil.orbit(PLAIN, restart=four.drop_vars("last_position"))
     with pytest.raises(UsageError, match="initial says nothing beside restart"):
         petalfoil.orbit(PLAIN, restart=four, initial=(0.0, 0.0))
+
+
+SLIDING = PETALS.replace(**{"surface.petal_friction": 0.2})
+
+
+@pytest.fixture(scope="module", params=["plain", "petals", "petals with friction"])
+def motion(request: pytest.FixtureRequest) -> tuple[petalfoil.Case, xr.Dataset]:
+    bearing = {"plain": PLAIN, "petals": PETALS, "petals with friction": SLIDING}[request.param]
+    return bearing, petalfoil.orbit(bearing, duration="0.05 ms")
+
+
+def changed(ds: xr.Dataset, name: str, change: Callable[[np.ndarray], None]) -> xr.Dataset:
+    """The motion with a variable changed in place."""
+    copy = ds.copy(deep=True)
+    change(copy[name].values)
+    return copy
+
+
+def test_a_motion_goes_on_only_from_a_state_that_is_one(motion: tuple[petalfoil.Case, xr.Dataset]) -> None:
+    bearing, ds = motion
+    petalfoil.orbit(bearing, duration=1e-6, restart=ds)
+    damaged = {
+        "reactions are negative": changed(ds, "last_reactions", lambda lam: lam.__setitem__(0, -1e-3)),
+        "not finite": changed(ds, "last_state", lambda x: x.__setitem__(-1, np.nan)),
+        "pressures are not positive": changed(ds, "last_state", lambda x: x.__setitem__(-1, -1.0)),
+        "its (x|min_film_thickness|peak_pressure|force_[xy]) is": changed(
+            ds, "last_position", lambda e: e.__setitem__(0, e[0] + 1e-6)
+        ),
+        "its velocity_y is": changed(ds, "last_velocity", lambda v: v.__setitem__(1, 2.0 * v[1] + 0.1)),
+        "has the shape": ds.isel(unknown=slice(1, None)),
+    }
+    for reason, bad in damaged.items():
+        with pytest.raises(UsageError, match=f"ends in a state that is none: .*{reason}"):
+            petalfoil.orbit(bearing, duration=1e-6, restart=bad)
+
+
+def test_petals_that_are_out_of_balance_are_no_state_to_go_on_from() -> None:
+    ds = petalfoil.orbit(PETALS, duration="0.05 ms")
+    bent = changed(ds, "last_state", lambda x: x.__setitem__(3, x[3] + 1e-3))
+    with pytest.raises(UsageError, match="petals and loads are out of balance"):
+        petalfoil.orbit(PETALS, duration=1e-6, restart=bent)
+
+
+@pytest.mark.parametrize("given", [5.0, {"x": 1}, object()])
+def test_what_is_no_result_is_no_motion_to_go_on_from(given: Any) -> None:
+    with pytest.raises(UsageError, match=r"restart: .* is neither a result nor the file of one"):
+        petalfoil.orbit(PLAIN, restart=given)
+
+
+@pytest.mark.parametrize("bearing", [PLAIN, PETALS], ids=["plain", "petals"])
+def test_a_ramp_starts_from_the_balance(bearing: petalfoil.Case) -> None:
+    centred = bearing.replace(**{"operation.eccentricity": (0.0, 0.0)})
+    ds = petalfoil.orbit(centred, speeds="3000 rad/s : 3100 rad/s : 0.2 ms", duration="0.02 ms")
+    balanced = petalfoil.balance(centred, 3.0 * 9.80665, speed=3000.0)
+    assert_allclose(float(ds["y"][0]), float(balanced["eccentricity_y"]), rtol=1e-6)
+    left = float(np.hypot(ds["force_x"][0], ds["force_y"][0] - 3.0 * 9.80665))
+    assert left < 3.0 * 2e-6 * 3000.0**2  # the axis stands off the balance by the unbalance, less than that turns it
+    own = petalfoil.orbit(bearing, speeds="3000 rad/s : 3100 rad/s : 0.2 ms", duration="0.02 ms")
+    assert_allclose([own["x"][0], own["y"][0]], bearing.operation.eccentricity, rtol=0.0, atol=1e-15)
 
 
 def test_progress_is_told() -> None:

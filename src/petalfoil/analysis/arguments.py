@@ -243,8 +243,11 @@ class StoredResult(Argument):
             The file cannot be read.
         """
         if not isinstance(given, str | os.PathLike):
-            result: xr.Dataset = given
-            return result
+            import xarray
+
+            if not isinstance(given, xarray.Dataset):
+                raise UsageError(f"{shown(given)} is neither a result nor the file of one")
+            return given
         from petalfoil.results.store import load
 
         return load(Path(given))

@@ -13,7 +13,7 @@ from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.operating_point import at
 from petalfoil.analysis.records import effort, geometry, record_of
 from petalfoil.analysis.release import OrbitRequest, at_rest, first_position, system_of
-from petalfoil.analysis.restart import continued, end_coordinates, end_state, instant_of
+from petalfoil.analysis.restart import check_figures, continued, end_coordinates, end_state, instant_of
 from petalfoil.analysis.session import one_thread
 from petalfoil.analysis.trace import Trace
 from petalfoil.case import Case
@@ -113,7 +113,10 @@ class Orbit:
             placed, time = case, continued(case, schedule, restart)
             system = system_of(placed, schedule, request.load)
             start = instant_of(restart, system, time * system.rotor.clock.rate)
-        return cls(placed, request, system, start, time + request.lasts(schedule, time), run)
+        orbit = cls(placed, request, system, start, time + request.lasts(schedule, time), run)
+        if restart is not None:
+            check_figures(restart, orbit.trace.rows[0])
+        return orbit
 
     def advance(self) -> Iterator[tuple[float, str]]:
         """Take the steps; give the part of the motion that is done.

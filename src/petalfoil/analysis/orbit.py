@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
 from petalfoil.analysis.arguments import Load, Pair, Place, Quantity, Ramp, StoredResult
 from petalfoil.analysis.declaration import Export, analysis
 from petalfoil.analysis.motion import Orbit
+from petalfoil.analysis.operating_point import Vector
 from petalfoil.analysis.release import TOLERANCE, OrbitRequest
 from petalfoil.case import Case
 from petalfoil.results.layout import Point
@@ -34,8 +35,8 @@ Initial = Annotated[
         unit="m",
         word="balance",
         metavar="X,Y",
-        help='Where the journal is released, instead of the case\'s eccentricity: "10 um, 0 um", or balance for where '
-        "the constant load is balanced.",
+        help='Where the journal is released: "10 um, 0 um", or balance for where the constant load is balanced; by '
+        "default at the case's eccentricity, with a ramp from the centre at the balance.",
     ),
 ]
 SpeedOverTime = Annotated[
@@ -130,9 +131,22 @@ def orbit(  # noqa: PLR0913 - the options of the verb
     request = OrbitRequest(
         revolutions=revolutions,
         duration=duration,
-        initial=initial,
+        initial=place_of_release(case, initial, ramp=speeds is not None),
         speeds=None if speeds is None else tuple(speeds),
         load=load,
         tolerance=tolerance,
     )
     return Orbit.begin(case, request, restart)
+
+
+def place_of_release(
+    case: Case, initial: Vector | Literal["balance"] | None, *, ramp: bool
+) -> Vector | Literal["balance"] | None:
+    """Where the journal is released.
+
+    A rotor that is sped up rests on its bearing first: released from the centre it would drop onto it, and bounce at
+    every speed. Elsewhere the case's own place is meant.
+    """
+    if initial is not None or not ramp or any(case.operation.eccentricity):
+        return initial
+    return "balance"

@@ -95,13 +95,14 @@ def first_position(case: Case, request: OrbitRequest) -> Vector | None:
     """
     if request.initial != "balance":
         return request.initial
-    load = constant_load(case, request.load)
+    load, (x, y) = constant_load(case, request.load), case.operation.eccentricity
     if case.rotor is not None and case.rotor.span:
         load = (0.5 * load[0], 0.5 * load[1])  # the bearings share it
-    there = at(case, request.schedule(case).speed(0.0), (0.0, 0.0))
-    found, _ = under_load(there, load)
-    x, y = found.problem.displacement * found.problem.layout.scales.length
-    return float(x) - (0.0 if case.rotor is None else case.rotor.unbalance), float(y)
+    if np.hypot(*load) > 0.0:  # without a load every place balances
+        there = at(case, request.schedule(case).speed(0.0), (0.0, 0.0))
+        found, _ = under_load(there, load)
+        x, y = map(float, found.problem.displacement * found.problem.layout.scales.length)
+    return x - (0.0 if case.rotor is None else case.rotor.unbalance), y
 
 
 def system_of(case: Case, schedule: Schedule, load: Vector | None) -> RotorBearing:

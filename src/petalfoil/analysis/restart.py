@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -14,11 +15,24 @@ from petalfoil.dynamics.speed_schedule import Schedule
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.errors import UsageError
+from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.friction import against_slip
+from petalfoil.system.unknowns import DEFLECTION, PRESSURE
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Array = NDArray[np.float64]
+
+NEEDED = ("last_state", "last_reactions", "last_position", "last_velocity", "time", "shaft_speed", "shaft_angle")
+"""What a motion goes on from."""
+
+RECORDED = ("x", "y", "velocity_x", "velocity_y", "min_film_thickness", "peak_pressure", "force_x", "force_y")
+"""Figures of the last state that the motion recorded too."""
+
+BALANCED, BALANCED_SLIDING = 1e-8, 0.02
+"""Residual of the wall's rows up to which a state is one. Stages leave 2e-12; with friction, whose limits follow the
+reactions a correction late, 2e-3."""
 
 SAME = 1e-6
 """Relative difference that speed and angle of the shaft may have where one motion goes on from another."""
@@ -44,14 +58,85 @@ def end_coordinates(last: Instant) -> dict[str, NDArray[np.generic]]:
 
 
 def instant_of(result: xr.Dataset, system: RotorBearing, tau: float) -> Instant:
-    """The end of a motion, to go on from."""
-    length, rate = system.problem.layout.scales.length, system.rotor.clock.rate
-    x, lam = result["last_state"].to_numpy(), result["last_reactions"].to_numpy()
-    e, v = result["last_position"].to_numpy() / length, result["last_velocity"].to_numpy() / (length * rate)
-    start = released(system, tau, (x, lam, lam > 0.0), (e, v))
-    if start.friction is None:
-        return start
-    return replace(start, friction=replace(start.friction, force=result["last_friction"].to_numpy()))
+    """The end of a motion, to go on from.
+
+    Raises
+    ------
+    UsageError
+        The state there is damaged: it has other sizes, is not finite, pulls where contacts can only push, or does not
+        satisfy the equations of the wall.
+    """
+    scales, layout = system.problem.layout.scales, system.problem.layout
+    slides = 0 if system.friction is None else system.friction.slip.shape[0]
+    sizes = (layout.unknowns.n, len(system.problem.weight), len(system.problem.displacement), slides)
+    x, lam, e, friction = (
+        _state(result, f"last_{name}", size)
+        for name, size in zip(("state", "reactions", "position", "friction"), sizes, strict=True)
+    )
+    v = _state(result, "last_velocity", len(e)) / (scales.length * system.rotor.clock.rate)
+    if np.any(lam < 0.0):
+        raise _damaged("contact reactions are negative")
+    if not np.all(x[layout.unknowns[PRESSURE]] > 0.0):
+        raise _damaged("absolute pressures are not positive")
+    start = released(system, tau, (x, lam, lam > 0.0), (e / scales.length, v))
+    if start.friction is not None:
+        start = replace(start, friction=replace(start.friction, force=friction))
+    imbalance, allowed = wall_imbalance(start, system), BALANCED if system.friction is None else BALANCED_SLIDING
+    if not imbalance <= allowed:
+        raise _damaged(f"petals and loads are out of balance by {imbalance:.2g} of ambient pressure, over {allowed:g}")
+    return start
+
+
+def wall_imbalance(instant: Instant, system: RotorBearing) -> float:
+    """Largest residual of the wall's rows (C1) at an instant, over their scale; 0 of a rigid wall [1]."""
+    problem = CoupledProblem(system.problem.layout, 0.0, instant.e)  # the wall knows neither speed nor storage
+    linearized, wall = problem.linearize(instant.x), problem.layout.unknowns[DEFLECTION]
+    residual = linearized.residual - problem.G.T @ instant.lam
+    if system.friction is not None and instant.friction is not None:
+        residual = residual + against_slip(system.friction, instant.friction.force, len(instant.x))
+    return float(np.max(np.abs(residual[wall]) / linearized.row_scale[wall], initial=0.0))
+
+
+def check_figures(result: xr.Dataset, figures: Mapping[str, float]) -> None:
+    """Refuse a state whose figures are not those that the motion recorded at its end.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        The motion.
+    figures : mapping
+        The same figures computed from its last state, SI.
+
+    Raises
+    ------
+    UsageError
+        One of them differs.
+    """
+    for name in RECORDED:
+        told, found = float(result[name].to_numpy()[-1]), figures[name]
+        size = float(np.abs(result[name].to_numpy()).max())
+        if not abs(told - found) <= SAME * size:
+            raise _damaged(f"its {name} is {found:.6g}, but the motion ended with {told:.6g}")
+
+
+def _state(result: xr.Dataset, name: str, size: int) -> Array:
+    """A part of the last state.
+
+    Raises
+    ------
+    UsageError
+        It is not there, has another size or is not finite.
+    """
+    values = result[name].to_numpy() if name in result else np.zeros(0)
+    if values.shape != (size,):
+        raise _damaged(f"{name} has the shape {values.shape} where this bearing needs {(size,)}")
+    if values.dtype.kind != "f" or not np.all(np.isfinite(values)):
+        raise _damaged(f"{name} has values that are not finite numbers")
+    return values
+
+
+def _damaged(reason: str) -> UsageError:
+    return UsageError(f"the motion to go on from ends in a state that is none: {reason}; run it again")
 
 
 def continued(case: Case, schedule: Schedule, result: xr.Dataset) -> float:
@@ -62,7 +147,7 @@ def continued(case: Case, schedule: Schedule, result: xr.Dataset) -> float:
     UsageError
         The result is not that of a motion, or it is the motion of another bearing or of another shaft's speed.
     """
-    if "last_position" not in result:
+    if not {*NEEDED, *RECORDED} <= {*map(str, result.variables)} or "case" not in result.attrs:
         raise UsageError("this result holds no motion to go on from: give a file that orbit wrote")
     before = Case.from_toml(result.attrs["case"])
     walls = [wall.section for wall in (*before.walls, *case.walls)]
