@@ -15,7 +15,7 @@ import numpy as np
 from measure import in_turn
 from numpy.typing import NDArray
 
-from petalfoil.analysis.motion import Orbit
+from petalfoil.analysis.orbit_motion import Orbit
 from petalfoil.classic.columns import columns
 from petalfoil.classic.descent import PackDescent
 from petalfoil.classic.film_cells import FilmCells, film_cells

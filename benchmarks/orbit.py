@@ -13,7 +13,7 @@ import explicit
 import numpy as np
 from measure import Row, Value, at_least, at_most, in_turn
 
-from petalfoil.analysis.motion import Orbit
+from petalfoil.analysis.orbit_motion import Orbit
 from petalfoil.analysis.release import TOLERANCE, OrbitRequest
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case

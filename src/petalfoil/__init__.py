@@ -70,9 +70,9 @@ _HOMES = {"Case": "petalfoil.case", "reproduce": "petalfoil.report.reproduce"}
 def __getattr__(name: str) -> object:
     if name.startswith("_"):
         raise AttributeError(f"module 'petalfoil' has no attribute {name!r}")
-    from petalfoil.analysis import registry
+    from petalfoil.analysis import known_verbs
 
-    value: object = registry.find(name)
+    value: object = known_verbs.find(name)
     if value is not None:
         return value
     if name not in __all__:

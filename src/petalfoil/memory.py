@@ -34,7 +34,7 @@ class Grid:
     overlap : float
         Petal angle over pitch [1]; 0 in a plain bearing.
     cells : int
-        Cells along a pitch; of a plain bearing round the circle.
+        Cells per pitch; of a plain bearing round the circle.
     axial : int
         Cells over the whole length; 0 in a 2-D model.
     symmetric : bool

@@ -31,7 +31,7 @@ def for_figure(text: str) -> str:
 
 
 def for_html(text: str) -> str:
-    """Return `text` as one line for the content of an element or for a quoted attribute."""
+    """Return `text` as one line for the inside of an element or for a quoted attribute."""
     return html.escape(for_terminal(text), quote=True)
 
 

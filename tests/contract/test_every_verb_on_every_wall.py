@@ -12,7 +12,7 @@ import xarray as xr
 
 import petalfoil
 from petalfoil import plot
-from petalfoil.analysis import registry
+from petalfoil.analysis import known_verbs
 from petalfoil.case import Case
 from petalfoil.errors import UsageError
 from petalfoil.walls import Capability, wall_kind, wall_kinds
@@ -53,7 +53,7 @@ def bearings(foundation: Case) -> dict[str, Case]:
 
 def test_no_wall_and_no_verb_is_left_out(bearings: dict[str, Case]) -> None:
     assert set(bearings) == {kind.name for kind in wall_kinds()} == set(WALLS)
-    assert set(VERBS) == set(registry.summaries())
+    assert set(VERBS) == set(known_verbs.summaries())
 
 
 def test_nothing_above_the_walls_asks_for_petals() -> None:

@@ -16,9 +16,9 @@ import petalfoil
 from petalfoil import plot
 from petalfoil.analysis.arguments import Load, Quantity, Speed, Values
 from petalfoil.analysis.declaration import analysis
+from petalfoil.analysis.known_verbs import forget
 from petalfoil.analysis.operating_point import at
 from petalfoil.analysis.records import asked_position, geometry
-from petalfoil.analysis.registry import forget
 from petalfoil.analysis.runs import Points
 from petalfoil.case import Case
 from petalfoil.cli.app import app

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pydantic import BaseModel
 
 from petalfoil.case import Case
-from petalfoil.case.fields import Quantity
+from petalfoil.case.number_fields import Quantity
 from petalfoil.results.schema import VARIABLES
 from tests.docs.texts import DOCS, text
 

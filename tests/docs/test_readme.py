@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from petalfoil.analysis import registry
+from petalfoil.analysis import known_verbs
 from petalfoil.case import Case
 from petalfoil.cli.app import app
 from tests.docs.test_pages import anchors
@@ -65,7 +65,7 @@ def test_the_python_prints_what_stands_there(folder: Path) -> None:
 
 def test_every_verb_is_named() -> None:
     verbs = set(re.findall(r"^\| `petalfoil (\w+)` \|", text(README), re.MULTILINE))
-    assert verbs == set(registry.summaries()) | {c.callback.__name__ for c in app.registered_commands if c.callback}
+    assert verbs == set(known_verbs.summaries()) | {c.callback.__name__ for c in app.registered_commands if c.callback}
 
 
 def test_links_lead_somewhere() -> None:

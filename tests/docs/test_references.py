@@ -12,10 +12,11 @@ from typing import Any
 import pytest
 import typer.main
 
-from petalfoil.analysis import registry
+from petalfoil.analysis import known_verbs
 from petalfoil.case import Case
 from petalfoil.cli.app import app
 from petalfoil.cli.commands import command_of
+from petalfoil.cli.show import show_command
 from tests.docs.texts import DOCS, ROOT, SOURCE, labels_in, modules, name_of, pages, text, theory_labels
 
 FILE = re.compile(r"[\w<>.-]*/[\w<>./-]*|[\w<>-]+\.(?:py|md|toml|csv|json)")
@@ -80,7 +81,8 @@ def test_scripts_in_commands_exist() -> None:
 def commands() -> dict[str, Any]:
     """Commands of the program by name."""
     group: Any = typer.main.get_command(app)
-    return {**group.commands, **{verb: command_of(verb) for verb in registry.summaries()}}
+    verbs = {verb: command_of(verb) for verb in known_verbs.summaries()}
+    return {**group.commands, **verbs, "show": show_command()}
 
 
 @cache

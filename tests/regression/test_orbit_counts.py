@@ -6,7 +6,7 @@ from functools import cache
 
 import pytest
 
-from petalfoil.analysis.motion import Orbit
+from petalfoil.analysis.orbit_motion import Orbit
 from petalfoil.analysis.release import OrbitRequest
 from tests.cases import case
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import petalfoil
-from petalfoil.analysis.registry import find
+from petalfoil.analysis.known_verbs import find
 from petalfoil.analysis.runs import Points
 from petalfoil.errors import UnitError, UsageError
 from petalfoil.results import Record

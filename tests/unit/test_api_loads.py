@@ -12,7 +12,7 @@ import xarray as xr
 from numpy.testing import assert_allclose
 
 import petalfoil
-from petalfoil.analysis.registry import find
+from petalfoil.analysis.known_verbs import find
 from petalfoil.analysis.runs import Points
 from petalfoil.errors import PetalfoilError, UnitError, UsageError
 from petalfoil.results import Record

@@ -13,7 +13,7 @@ from scipy.optimize import least_squares
 
 from petalfoil.analysis.balance import balance
 from petalfoil.analysis.coefficients import coefficients
-from petalfoil.analysis.motion import Orbit, follow
+from petalfoil.analysis.orbit_motion import Orbit, follow
 from petalfoil.analysis.release import OrbitRequest
 from petalfoil.analysis.stability import stability
 from petalfoil.case import Case

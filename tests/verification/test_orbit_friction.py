@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from petalfoil.analysis.motion import Orbit, follow
+from petalfoil.analysis.orbit_motion import Orbit, follow
 from petalfoil.analysis.release import OrbitRequest
 from petalfoil.case import Case
 from petalfoil.results.dataset import to_dataset

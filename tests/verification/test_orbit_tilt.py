@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from petalfoil.analysis.motion import Orbit, follow
+from petalfoil.analysis.orbit_motion import Orbit, follow
 from petalfoil.analysis.release import OrbitRequest
 from petalfoil.case import Case
 from petalfoil.errors import DefinitionError

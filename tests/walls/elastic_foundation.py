@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from petalfoil.case import Case, WallTable
-from petalfoil.case.fields import Quantity
+from petalfoil.case.number_fields import Quantity
 from petalfoil.physics.forces import node_area
 from petalfoil.walls import Wall, WallKind
 from petalfoil.walls.elasticity import Elasticity

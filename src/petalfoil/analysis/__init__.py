@@ -19,7 +19,7 @@ How they are declared:
 =====================  ===================================================================
 `declaration.py`       the decorator, and what follows from a declaration
 `arguments.py`         kinds of arguments with unit, range and help; those that are shared
-`registry.py`          the analyses by name
+`known_verbs.py`          the analyses by name
 `runs.py`              an analysis under way
 `session.py`           one BLAS thread, clock, progress
 =====================  ===================================================================
@@ -35,7 +35,7 @@ What they share:
 `impedance.py`         small motions of the journal
 `threshold.py`         the speed at which a rotor becomes unstable
 `release.py`           where a large motion begins
-`motion.py`            a large motion, step by step
+`orbit_motion.py`            a large motion, step by step
 `restart.py`           a motion that goes on from a result
 `trace.py`             what a motion leaves behind
 `grid_study.py`        nested grids and error bars

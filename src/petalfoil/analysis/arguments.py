@@ -18,7 +18,7 @@ from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, TypeGuard
 
-from petalfoil.case.fields import Range
+from petalfoil.case.number_fields import Range
 from petalfoil.errors import UnitError, UsageError
 from petalfoil.units import parse_pair, parse_quantity, parse_ramp, parse_range
 from petalfoil.units.reading import shown

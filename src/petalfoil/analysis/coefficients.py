@@ -125,7 +125,7 @@ def fill_ross(values: Mapping[str, Any]) -> Mapping[str, Any]:
 
 ROSS = {
     "node": Whole(
-        metavar="NUMBER", help="Node of the rotor in ROSS that the bearing sits at; 0 by default.", at_least=0
+        metavar="NUMBER", help="Node of the rotor in ROSS that carries the bearing; 0 by default.", at_least=0
     ),
     "tag": Name(metavar="NAME", help="Name of the bearing in ROSS; that of the file by default."),
 }

@@ -20,7 +20,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias, get_type_hints
 
 from petalfoil.analysis.arguments import Argument
-from petalfoil.analysis.registry import register
+from petalfoil.analysis.known_verbs import register
 from petalfoil.analysis.runs import Run, Single
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case

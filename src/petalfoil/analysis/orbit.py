@@ -10,8 +10,8 @@ import numpy as np
 
 from petalfoil.analysis.arguments import Load, Pair, Place, Quantity, Ramp, StoredResult
 from petalfoil.analysis.declaration import Export, analysis
-from petalfoil.analysis.motion import Orbit
 from petalfoil.analysis.operating_point import Vector
+from petalfoil.analysis.orbit_motion import Orbit
 from petalfoil.analysis.release import TOLERANCE, OrbitRequest
 from petalfoil.case import Case
 from petalfoil.results.layout import Point

@@ -98,7 +98,7 @@ def wall_imbalance(instant: Instant, system: RotorBearing) -> float:
 
 
 def check_figures(result: xr.Dataset, figures: Mapping[str, float]) -> None:
-    """Refuse a state whose figures are not those that the motion recorded at its end.
+    """Refuse a state whose results differ from those that the motion recorded at its end.
 
     Parameters
     ----------

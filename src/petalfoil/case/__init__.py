@@ -2,15 +2,19 @@
 
 In the order data flows:
 
-- `fields`: kinds of numbers (quantity, count) and their checks.
+- `number_fields`: kinds of numbers (quantity, count) and their checks.
 - `problems`: all problems of a definition → one `DefinitionError`.
 - `hints`: what a wrong key or word was meant to be.
 - `definition`: the base of all definitions.
 - `gas_properties`: a gas by its name.
-- `sections`, `petals`, `gas`, `rotor`: the tables of a case.
+- `sections`: the tables of bearing, surface, operation and model.
+- `petal_table`: the table of the petals.
+- `gas`: the table of the gas.
+- `rotor`: the table of the rotor.
 - `wall_tables`: base and registry of the tables that describe a wall.
 - `free_shape`: radius of a free petal bent to an arc.
-- `measured_shape`: radius of a measured one; `shape_file`: its rows from a CSV file.
+- `measured_shape`: radius of a measured one.
+- `shape_file`: its rows from a CSV file.
 - `package`: geometry that follows, and whether the foil pack can be assembled.
 - `toml`: files and texts.
 - `definitions`: `Case`, which puts all of it together.
@@ -23,7 +27,7 @@ from petalfoil.case.definitions import Case
 from petalfoil.case.free_shape import arc_radius, chordal_tilt
 from petalfoil.case.gas import Gas
 from petalfoil.case.package import Package, package_of
-from petalfoil.case.petals import Mount, Petals
+from petalfoil.case.petal_table import Mount, Petals
 from petalfoil.case.plausibility import warnings_of
 from petalfoil.case.rotor import Rotor
 from petalfoil.case.sections import Bearing, Edges, Method, Model, ModelKind, Operation, Surface

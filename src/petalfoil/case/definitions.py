@@ -14,7 +14,7 @@ from petalfoil.case import toml
 from petalfoil.case.definition import Definition
 from petalfoil.case.gas import Gas
 from petalfoil.case.package import Package, bearing_problems, package_of, package_problems
-from petalfoil.case.petals import Petals
+from petalfoil.case.petal_table import Petals
 from petalfoil.case.problems import Problem, joined
 from petalfoil.case.rotor import Rotor
 from petalfoil.case.sections import Bearing, Model, ModelKind, Operation, Surface
@@ -56,7 +56,7 @@ class Case(Definition):
     model: Model
 
     def __new__(cls, **data: Any) -> Self:
-        """Make room for the table of a registered wall, if `data` has one."""
+        """Add a field for the table of a registered wall, if `data` has one."""
         return super().__new__(with_table(cls, data))
 
     # ------------------------------------------------------------------------------------------ in and out
@@ -136,7 +136,7 @@ class Case(Definition):
 
     @property
     def cells_per_pitch(self) -> int:
-        """Cells along a pitch (of a plain bearing: round the whole circle), the default filled in."""
+        """Cells per pitch (of a plain bearing: round the whole circle), the default filled in."""
         if self.model.cells_per_pitch is not None:
             return self.model.cells_per_pitch
         return DEFAULT_PLAIN_CELLS if self.petals is None else DEFAULT_CELLS[self.model.kind]

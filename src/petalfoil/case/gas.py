@@ -9,7 +9,7 @@ from pydantic import Field, SerializerFunctionWrapHandler, ValidationInfo, field
 
 from petalfoil.case import gas_properties
 from petalfoil.case.definition import Definition
-from petalfoil.case.fields import VALUE_PROBLEM, Quantity, refuse
+from petalfoil.case.number_fields import VALUE_PROBLEM, Quantity, refuse
 from petalfoil.units.reading import shown
 
 UNSET: float = cast(float, None)

@@ -11,8 +11,8 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any
 
-from petalfoil.case.fields import VALUE_PROBLEM, refuse
 from petalfoil.case.hints import nearest
+from petalfoil.case.number_fields import VALUE_PROBLEM, refuse
 from petalfoil.units.reading import shown
 from petalfoil.units.writing import format_quantity
 

@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from petalfoil.case.free_shape import arc_radius, arc_reach, chordal_tilt
 from petalfoil.case.measured_shape import EDGE_TOLERANCE, Table, fitted_bend_radius, measured_radius
-from petalfoil.case.petals import Petals
+from petalfoil.case.petal_table import Petals
 from petalfoil.case.problems import Problem
 from petalfoil.case.sections import Bearing, Operation, Surface
 from petalfoil.units import format_quantity

@@ -38,7 +38,7 @@ MIN_ROWS = 6
 SCATTER = 6.0
 """Standard deviations by which the worst of some hundred rows misses its neighbours: they scatter as it does."""
 
-BOTTOMED_OUT = ("bottomed out", "pressed solid")
+BOTTOMED_OUT = ("bottomed out",)
 """Words in the solution path of a foil pack that a load has closed to its solid height."""
 
 

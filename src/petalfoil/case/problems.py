@@ -15,8 +15,8 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from petalfoil.case.fields import UNIT_PROBLEM, VALUE_PROBLEM
 from petalfoil.case.hints import nearest_key, nearest_word
+from petalfoil.case.number_fields import UNIT_PROBLEM, VALUE_PROBLEM
 from petalfoil.errors import DefinitionError, UnitError
 from petalfoil.text import for_terminal
 from petalfoil.units.reading import shown

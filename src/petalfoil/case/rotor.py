@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Self
 from pydantic import model_validator
 
 from petalfoil.case.definition import Definition
-from petalfoil.case.fields import VALUE_PROBLEM, Quantity, refuse
+from petalfoil.case.number_fields import VALUE_PROBLEM, Quantity, refuse
 from petalfoil.case.sections import MAX_SPEED
 
 

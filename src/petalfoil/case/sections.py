@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar
 from pydantic import BeforeValidator, StrictBool
 
 from petalfoil.case.definition import Definition
-from petalfoil.case.fields import Count, Quantity, as_load, as_pair
+from petalfoil.case.number_fields import Count, Quantity, as_load, as_pair
 
 MAX_SPEED = 1e6  # rad/s, 9.5 million rpm: beyond any shaft
 
@@ -115,7 +115,7 @@ class Model(Definition):
 
     kind: ModelKind
     edges: Edges = Edges.AMBIENT
-    cells_per_pitch: Annotated[int, Count(meaning="cells along a pitch", at_least=4, at_most=4096)] | None = None
+    cells_per_pitch: Annotated[int, Count(meaning="cells per pitch", at_least=4, at_most=4096)] | None = None
     axial_cells: Annotated[int, Count(meaning="cells over the whole length", at_least=2, at_most=512)] | None = None
     axial_grading: (
         Annotated[

@@ -17,7 +17,7 @@ import os
 import re
 
 from petalfoil.case import toml
-from petalfoil.case.fields import VALUE_PROBLEM, as_sequence, refuse
+from petalfoil.case.number_fields import VALUE_PROBLEM, as_sequence, refuse
 from petalfoil.errors import DefinitionError
 from petalfoil.text import for_terminal
 from petalfoil.units.reading import shown

@@ -8,8 +8,10 @@ In the order a call runs through them:
 - ``progress``   the bar on standard error
 - ``tables``     an answer as printed tables
 - ``outputs``    where an answer goes: checked before the run, written after it
+- ``signals``    interrupts by the terminal or the system, all alike
 - ``streams``    standard output and standard error
 - ``failures``   exit codes and what a user reads when something goes wrong
+- ``exports``    options of files for other programs
 - ``show``       a stored result once more
 - ``reproduce``  the paper's figures and claims: a page and data
 

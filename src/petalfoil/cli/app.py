@@ -8,7 +8,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from petalfoil import __version__
-from petalfoil.analysis import registry
+from petalfoil.analysis import known_verbs
 from petalfoil.cli.failures import handled
 from petalfoil.cli.reproduce import reproduce
 from petalfoil.cli.streams import accept_any_text, emit
@@ -28,12 +28,12 @@ class Verbs(TyperGroup):
 
     def list_commands(self, ctx: Context) -> list[str]:
         """Names of all verbs."""
-        return [*registry.summaries(), "show", *super().list_commands(ctx)]
+        return [*known_verbs.summaries(), "show", *super().list_commands(ctx)]
 
     def get_command(self, ctx: Context, cmd_name: str) -> Any:
         """The command of a verb as the list of commands shows it."""
-        if cmd_name in registry.summaries():
-            return TyperCommand(cmd_name, help=registry.summaries()[cmd_name])
+        if cmd_name in known_verbs.summaries():
+            return TyperCommand(cmd_name, help=known_verbs.summaries()[cmd_name])
         if cmd_name == "show":
             return TyperCommand(cmd_name, help=SHOW)
         return super().get_command(ctx, cmd_name)
@@ -41,7 +41,7 @@ class Verbs(TyperGroup):
     def resolve_command(self, ctx: Context, args: list[str]) -> Any:
         """The command that is called, with all its options."""
         name, command, rest = super().resolve_command(ctx, args)
-        if name in registry.summaries():
+        if name in known_verbs.summaries():
             from petalfoil.cli.commands import command_of
 
             command = command_of(str(name))

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from petalfoil.analysis import registry
+from petalfoil.analysis import known_verbs
 from petalfoil.analysis.arguments import Argument, Flag, StoredResult
 from petalfoil.analysis.declaration import Analysis
 from petalfoil.case import Case
@@ -35,7 +35,7 @@ OUTPUTS = {"as_json": (JSON, False), "out": (OUT, None), "plot": (PLOT, None)}
 
 def command_of(verb: str) -> Any:
     """The command of an analysis."""
-    analysis = registry.find(verb)
+    analysis = known_verbs.find(verb)
     if analysis is None:
         raise ValueError(f"no analysis is called {verb!r}")
 

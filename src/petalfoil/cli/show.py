@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from petalfoil.analysis.declaration import Export
-from petalfoil.analysis.registry import find, summaries
+from petalfoil.analysis.known_verbs import find, summaries
 from petalfoil.cli.commands import JSON, KEYWORD, PLOT, command
 from petalfoil.cli.exports import chosen, export_options
 from petalfoil.cli.failures import handled

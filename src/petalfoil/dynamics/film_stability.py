@@ -15,7 +15,7 @@ from petalfoil.solvers.eigenvalues import Pencil, rightmost
 from petalfoil.system.unknowns import DEFLECTION
 
 TIME_STEP = 0.15
-"""Step of the eigenvalue's time map, in radians of rotation: what grows or decays within a few steps converges first."""
+"""Step of the eigenvalue's time map, radians of rotation: what grows or decays within a few steps converges first."""
 
 
 def leading_eigenvalue(solution: Solution) -> complex:

@@ -6,7 +6,7 @@ In the order data flows:
 - ``orbit_views``  what figures take from a motion: path, clearance circle
 - ``labels``       quantities with their units, facts of a title, text made safe
 - ``canvas``       the figure as a notebook shows it; figures to files (`save`)
-- ``style``        colours, sizes, axes and titles all figures share
+- ``style``        colours, sizes, axes and titles of figures
 - ``film_fields``  pressure and film: around (`pressure_and_film`), of one petal (`petal_profiles`), as `maps`
 - ``section``      the section of the loaded bearing (`cross_section`), with its film (`operating_point`)
 - ``assembly``     the foil pack as it is assembled (`package`)

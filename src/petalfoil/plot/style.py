@@ -1,4 +1,4 @@
-"""Colours, sizes, axes and titles that all figures share.
+"""Colours, sizes, axes and titles of the figures.
 
 The palette is Okabe and Ito's, told apart with any colour vision; the colour maps (viridis, cividis) grow evenly in
 brightness.

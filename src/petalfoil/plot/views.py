@@ -54,7 +54,7 @@ def one_point(ds: xr.Dataset) -> xr.Dataset:
 def unconverged(status: str) -> ConvergenceError:
     """The refusal to draw, with the status of the run."""
     return ConvergenceError(
-        f"no figure is drawn from a state that did not converge ({status})",
+        f"nothing is drawn from a state that did not converge ({status})",
         advice="solve the case again with what the status advises, then draw",
     )
 

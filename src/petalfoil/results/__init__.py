@@ -12,7 +12,8 @@ In the order data flows:
 - ``study``    the same of a grid study, with its estimates
 - ``dataset``  records to ``xarray.Dataset``: one point, or a curve of points
 - ``motion``   what the histories of a motion tell: positions once per revolution, spectra of the whirl
-- ``export``   coefficients for other programs: CSV, ROSS
+- ``export``   coefficients for other programs: CSV
+- ``ross``     coefficients as bearing elements of ROSS
 - ``atomic``   a file is replaced whole or left alone
 - ``seal``     proof that a file is what was written
 - ``store``    datasets to NetCDF and back

@@ -83,7 +83,7 @@ def write_ross(ds: xr.Dataset, path: str | Path, node: int = 0, tag: str | None 
     path : str or Path
         Where to: ``.toml`` or ``.json``.
     node : int
-        Node of the rotor that the bearing sits at.
+        Node of the rotor that carries the bearing.
     tag : str, optional
         Name of the element, different for each in a rotor; by default that of the file.
 

@@ -12,7 +12,7 @@ from petalfoil.errors import UnitError, UsageError
 from petalfoil.units.grammar import UnitTextError, convert
 
 MAX_TEXT = 120  # longer texts are no quantities; the bound keeps the reader's work and depth small
-MAX_POINTS = 10_000  # more points than this in one range is a slip of the pen
+MAX_POINTS = 10_000  # more points than this in one range is a typing mistake
 
 # At most three digits of exponent: a number is also read as an exact fraction, whose length grows with the exponent.
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3}(?![0-9]))?")

@@ -21,7 +21,7 @@ class Capability(Enum):
     """What an analysis may need of a wall; the value completes "a wall that ..."."""
 
     PACK = "has a pack on the journal at zero speed"
-    LIFT_OFF = "rests on the journal at zero speed and floats at speed"
+    LIFT_OFF = "rests on the journal at zero speed and lifts off at speed"
     SEVERAL_EQUILIBRIA = "can have several equilibria at one journal position"
     RUBBING = "has petals that rub on each other and on the bushing"
 

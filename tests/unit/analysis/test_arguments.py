@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from petalfoil.analysis import registry
+from petalfoil.analysis import known_verbs
 from petalfoil.analysis.declaration import Analysis
 from petalfoil.analysis.liftoff import own_load
 from petalfoil.errors import PetalfoilError, UnitError, UsageError
@@ -20,7 +20,7 @@ ODD: list[Any] = [
     *(np.array([1.0, np.nan]), np.array("x"), np.array(np.nan)),
 ]
 ARGUMENTS = [
-    (verb, name) for verb in registry.summaries() for name in registry.find(verb).arguments if name != "restart"
+    (verb, name) for verb in known_verbs.summaries() for name in known_verbs.find(verb).arguments if name != "restart"
 ]
 
 
@@ -35,7 +35,7 @@ def refusal_of(declared: Analysis, name: str, value: Any) -> PetalfoilError | No
 
 @pytest.mark.parametrize(("verb", "name"), ARGUMENTS)
 def test_odd_values_are_read_or_refused_by_name(verb: str, name: str) -> None:
-    declared = registry.find(verb)
+    declared = known_verbs.find(verb)
     assert declared is not None
     refusals = [str(refusal) for value in ODD if (refusal := refusal_of(declared, name, value)) is not None]
     assert refusals
@@ -44,14 +44,14 @@ def test_odd_values_are_read_or_refused_by_name(verb: str, name: str) -> None:
 
 @pytest.mark.parametrize(("verb", "name"), [("converge", "levels"), ("runup", "points"), ("orbit", "revolutions")])
 def test_text_that_is_no_number_is_refused_where_a_number_is_meant(verb: str, name: str) -> None:
-    declared = registry.find(verb)
+    declared = known_verbs.find(verb)
     assert declared is not None
     with pytest.raises((UsageError, UnitError), match=f"{name}: 'many'"):
         declared.read({name: "many"})
 
 
 def test_an_array_without_dimensions_is_no_list() -> None:
-    declared = registry.find("liftoff")
+    declared = known_verbs.find("liftoff")
     assert declared is not None
     with pytest.raises(UnitError, match="loads"):
         declared.read({"loads": np.array(3.0)})

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner, Result
 
-from petalfoil.analysis.registry import find
+from petalfoil.analysis.known_verbs import find
 from petalfoil.analysis.runs import Points
 from petalfoil.cli.app import app
 from petalfoil.results import Record, Scalar

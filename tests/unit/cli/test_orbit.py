@@ -15,7 +15,7 @@ import pytest
 from numpy.testing import assert_allclose
 from typer.testing import Result
 
-from petalfoil.analysis.motion import Orbit
+from petalfoil.analysis.orbit_motion import Orbit
 from petalfoil.cli import keeping
 from petalfoil.errors import ConvergenceError
 from petalfoil.results.store import load
@@ -190,7 +190,7 @@ def test_the_file_grows_with_the_motion(cli: Run, rotor: str, tmp_path: Path, mo
 
 CTRL_C = """
 import os, signal, sys
-from petalfoil.analysis.motion import Orbit
+from petalfoil.analysis.orbit_motion import Orbit
 from petalfoil.cli import main
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # whoever runs the tests may have it ignored

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from petalfoil.analysis.registry import find
+from petalfoil.analysis.known_verbs import find
 from petalfoil.analysis.runs import Points
 from petalfoil.cli.keeping import MAX_SHARE, PERIOD, Autosave, follow
 from petalfoil.errors import StoreError

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from petalfoil.analysis.motion import Orbit
+from petalfoil.analysis.orbit_motion import Orbit
 from petalfoil.analysis.release import OrbitRequest
 from petalfoil.case import Case
 from petalfoil.dynamics.stage import Stage, StageOptions, solve_stage

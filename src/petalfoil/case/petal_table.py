@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
-from petalfoil.case.fields import VALUE_PROBLEM, Count, Quantity, QuantityOrWord, refuse
+from petalfoil.case.number_fields import VALUE_PROBLEM, Count, Quantity, QuantityOrWord, refuse
 from petalfoil.case.shape_file import as_shape
 from petalfoil.case.wall_tables import WallTable
 
