@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from petalfoil.mesh.quadrature import trapezoid
-from petalfoil.solvers.contact_newton import Outcome
+from petalfoil.solvers.contact_equations import ContactOutcome
 from tests.verification.shell_helpers import (
     GRIDS,
     UNIT,
@@ -273,7 +273,7 @@ def test_active_set_is_quick_from_the_set_of_a_coarser_grid(gap: float) -> None:
     closed = np.repeat(coarse.active, 2)
     start = np.interp(np.arange(1, 129) / 128.0, np.arange(65) / 64.0, np.append(0.0, coarse.x))
     answer, outcome, count = polish(fine, start, closed)
-    assert outcome is Outcome.CONVERGED
+    assert outcome is ContactOutcome.CONVERGED
     assert answer is not None
     assert count <= 5
     assert_allclose(answer.x, solve(fine, fine.n).x, atol=1e-6)
@@ -284,6 +284,6 @@ def test_active_set_from_nothing_answers_rightly_or_not_at_all(cells: int) -> No
     problem = wall_problem(uniform_grid(1.0, cells), 0.001)
     answer, outcome, _ = polish(problem, np.zeros(problem.n), np.zeros(problem.n, dtype=bool))
     if answer is None:
-        assert outcome is not Outcome.CONVERGED
+        assert outcome is not ContactOutcome.CONVERGED
     else:
         assert_allclose(answer.x, solve(problem, problem.n).x, atol=1e-6)
