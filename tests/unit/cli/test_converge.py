@@ -118,7 +118,7 @@ def test_the_table_has_every_grid_order_limit_error_and_trust(cli, study: Study,
 def test_json_has_the_grids_and_the_quantities(cli, study: Study, case: str) -> None:
     result = cli("converge", case, "--json")
     answer = json.loads(result.stdout)
-    assert list(answer) == ["grids", "quantities"]
+    assert list(answer) == ["grids", "quantities", "warnings"]
     assert [grid["cells_per_pitch"] for grid in answer["grids"]] == [32, 64, 128]
     assert [grid["bearing_force"] for grid in answer["grids"]] == list(LOADS)
     assert answer["quantities"]["bearing_force"] == {
