@@ -14,7 +14,7 @@ from numpy.testing import assert_allclose
 import petalfoil
 from petalfoil.analysis.known_verbs import find
 from petalfoil.analysis.runs import Points
-from petalfoil.errors import PetalfoilError, UnitError, UsageError
+from petalfoil.errors import ConvergenceError, PetalfoilError, UnitError, UsageError
 from petalfoil.results import Record
 from petalfoil.results.layout import Series
 from petalfoil.results.store import load, save
@@ -151,3 +151,8 @@ def test_the_legs_of_a_run_up_share_one_dimension() -> None:
     ds = ASKED["runup"]()
     assert ds["leg"].values.tolist() == ["up", "up", "up", "down", "down"]
     assert_allclose(ds["speed"], [0.0, 750.0, 3000.0, 750.0, 0.0], rtol=1e-12, atol=0.0)
+
+
+def test_a_load_beyond_the_capacity_is_said_to_be_that() -> None:
+    with pytest.raises(ConvergenceError, match=r"load of 1e\+09 N is beyond the capacity of the bearing: at 1e\+08 N"):
+        petalfoil.balance(case("paper_n8", **{"model.cells_per_pitch": 24}), 1e9)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from petalfoil.analysis.classic_method import by_classic, newton_only
+from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.records import branch
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case, ModelKind
@@ -27,6 +28,12 @@ from petalfoil.system.coupled import CoupledProblem
 from petalfoil.walls import Capability, wall_kind
 
 Vector = tuple[float, float]
+
+SMALLER_LOADS = (0.1, 0.01, 0.001)
+"""Fractions of a load without a balance at which its reason is looked for."""
+
+SOLID_CONTACT = 0.9
+"""Contact fraction above which the film is no support any more."""
 
 PROBE_CELLS, PROBE_AXIAL = 24, 6
 """Grid on which other equilibria are looked for."""
@@ -100,7 +107,10 @@ def under_load(case: Case, load: Vector) -> tuple[Solution, Branch]:
         No position was found.
     """
     problem = build_problem(case)
-    found = balance_cold(problem, np.array(load) / problem.layout.scales.force)
+    try:
+        found = balance_cold(problem, np.array(load) / problem.layout.scales.force)
+    except ConvergenceError as failure:
+        raise beyond_capacity(problem, load, failure) from failure
     rate = leading_eigenvalue(found)
     alone = branch(rate, case, 1, found.solution_path)
     if not rate.real > 0.0:
@@ -114,6 +124,36 @@ def under_load(case: Case, load: Vector) -> tuple[Solution, Branch]:
     if other.real > 0.0:
         return found, alone
     return risen, branch(other, case, 2, "followed from rest under the load; another balance is unstable")
+
+
+def beyond_capacity(problem: CoupledProblem, load: Vector, failure: ConvergenceError) -> ConvergenceError:
+    """The error of a load without a balance: where solid contact carries smaller ones already, it is beyond capacity.
+
+    Parameters
+    ----------
+    problem : CoupledProblem
+        The bearing.
+    load : (x, y)
+        The load [N].
+    failure : ConvergenceError
+        Why it has no balance; returned where a smaller load has none either, or the film carries it.
+    """
+    for fraction in SMALLER_LOADS:
+        try:
+            found = balance_cold(problem, fraction * np.array(load) / problem.layout.scales.force)
+        except ConvergenceError:
+            continue
+        carried = Evaluation.of(problem.layout.case, found).contact_fraction
+        if carried < SOLID_CONTACT:
+            return failure
+        size = float(np.hypot(*load))
+        return ConvergenceError(
+            f"a load of {size:g} N is beyond the capacity of the bearing: at {fraction * size:g} N solid contact "
+            f"carries {100.0 * carried:.4g} % already, and the film the rest",
+            history=failure.history,
+            advice="reduce the load; how much the film carries tells contact_fraction at smaller ones",
+        )
+    return failure
 
 
 def at_position(case: Case) -> OperatingPoint:
