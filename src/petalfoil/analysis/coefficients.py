@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Annotated, Any
 
 import numpy as np
@@ -202,7 +203,7 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
     if speeds is None:
         with running(progress, "coefficients"):
             return point(cases[0], asked, load)
-    return Points(_points(cases, asked, load, progress), len(cases))
+    return Points(partial(_points, cases, asked, load, progress), len(cases))
 
 
 def check_amplitude(case: Case, asked: Asked) -> None:
@@ -225,8 +226,10 @@ def check_amplitude(case: Case, asked: Asked) -> None:
         )
 
 
-def _points(cases: list[Case], asked: Asked, load: Vector | None, progress: Progress | None) -> Iterator[Record]:
-    for number, case in enumerate(cases):
+def _points(
+    cases: list[Case], asked: Asked, load: Vector | None, progress: Progress | None, done: Sequence[Record] = ()
+) -> Iterator[Record]:
+    for number, case in enumerate(cases[len(done) :], len(done)):
         with running(part(progress, number, len(cases)), "coefficients"):
             try:
                 record = point(case, asked, load)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated
 
 from petalfoil.analysis.arguments import Position, Speed, Whole
@@ -58,5 +59,6 @@ def converge(
         The displaced journal leaves the package no clearance.
     """
     cases = grids(at(case, speed, eccentricity), levels, coarsest)
-    records = grid_records(cases, point, progress)
-    return Points(records, len(cases), noun="grids", least=LEAST_GRIDS, parts=parts(cases))
+    return Points(
+        partial(grid_records, cases, point, progress), len(cases), noun="grids", least=LEAST_GRIDS, parts=parts(cases)
+    )

@@ -6,8 +6,9 @@ interior point takes over from there; if its answer is not where the branch lead
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from petalfoil.analysis.displacements import CHARACTERISTIC, displaced
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.operating_point import OperatingPoint, at_position, relaxed
 from petalfoil.analysis.records import asked_position, branch, effort, failed_record, solution_record
+from petalfoil.analysis.resume import is_same
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
 from petalfoil.case import Case
@@ -44,7 +46,8 @@ def curve(
     """Follow the load over the displacement of the journal, at one speed.
 
     Points that do not converge are named and left blank. With --out the file
-    is rewritten as points finish; Ctrl-C keeps what is finished.
+    is rewritten as points finish; Ctrl-C keeps what is finished, and --resume
+    goes on from it.
 
     Example: petalfoil curve case.toml --eccentricity "0 um : 280 um : 15"
 
@@ -54,14 +57,14 @@ def curve(
         A displacement leaves the package no clearance; before any point is computed.
     """
     cases = displaced(case, eccentricities, direction, speed)
-    return Points(_points(cases, progress), len(cases))
+    return Points(partial(_points, cases, progress), len(cases))
 
 
-def _points(cases: list[Case], progress: Progress | None) -> Iterator[Record]:
-    before: Solution | None = None
+def _points(cases: list[Case], progress: Progress | None, done: Sequence[Record] = ()) -> Iterator[Record]:
     base = build_problem(cases[0])
-    for number, case in enumerate(cases):
-        problem = base.at(displacement=np.array(case.operation.eccentricity) / base.layout.scales.length)
+    before = _regained(cases, base, done)
+    for number, case in enumerate(cases[len(done) :], len(done)):
+        problem = _displaced(base, case)
         with running(part(progress, number, len(cases)), "curve", typical_steps(case)) as run:
             try:
                 found = _point(case, problem, before)
@@ -71,6 +74,36 @@ def _points(cases: list[Case], progress: Progress | None) -> Iterator[Record]:
             except ConvergenceError as failure:
                 before, record = None, failed_record("curve", case, failure)
         yield record
+
+
+def _displaced(base: CoupledProblem, case: Case) -> CoupledProblem:
+    return base.at(displacement=np.array(case.operation.eccentricity) / base.layout.scales.length)
+
+
+def _regained(cases: list[Case], base: CoupledProblem, done: Sequence[Record]) -> Solution | None:
+    """The solution of the last point that is done; None where it did not converge.
+
+    It is looked for from nothing; where that leads to another branch, along the points before it.
+    """
+    if not done or not done[-1].converged:
+        return None
+    last = _along(cases[len(done) - 1 : len(done)], base)
+    if last is not None:
+        forces = Evaluation.of(cases[len(done) - 1], last).forces()
+        if is_same(done[-1], {"force_x": forces.force_x, "force_y": forces.force_y}):
+            return last
+    return _along(cases[: len(done)], base)
+
+
+def _along(cases: Sequence[Case], base: CoupledProblem) -> Solution | None:
+    """The last solution of a curve; None where it did not converge."""
+    found: Solution | None = None
+    for case in cases:
+        try:
+            found = _point(case, _displaced(base, case), found).answer
+        except ConvergenceError:
+            found = None
+    return found
 
 
 def _point(case: Case, problem: CoupledProblem, before: Solution | None) -> OperatingPoint:

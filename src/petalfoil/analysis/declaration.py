@@ -19,9 +19,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias, get_type_hints
 
-from petalfoil.analysis.arguments import Argument
+from petalfoil.analysis.arguments import Argument, StoredResult
 from petalfoil.analysis.known_verbs import register
-from petalfoil.analysis.runs import Run, Single
+from petalfoil.analysis.resume import asked_for, points_done
+from petalfoil.analysis.runs import Points, Run, Single
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, new_run
@@ -70,6 +71,10 @@ class Export:
     check: Callable[[Values, Mapping[str, str]], None] | None = None
     fill: Callable[[Values], Values] | None = None
     settings: Mapping[str, Argument] = field(default_factory=dict)
+
+
+RESUME = StoredResult(metavar="FILE.nc", help="Go on from the points that --out wrote for the same question.")
+"""Option of every series."""
 
 
 @dataclass(eq=False)
@@ -160,13 +165,46 @@ class Analysis:
                     raise UsageError(f"{names[name]} says nothing beside {names[other]}: leave one of them out")
         return {name: self.arguments[name].named(names[name], value) for name, value in there.items()}
 
-    def start(self, case: Case, values: Values, progress: Progress | None = None) -> Run:
-        """Ask the question; what is checked without a run has been checked when this returns."""
+    @property
+    def is_series(self) -> bool:
+        """Whether it may return points in order."""
+        return any(layout.dimension for layout in self.layouts)
+
+    def start(
+        self, case: Case, values: Values, progress: Progress | None = None, resume: xr.Dataset | None = None
+    ) -> Run:
+        """Ask the question; what is checked without a run has been checked when this returns.
+
+        Parameters
+        ----------
+        case : Case
+            The bearing.
+        values : mapping
+            Arguments by name, SI.
+        progress : callable, optional
+            Called with the part done and a text.
+        resume : xarray.Dataset, optional
+            What a series wrote before it was stopped, to go on from.
+
+        Raises
+        ------
+        UsageError
+            What is given is no case, or the result to go on from is not one of this question.
+        """
         if not isinstance(case, Case):
             raise UsageError(f"{shown(case)} is not a Case; Case.load(path) reads one from a file")
         with one_thread():
             begun = self.question(case, **values, **({"progress": progress} if self._tells_progress else {}))
-        return Single(begun) if isinstance(begun, Record) else begun
+        run = Single(begun) if isinstance(begun, Record) else begun
+        if isinstance(run, Points):
+            defaults = {name: self.default(name) for name in self.arguments}
+            run.asked = asked_for(case, defaults | dict(values))
+        if resume is None:
+            return run
+        if not isinstance(run, Points) or not callable(run.source):
+            raise UsageError(f"{self.verb} with these arguments is no series of points that could go on")
+        run.done.extend(points_done(resume, self.layout_of(resume), self.verb, run.asked))
+        return run
 
     def advance(self, run: Run, progress: Progress | None = None) -> Iterator[None]:
         """Compute on, piece by piece."""
@@ -187,6 +225,7 @@ class Analysis:
             records=records,
             estimates=estimates,
             warnings=warnings_of_all(records),
+            asked=run.asked if isinstance(run, Points) else "",
             interrupted=ended == "interrupted",
         )
 
@@ -194,9 +233,11 @@ class Analysis:
         """The layout of a stored result."""
         return next((layout for layout in self.layouts if layout.dimension in ds.dims), self.layouts[0])
 
-    def __call__(self, case: Case, *given: Any, progress: Progress | None = None, **named: Any) -> xr.Dataset:
+    def __call__(
+        self, case: Case, *given: Any, progress: Progress | None = None, resume: Any = None, **named: Any
+    ) -> xr.Dataset:
         """Answer the question: SI numbers or texts with units in, labelled data out."""
-        run = self._begin(case, given, named, progress)
+        run = self._begin(case, given, named, progress, resume)
         for _ in self.advance(run, progress):
             pass
         answer = self.answer(run)
@@ -213,9 +254,12 @@ class Analysis:
         (record,) = self.records(case, *given, progress=progress, **named)
         return record
 
-    def _begin(self, case: Case, given: tuple[Any, ...], named: Values, progress: Progress | None) -> Run:
+    def _begin(
+        self, case: Case, given: tuple[Any, ...], named: Values, progress: Progress | None, resume: Any = None
+    ) -> Run:
         bound = self.signature.bind(case, *given, **named).arguments
-        return self.start(case, self.read({k: v for k, v in bound.items() if k in self.arguments}), progress)
+        values = self.read({k: v for k, v in bound.items() if k in self.arguments})
+        return self.start(case, values, progress, None if resume is None else RESUME.named("resume", resume))
 
     def _records(self, run: Run, progress: Progress | None) -> Iterator[Record]:
         given = 0
@@ -262,4 +306,6 @@ def _parameters(declared: Analysis) -> str:
         optional = "" if declared.default(name) is inspect.Parameter.empty else ", optional"
         lines += [f"{name} : {type(argument).__name__}{optional}", f"    {argument.help}"]
     lines += ["progress : callable, optional", "    Called with the part done (0 to 1) and a text."]
+    if declared.is_series:
+        lines += ["resume : result or its file, optional", "    Points to go on from, of the same question."]
     return "\n".join([*lines, "", "Returns", "-------", "xarray.Dataset", "    The results, in SI units."])

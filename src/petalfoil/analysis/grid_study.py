@@ -46,11 +46,18 @@ ANGLES = {name for name, variable in SCALARS.items() if variable.units == "rad"}
 
 
 def grid_records(
-    cases: Sequence[Case], point: Point, progress: Progress | None = None, known: Record | None = None
+    cases: Sequence[Case],
+    point: Point,
+    progress: Progress | None = None,
+    finished: Sequence[Record] = (),
+    known: Record | None = None,
 ) -> Iterator[Record]:
-    """Yield the record of each case, from `point` or `known`; a grid without a solution is recorded as such."""
+    """Yield the record of each case after the `finished` ones, from `point` or `known`.
+
+    A grid without a solution is recorded as such.
+    """
     done = [0.0, *parts(cases)]
-    for number, case in enumerate(cases):
+    for number, case in enumerate(cases[len(finished) :], len(finished)):
         if known is not None and known.case_toml == case.to_toml():
             yield _labelled(known, case)
         else:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated
 
 from petalfoil.analysis.arguments import Quantity, Values
@@ -98,7 +99,7 @@ def liftoff(
     newton_only(case)
     required(case, Capability.LIFT_OFF, "lift-off")
     asked = [own_load(case)] if loads is None else list(loads)
-    return Points(_points(case, asked, contact_fraction, progress), len(asked))
+    return Points(partial(_points, case, asked, contact_fraction, progress), len(asked))
 
 
 def own_load(case: Case) -> float:
@@ -120,8 +121,10 @@ def own_load(case: Case) -> float:
     return -y
 
 
-def _points(case: Case, loads: list[float], limit: float, progress: Progress | None) -> Iterator[Record]:
-    for number, load in enumerate(loads):
+def _points(
+    case: Case, loads: list[float], limit: float, progress: Progress | None, done: Sequence[Record] = ()
+) -> Iterator[Record]:
+    for number, load in enumerate(loads[len(done) :], len(done)):
         with running(part(progress, number, len(loads)), f"liftoff {load:g} N") as run:
             try:
                 up, down = crossings(case, load, limit)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 from petalfoil.results.record import Record
+
+Source: TypeAlias = Callable[[Sequence[Record]], Iterator[Record]]
 
 
 class Run(Protocol):
@@ -56,8 +58,8 @@ class Points:
 
     Attributes
     ----------
-    source : iterator of Record
-        Computes a point whenever the next is asked for.
+    source : callable or iterator of Record
+        Given the points that are done, computes the next whenever it is asked for; an iterator begins at the first.
     count : int
         How many there will be.
     noun : str
@@ -66,19 +68,22 @@ class Points:
         Number of converged points below which nothing is worth keeping; 0 keeps failed ones too.
     parts : sequence of float or None
         Part of the whole that is done after each point; by default all cost the same.
+    asked : str
+        What the series is asked for; empty where nothing can go on from it.
     """
 
-    source: Iterator[Record]
+    source: Iterator[Record] | Source
     count: int
     noun: str = "points"
     least: int = 0
     parts: Sequence[float] | None = None
     done: list[Record] = field(default_factory=list)
+    asked: str = ""
     is_series: bool = True
 
     def advance(self) -> Iterator[tuple[float, str]]:
-        """Compute point after point."""
-        for record in self.source:
+        """Compute point after point, from those that are done on."""
+        for record in self.source(tuple(self.done)) if callable(self.source) else self.source:
             self.done.append(record)
             number = len(self.done)
             part = number / self.count if self.parts is None else self.parts[number - 1]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Annotated
 
 import numpy as np
@@ -53,7 +54,8 @@ def runup(case: Case, load: Load = None, *, to: Top, points: Count = 25, progres
     """Follow torque, contact, film and position from rest to a speed, and back.
 
     Each point is followed from the one before. With --out the file is
-    rewritten as points finish; Ctrl-C keeps what is finished.
+    rewritten as points finish; Ctrl-C keeps what is finished, and --resume
+    goes on from it.
 
     Example: petalfoil runup case.toml --load "46.4 N" --to "30000 rpm"
 
@@ -65,16 +67,21 @@ def runup(case: Case, load: Load = None, *, to: Top, points: Count = 25, progres
     required(case, Capability.PACK, "a run-up")
     speeds = to * np.linspace(0.0, 1.0, points) ** 2  # close together where the film takes over from contact
     way = [("up", float(v)) for v in speeds] + [("down", float(v)) for v in speeds[-2::-1]]
-    return Points(_points(case, applied_load(case, load), way, progress), len(way))
+    return Points(partial(_points, case, applied_load(case, load), way, progress), len(way))
 
 
 def _points(
-    case: Case, load: tuple[float, float], way: list[tuple[str, float]], progress: Progress | None
+    case: Case,
+    load: tuple[float, float],
+    way: list[tuple[str, float]],
+    progress: Progress | None,
+    done: Sequence[Record] = (),
 ) -> Iterator[Record]:
-    line: SpeedLine | None = None
-    for number, (leg, speed) in enumerate(way):
+    line = SpeedLine(at(case, way[0][1], (0.0, 0.0)), load)
+    if done:
+        line.regain([speed for _, speed in way[: len(done)]], done[-1])
+    for number, (leg, speed) in enumerate(way[len(done) :], len(done)):
         here = at(case, speed, (0.0, 0.0))
-        line = line or SpeedLine(here, load)
         asked = (AppliedLoad.of(load), Leg(leg))
         with running(part(progress, number, len(way)), f"runup {leg}") as run:
             try:

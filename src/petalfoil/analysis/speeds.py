@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.analysis.resume import is_same
 from petalfoil.case import Case
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold, rebalance
+from petalfoil.errors import ConvergenceError
+from petalfoil.results.record import Record
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 
@@ -69,6 +73,29 @@ class SpeedLine:
         for part in CLIMB:
             found = self.at(part * speed)
         return found
+
+    def regain(self, speeds: Sequence[float], last: Record) -> None:
+        """Stand at the `last` stored point of a line through `speeds` [rad/s], to go on from there.
+
+        Its balance is looked for from nothing; where that is another, along the speeds.
+        """
+        self.known = None
+        if not last.converged or self._arrived(speeds[-1:], last):
+            return
+        self._arrived(speeds, last)
+
+    def _arrived(self, speeds: Sequence[float], last: Record) -> bool:
+        """Follow the line through `speeds`; whether it ends at the stored point."""
+        found = self.known = None
+        for speed in speeds:
+            try:
+                found = self.at(speed)
+            except ConvergenceError:
+                found = self.known = None
+        if found is None:
+            return False
+        x, y = found.problem.displacement * self.base.layout.scales.length
+        return is_same(last, {"eccentricity_x": float(x), "eccentricity_y": float(y)})
 
     def contact_fraction(self, speed: float) -> float:
         """Contact fraction at `speed` [1]."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -106,7 +107,7 @@ def stability(  # noqa: PLR0913 - the options of the verb
     wanted = [applied_load(case, load)] if loads is None else [(0.0, -size) for size in loads]
     turn = [case.operation.speed if speed is None else speed] if speeds is None else speeds
     cases = [turning(at(case, omega, (0.0, 0.0))) for omega in turn]
-    return Points(_points(cases, wanted, progress), len(cases) * len(wanted))
+    return Points(partial(_points, cases, wanted, progress), len(cases) * len(wanted))
 
 
 def turning(case: Case) -> Case:
@@ -155,13 +156,17 @@ def mode_fields(modes: list[Mode], speed: float) -> tuple[dict[str, Array], dict
     return fields, {"mode": np.arange(1, len(modes) + 1)}
 
 
-def _points(cases: list[Case], loads: list[Vector], progress: Progress | None) -> Iterator[Record]:
+def _points(
+    cases: list[Case], loads: list[Vector], progress: Progress | None, done: Sequence[Record] = ()
+) -> Iterator[Record]:
     """Critical masses load by load, speeds in order, each balance followed from the one before."""
-    for row, load in enumerate(loads):
-        line: SpeedLine | None = None
-        for column, case in enumerate(cases):
+    rows, columns = divmod(len(done), len(cases))  # whole rows that are done, and points of the next one
+    for row, load in enumerate(loads[rows:], rows):
+        line, first = SpeedLine(cases[0], load), columns if row == rows else 0
+        if first:
+            line.regain([case.operation.speed for case in cases[:first]], done[-1])
+        for column, case in enumerate(cases[first:], first):
             here = part(progress, row * len(cases) + column, len(loads) * len(cases))
-            line = line or SpeedLine(case, load)
             with running(here, "stability") as run:
                 try:
                     found, whirl = _followed(line, case)

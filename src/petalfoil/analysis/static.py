@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated, Any
 
 import numpy as np
@@ -70,7 +71,7 @@ def static(
 
     Preload and starting torque are those of the centred journal, so let the
     displacements begin at 0. With --out the file is rewritten as points
-    finish; Ctrl-C keeps what is finished.
+    finish; Ctrl-C keeps what is finished, and --resume goes on from it.
 
     With friction between the petals (surface.petal_friction) each point
     comes from the one before; --loop goes back and there again.
@@ -90,14 +91,18 @@ def static(
         if loop and len(cases) < 2:
             raise UsageError("a loop needs at least two displacements")
         way = legs(cases, loop)
-        return Points(_with_friction(way, progress), len(way))
+        return Points(partial(_with_friction, way, progress), len(way))
     if loop:
         raise UsageError("a loop needs friction: give surface.petal_friction, and the default method")
-    return Points(_without_friction(cases, progress), len(cases))
+    return Points(partial(_without_friction, cases, progress), len(cases))
 
 
-def _with_friction(way: list[tuple[str, Case]], progress: Progress | None) -> Iterator[Record]:
+def _with_friction(
+    way: list[tuple[str, Case]], progress: Progress | None, done: Sequence[Record] = ()
+) -> Iterator[Record]:
     for number, point in enumerate(follow(way)):
+        if number < len(done):
+            continue  # friction depends on the way: it is gone once more
         if progress is not None:
             progress(number / len(way), f"static: {point.leg}")
         with point.run.active():
@@ -110,9 +115,9 @@ def _with_friction(way: list[tuple[str, Case]], progress: Progress | None) -> It
         yield record
 
 
-def _without_friction(cases: list[Case], progress: Progress | None) -> Iterator[Record]:
+def _without_friction(cases: list[Case], progress: Progress | None, done: Sequence[Record] = ()) -> Iterator[Record]:
     base = build_problem(cases[0])
-    for number, case in enumerate(cases):
+    for number, case in enumerate(cases[len(done) :], len(done)):
         if progress is not None:
             progress(number / len(cases), "static")
         problem = base.at(displacement=np.array(case.operation.eccentricity) / base.layout.scales.length)

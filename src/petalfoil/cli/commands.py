@@ -11,7 +11,7 @@ import typer
 
 from petalfoil.analysis import known_verbs
 from petalfoil.analysis.arguments import Argument, Flag, StoredResult
-from petalfoil.analysis.declaration import Analysis
+from petalfoil.analysis.declaration import RESUME, Analysis
 from petalfoil.case import Case
 from petalfoil.cli.exports import chosen, export_options
 from petalfoil.cli.failures import handled
@@ -27,6 +27,7 @@ CASE_FILE = Annotated[Path, typer.Argument(metavar="CASE", help="Case to run, a 
 JSON = Annotated[bool, typer.Option("--json", help="Print one JSON object in SI units instead of the table.")]
 OUT = Annotated[Path | None, typer.Option("--out", metavar="FILE.nc", help="Write the whole result to a NetCDF file.")]
 PLOT = Annotated[Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw a figure: .png, .svg or .pdf.")]
+RESUME_FILE = Annotated[Path | None, typer.Option("--resume", metavar=RESUME.metavar, help=RESUME.help)]
 HELP = ["-h", "--help"]
 """Options that print the help text."""
 OUTPUTS = {"as_json": (JSON, False), "out": (OUT, None), "plot": (PLOT, None)}
@@ -43,6 +44,8 @@ def command_of(verb: str) -> Any:
         call(analysis, given)
 
     options = [inspect.Parameter("case", KEYWORD, annotation=CASE_FILE), *_options(analysis)]
+    if analysis.is_series:
+        options.append(inspect.Parameter("resume", KEYWORD, annotation=RESUME_FILE, default=None))
     for name, (annotation, default) in OUTPUTS.items():
         options.append(inspect.Parameter(name, KEYWORD, annotation=annotation, default=default))
     options += export_options(analysis.exports)
@@ -68,6 +71,7 @@ def command(name: str, function: Callable[..., None], options: list[inspect.Para
 def call(analysis: Analysis, given: dict[str, Any]) -> None:
     """Run an analysis with the options of a call, and give its answer out."""
     path, as_json, out, plot = (given.pop(name) for name in ("case", *OUTPUTS))
+    resume = given.pop("resume", None)
     with handled(as_json):
         outputs = Outputs.checked(as_json=as_json, out=out, plot=plot, exports=chosen(analysis.exports, given))
         known_as = {name: option_of(name, argument) for name, argument in analysis.arguments.items()}
@@ -76,7 +80,7 @@ def call(analysis: Analysis, given: dict[str, Any]) -> None:
         values = _fit_exports(analysis, given, values, known_as)
         case = Case.load(path)
         with bar(analysis.verb) as report:
-            run = analysis.start(case, values, report)
+            run = analysis.start(case, values, report, None if resume is None else RESUME.named("--resume", resume))
             answer, stopped = follow(analysis, run, Autosave(out), report)
         outputs.deliver(answer, stopped=stopped)
 

@@ -76,6 +76,38 @@ def curve_dataset(records: Sequence[Record], analysis: str = "curve") -> xr.Data
     return xr.Dataset(variables, coords=labelled, attrs=attributes)
 
 
+def whole_record(point: xr.Dataset, scalars: dict[str, Scalar], history: list[dict[str, Any]]) -> Record:
+    """The record that a point of a dataset was made from.
+
+    Parameters
+    ----------
+    point : xarray.Dataset
+        The point, without the dimension of its series.
+    scalars : dict
+        Its scalars.
+    history : list of dict
+        Its history.
+
+    Returns
+    -------
+    Record
+        The record; without fields, and without what is not there, where the point did not converge.
+    """
+    converged = bool(scalars.get("converged", True))
+    fields = {name: point[name] for name in FIELDS if name in point and point[name].dims} if converged else {}
+    coords = {name: point[name].values for name in COORDINATES if fields and name in point.coords and point[name].dims}
+    absent = set() if converged else {name for name, value in scalars.items() if value != value}
+    return Record(
+        analysis=str(point.attrs["analysis"]),
+        title=str(point.attrs["title"]),
+        scalars={name: value for name, value in scalars.items() if name not in absent},
+        fields={name: array.values for name, array in fields.items()},
+        coords=coords,
+        case_toml=str(point.attrs["case"]),
+        history=history,
+    )
+
+
 def _curve_scalars(records: Sequence[Record]) -> dict[str, tuple[Any, ...]]:
     reported = [record.reported() for record in records]
     variables: dict[str, tuple[Any, ...]] = {}

@@ -24,6 +24,8 @@ Json: TypeAlias = Any
 Cell: TypeAlias = float | str
 WARNINGS = "warnings"
 """Attribute of a dataset that holds warnings, one a line; absent where there are none."""
+ASKED = "asked"
+"""Attribute of the dataset of a series that tells its case and arguments, as JSON."""
 _PLAIN = {DataType.FLOAT: float, DataType.INT: int, DataType.BOOL: bool, DataType.STR: str}
 
 
@@ -111,6 +113,14 @@ class Layout(ABC):
     def records(self, ds: xr.Dataset) -> tuple[Record, ...]:
         """The records of a dataset, as far as JSON and tables need them."""
         return tuple(self._record(point, ds) for point in self.points(ds))
+
+    def whole_records(self, ds: xr.Dataset) -> tuple[Record, ...]:
+        """The records of a dataset with all their arrays and their history, to add points to."""
+        from petalfoil.results.dataset import whole_record
+
+        history = json.loads(ds.attrs["history"])
+        pairs = zip(self.points(ds), history, strict=True)
+        return tuple(whole_record(point, scalars_of_point(point), steps) for point, steps in pairs)
 
     def estimates(self, records: Sequence[Record]) -> tuple[Estimate, ...]:
         """What the records together tell about their limit; nothing but for a grid study."""
@@ -265,6 +275,8 @@ class Answer:
         What a grid study tells.
     warnings : tuple of str
         What is implausible about the case and its results, one line each.
+    asked : str
+        What a series was asked for, so that it can go on from its points.
     interrupted : bool
         Whether points are missing because the user stopped the run.
     """
@@ -274,6 +286,7 @@ class Answer:
     records: tuple[Record, ...]
     estimates: tuple[Estimate, ...] = ()
     warnings: tuple[str, ...] = ()
+    asked: str = ""
     interrupted: bool = False
 
     @classmethod
@@ -303,6 +316,8 @@ class Answer:
         ds = self.layout.to_dataset(self.records, self.verb)
         if self.warnings:
             ds = ds.assign_attrs({WARNINGS: "\n".join(self.warnings)})
+        if self.asked:
+            ds = ds.assign_attrs({ASKED: self.asked})
         if not self.estimates:
             return ds
         from petalfoil.results.study import with_estimates

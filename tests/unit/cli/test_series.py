@@ -9,15 +9,17 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from petalfoil.analysis.known_verbs import find
 from petalfoil.analysis.runs import Points
+from petalfoil.case import Case
 from petalfoil.cli.keeping import MAX_SHARE, PERIOD, Autosave, follow
 from petalfoil.errors import StoreError
 from petalfoil.results import Record
 from petalfoil.results.layout import Answer, Series
-from petalfoil.results.store import load
+from petalfoil.results.store import load, save
 
 from .conftest import point
 
@@ -153,3 +155,22 @@ def test_a_file_that_cannot_be_rewritten_does_not_end_the_run(tmp_path: Path, mo
 def test_without_a_file_nothing_is_written(tmp_path: Path) -> None:
     Autosave(None).flush(finished())
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_command_goes_on_from_its_own_file(cli, case, tmp_path: Path) -> None:
+    out, whole = str(tmp_path / "curve.nc"), str(tmp_path / "whole.nc")
+    three = ("curve", case, "--eccentricity", "0 um : 20 um : 3")
+    assert cli(*three, "--out", whole).exit_code == 0
+    analysis = find("curve")
+    assert analysis is not None
+    run = analysis.start(Case.load(case), analysis.read({"eccentricities": [0.0, 1e-5, 2e-5]}))
+    next(run.advance())
+    save(analysis.answer(run, "interrupted").to_dataset(), out)
+    again = cli(*three, "--resume", out, "--out", out, "--json")
+    assert (again.exit_code, again.stderr) == (0, "")
+    forces = [point["force_y"] for point in json.loads(again.stdout)["points"]]
+    np.testing.assert_allclose(forces, load(whole)["force_y"].values, rtol=1e-6, atol=1e-6)
+    assert load(out).sizes["point"] == 3
+    other = cli("curve", case, "--eccentricity", "0 um : 30 um : 3", "--resume", out)
+    assert (other.exit_code, other.stdout) == (2, "")
+    assert "other arguments: eccentricities" in other.stderr
