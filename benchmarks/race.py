@@ -32,7 +32,7 @@ from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.errors import ConvergenceError
-from petalfoil.physics.forces import contact_force, film_force, node_area
+from petalfoil.physics.forces import node_area
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 
@@ -205,11 +205,9 @@ def estimate(changes: list[dict[str, Any]]) -> float | None:
 
 def compared_results(problem: CoupledProblem, x: Any, lam: Any) -> np.ndarray:
     """Force on the journal, minimum film thickness and peak pressure, each over its scale."""
-    film, pressure, journal = problem.layout.wall.film, problem.pressure(x), problem.layout.wall.contacts.journal
-    from_film = film_force(film, 1.0, pressure - 1.0) * problem.layout.scales.pressure
-    touching = lam[journal].reshape(*film.theta.shape, -1).sum(axis=2) * problem.layout.scales.force
-    load = from_film + contact_force(film.theta, touching)[0]
-    lift = np.sum((pressure - 1.0) * node_area(film, 1.0)) * problem.layout.scales.pressure
+    layout, pressure = problem.layout, problem.pressure(x)
+    load = problem.journal_force(x, lam) * layout.scales.force
+    lift = np.sum((pressure - 1.0) * node_area(layout.wall.film, layout.balance.radius)) * layout.scales.pressure
     return np.array([*(load / lift), problem.film(x).min(), pressure.max()])
 
 

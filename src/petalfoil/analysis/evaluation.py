@@ -11,7 +11,7 @@ from petalfoil.analysis.balances import mass_balance, reaction_balance, side_lea
 from petalfoil.analysis.extremes import highest, lowest
 from petalfoil.case import Case
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.physics.forces import attitude_angle, contact_force, film_force, node_area, viscous_torque
+from petalfoil.physics.forces import attitude_angle, node_area, viscous_torque
 from petalfoil.results.parts import Balances, Film, Forces
 from petalfoil.system.film_rows import FilmState
 
@@ -72,15 +72,15 @@ class Evaluation:
 
     def forces(self) -> Forces:
         """Forces on the journal (J1), (J2), and the fraction that solid contact carries (J3)."""
-        film, radius = self.answer.problem.layout.wall.film, self.case.bearing.journal_radius
-        by_film = film_force(film, radius, self.pressure - self.case.gas.ambient_pressure)
-        by_contact, total = contact_force(film.theta, self.reactions), self.normal_force
+        problem, total = self.answer.problem, self.normal_force
+        unit = problem.layout.scales.force
+        by_film, by_contact = problem.film_force(self.answer.x) * unit, problem.contact_force(self.answer.lam) * unit
         force = by_film + by_contact
         return Forces(
             force_x=float(force[0]),
             force_y=float(force[1]),
             bearing_force=float(np.hypot(*force)),
-            attitude_angle=attitude_angle(force, self.answer.problem.displacement),
+            attitude_angle=attitude_angle(force, problem.displacement),
             film_force_x=float(by_film[0]),
             film_force_y=float(by_film[1]),
             contact_force_x=float(by_contact[0]),

@@ -20,6 +20,7 @@ from petalfoil.errors import ConvergenceError
 from petalfoil.results.estimate import Estimate
 from petalfoil.results.record import Record
 from petalfoil.results.schema import SCALARS, DataType, Role
+from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 
 Array = NDArray[np.float64]
 
@@ -39,8 +40,6 @@ packages comes down to the floor where it should not, and such a grid only widen
 LEAST_AXIAL = 4
 """Coarsest division of the length: its pressure is zero at both ends, and one value is no profile."""
 
-RESIDUAL = 1e-8
-"""Residual of an answer over ambient pressure, see `equilibrium/solution.py`: forces are not known better."""
 
 ANGLES = {name for name, variable in SCALARS.items() if variable.units == "rad"}
 
@@ -147,9 +146,9 @@ def error_bars(own: Record, point: Point, progress: Progress | None = None) -> d
 
 
 def resolution(record: Record) -> dict[str, float]:
-    """Differences that residuals of `RESIDUAL` over ambient pressure can make, by unit."""
+    """Differences that residuals of `RESIDUAL_TOLERANCE` over ambient pressure can make, by unit."""
     pressure, radius, length = (float(record.scalars[k]) for k in ("ambient_pressure", "journal_radius", "length"))
-    force = RESIDUAL * pressure * 2.0 * radius * length
+    force = RESIDUAL_TOLERANCE * pressure * 2.0 * radius * length
     return {"N": force, "N m": force * radius}
 
 

@@ -15,6 +15,7 @@ from petalfoil.dynamics.speed_schedule import Schedule
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.errors import UsageError
+from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.friction import against_slip
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE
@@ -30,7 +31,7 @@ NEEDED = ("last_state", "last_reactions", "last_position", "last_velocity", "tim
 RECORDED = ("x", "y", "velocity_x", "velocity_y", "min_film_thickness", "peak_pressure", "force_x", "force_y")
 """Figures of the last state that the motion recorded too."""
 
-BALANCED, BALANCED_SLIDING = 1e-8, 0.02
+BALANCED, BALANCED_SLIDING = RESIDUAL_TOLERANCE, 0.02
 """Residual of the wall's rows up to which a state is one. Stages leave 2e-12; with friction, whose limits follow the
 reactions a correction late, 2e-3."""
 

@@ -15,15 +15,26 @@ def node_area(mesh: FilmMesh, radius: float) -> Array:
     return radius * mesh.arc_weight[:, None] * mesh.axial.load_weight[None, :]
 
 
+def film_force_rows(mesh: FilmMesh, area: Array, normals: Array) -> Array:
+    """Force of the film on the journal by the excess pressure at each film node, `-n R_j dphi dz` (J1); (d, nodes).
+
+    Parameters
+    ----------
+    area : (node, axial) array
+        `R_j dphi dz`, see `node_area`.
+    normals : (d, nodes) array
+        Components of `-n` at all nodes: what a displacement of the journal does to the film [1].
+    """
+    rows: Array = np.broadcast_to(area, mesh.shape).ravel() * normals
+    return rows
+
+
 def film_force(mesh: FilmMesh, radius: float, Q: Array) -> Array:
-    """Force of the film on the journal, `-sum Q n R_j dphi dz` (J1), from the excess pressure `Q` [Pa]; (2,) [N]."""
-    normal = np.sum(Q * node_area(mesh, radius), axis=2)
-    return -np.array([np.sum(normal * np.cos(mesh.theta)), np.sum(normal * np.sin(mesh.theta))])
-
-
-def contact_force(theta: Array, reaction: Array) -> Array:
-    """Force of solid contact on the journal, `-sum lam_J n` (J1); (2,) [N]."""
-    return -np.array([np.sum(reaction * np.cos(theta)), np.sum(reaction * np.sin(theta))])
+    """Force of the film on the journal (J1), from the excess pressure `Q` [Pa]; (2,) [N]."""
+    inward = -np.stack([np.cos(mesh.theta), np.sin(mesh.theta)])
+    normals = np.broadcast_to(inward[..., None], (2, *mesh.shape)).reshape(2, -1)
+    force: Array = film_force_rows(mesh, node_area(mesh, radius), normals) @ Q.ravel()
+    return force
 
 
 def viscous_torque(

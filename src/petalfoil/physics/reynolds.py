@@ -18,6 +18,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
+
 Array = NDArray[np.float64]
 
 
@@ -33,8 +35,8 @@ class Flux(NamedTuple):
     """Sum of the magnitudes of the terms of the flux, rounding included: the scale of a residual."""
 
 
-ROUNDING = 4.0 * float(np.finfo(float).eps) / 1e-8
-"""Rounding of a pressure over the tolerance of the residual, 1e-8.
+ROUNDING = 4.0 * float(np.finfo(float).eps) / RESIDUAL_TOLERANCE
+"""Rounding of a pressure over the tolerance of the residual.
 
 A pressure difference below the rounding of the pressure has no meaning. The scale of a flux contains it, so that a
 residual of rounding alone passes the tolerance. This matters where hardly any gas flows (a shaft at zero speed).

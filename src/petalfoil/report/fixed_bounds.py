@@ -17,6 +17,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.analysis.evaluation import contact_fraction
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
@@ -24,7 +25,7 @@ from petalfoil.equilibrium.continuation import advance
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 from petalfoil.physics.contact import Contacts
-from petalfoil.physics.forces import contact_force, film_force, node_area
+from petalfoil.physics.forces import node_area
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.walls.petals import build_mesh, petals_of
@@ -68,12 +69,10 @@ def _forces(problem: CoupledProblem, solution: Solution | None, case: Case) -> t
         return math.nan, math.nan, math.nan
     film, scales, radius = problem.layout.wall.film, problem.layout.scales, case.bearing.journal_radius
     excess = (problem.pressure(solution.x) - 1.0) * scales.pressure
-    reactions = (
-        solution.lam[problem.layout.wall.contacts.journal].reshape(*film.theta.shape, -1).sum(axis=2) * scales.force
-    )
-    force = film_force(film, radius, excess) + contact_force(film.theta, reactions)
-    normal, contact = float(np.sum(excess * node_area(film, radius))), float(reactions.sum())
-    return float(np.hypot(*force)), normal, contact / (contact + normal) if contact > 0.0 else 0.0
+    force = problem.journal_force(solution.x, solution.lam) * scales.force
+    contact = float(solution.lam[problem.layout.wall.contacts.journal].sum() * scales.force)
+    normal = float(np.sum(excess * node_area(film, radius)))
+    return float(np.hypot(*force)), normal, contact_fraction(contact, normal)
 
 
 def bounded(case: Case) -> CoupledProblem:

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
-from petalfoil.physics.forces import node_area
+from petalfoil.physics.forces import film_force_rows, node_area
 from petalfoil.physics.mass_balance import FilmBalance
 from petalfoil.solvers.problem import Border
 from petalfoil.sparsity import add_up
@@ -169,12 +169,11 @@ class BearingLayout:
     def border(self) -> Border:
         """How the journal's position enters: gaps by position, force on the journal by pressures and reactions.
 
-        The film's force is `-sum (P - 1) n R_j dphi dz` (62) over the unit of nodal force. A gap narrows where the film
-        pushes, so that its derivative by the position gives the normals.
+        A gap narrows along the normal, so that its derivative by the position gives the normals of the film's force.
         """
         mesh, by_e = self.wall.film, self.wall.contacts.by_e
-        area = node_area(mesh, self.balance.radius) * self.scales.pressure / self.scales.force
         numbers = np.where(mesh.unknown >= 0, mesh.unknown, mesh.n_unknown).ravel()
-        nodal = [np.broadcast_to(area, mesh.shape).ravel() * n for n in by_e[self.wall.contacts.journal].T]
+        area = node_area(mesh, self.balance.radius) * self.scales.pressure / self.scales.force
+        nodal = film_force_rows(mesh, area, by_e[self.wall.contacts.journal].T)
         by_P = np.array([add_up(numbers, force, mesh.n_unknown + 1)[:-1] for force in nodal])
         return Border(by_e, by_P, self.unknowns[PRESSURE])

@@ -103,7 +103,11 @@ class CoupledProblem:
 
     def journal_force(self, x: Array, lam: Array) -> Array:
         """Force of film and contacts on the journal over the unit of force, (n_position,) [1]."""
-        force: Array = self.film_force(x) + self.border.gap_derivative.T @ lam
+        return self.film_force(x) + self.contact_force(lam)
+
+    def contact_force(self, lam: Array) -> Array:
+        """Force of solid contact on the journal over the unit of force, (n_position,) [1]."""
+        force: Array = self.border.gap_derivative.T @ lam
         return force
 
     def admits(self, x: Array) -> bool:
