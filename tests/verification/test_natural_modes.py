@@ -16,7 +16,7 @@ from petalfoil.analysis.impedance import elastic
 from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.stability import stability
 from petalfoil.case import Case
-from petalfoil.dynamics import impedance
+from petalfoil.dynamics import reduced_impedance
 from petalfoil.dynamics.critical_mass import neutral_whirl, whirl_impedance
 from petalfoil.dynamics.natural_modes import PEAK, Mode, natural_modes
 from petalfoil.equilibrium.linear_response import SmallMotion
@@ -138,8 +138,8 @@ def test_without_a_reduced_model_the_equations_give_the_same(monkeypatch: pytest
     """A model that is not good enough is not used: many factorisations, the same onset of whirl and modes."""
     bearing = case("paper_n6", **{"model.cells_per_pitch": 16})
     mass, found = 0.5, []
-    for largest in (impedance.MODEL_ERROR, 0.0):
-        monkeypatch.setattr(impedance, "MODEL_ERROR", largest)
+    for largest in (reduced_impedance.MODEL_ERROR, 0.0):
+        monkeypatch.setattr(reduced_impedance, "MODEL_ERROR", largest)
         with running() as run:
             motion = at(bearing, 200.0)
             Z = whirl_impedance(motion)

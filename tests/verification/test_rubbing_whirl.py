@@ -136,7 +136,7 @@ def test_cycles_are_motions_with_their_equivalent_stiffness_in_the_tangent(ampli
     sticking = friction_tangent(whirl.sliding.friction, stiffness, n)
     whole = replace(whirl.response.motion, sticking=sticking).respond(0.7, LinearSolver())
     assert_near(slips(whirl.sliding.friction, whole.tangent.units[:, 0]), slip, 1e-9)
-    assert_near(whirl.force_gradient[:, 0], whole.force_gradient[:, 0], 1e-9)
+    assert_near(whirl.force_gradient()[:, 0], whole.force_gradient[:, 0], 1e-9)
 
 
 def test_what_a_cycle_takes_is_the_area_of_its_loops_and_the_work_of_the_film() -> None:
@@ -151,7 +151,7 @@ def test_what_a_cycle_takes_is_the_area_of_its_loops_and_the_work_of_the_film() 
     change = whole.tangent.units[:, 0]
     w, P = change[: layout.n_wall], change[problem.positive]
     film = -np.pi * a**2 * np.imag(np.conj(w) @ (layout.push @ P) + (problem.border.row_derivative @ P)[0])
-    taken = -np.pi * a**2 * whirl.force_gradient[0, 0].imag
+    taken = -np.pi * a**2 * whirl.force_gradient()[0, 0].imag
     assert loops > 0.5 * taken > 0.0
     assert_allclose(taken, loops + film, rtol=1e-9)
 
@@ -164,7 +164,7 @@ def test_cycles_are_near_those_that_the_bearing_is_led_through(amplitude: float)
     assert sliding is not None
     a = amplitude / scales.length
     response = SmallMotion.at_nodes(answer).respond(1e-6, LinearSolver())
-    balanced = FrictionCycle(sliding, response, a).force_gradient[0, 0]
+    balanced = FrictionCycle(sliding, response, a).force_gradient()[0, 0]
     led = slow_cycle(rubs, answer, a)
     assert led.real == pytest.approx(balanced.real, rel=2e-2)
     assert led.imag == pytest.approx(balanced.imag, rel=1.2e-1)
