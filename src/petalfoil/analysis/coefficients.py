@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from petalfoil.analysis.arguments import Load, Name, Quantity, Speed, Speeds, Values, Whole
+from petalfoil.analysis.arguments import TURNING_ONLY, Load, Name, Quantity, Speed, Speeds, Values, Whole
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.declaration import Export, analysis
 from petalfoil.analysis.evaluation import Evaluation
@@ -44,7 +44,7 @@ Amplitude = Annotated[
     float | None,
     Quantity(
         unit="m",
-        help='Amplitude of the whirl at which petals with friction rub: "1 um"; by default they stick.',
+        help=f'Amplitude of the whirl at which petals with friction rub: "1 um"; by default they stick. {TURNING_ONLY}',
         above=0.0,
     ),
 ]
@@ -182,7 +182,9 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
 
     At the case's eccentricity, or under a load where one is given. Force on
     the journal: dF = -(K + i W C) de for a whirl de exp(i W t). Petals with
-    friction stick, or rub in cycles of the --amplitude.
+    friction stick, or rub in cycles of the --amplitude. Where petals lie on
+    each other along stretches, stiffness is known to several per cent, small
+    damping to half of it: compare two grids.
 
     Example: petalfoil coefficients case.toml --frequency "4000 rad/s, 8000 rad/s"
 

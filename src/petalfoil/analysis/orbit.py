@@ -117,7 +117,9 @@ def orbit(  # noqa: PLR0913 - the options of the verb
 
     Mass and unbalance stand in the case's section rotor. With --out the file
     is rewritten as the motion grows; Ctrl-C keeps what is done, and --restart
-    goes on from it.
+    goes on from it. Friction between petals (surface.petal_friction) counts
+    the turning of their faces only, about a sixtieth of the slip in the
+    paper's bearing: the damping it gives is no prediction.
 
     Example: petalfoil orbit case.toml --revolutions 60 --plot orbit.png
 

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from petalfoil.analysis.arguments import DOWNWARD, Direction, Displacements, Flag
+from petalfoil.analysis.arguments import DOWNWARD, TURNING_ONLY, Direction, Displacements, Flag
 from petalfoil.analysis.classic_method import is_classic, rest_by_classic
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.displacements import CHARACTERISTIC, displaced
@@ -31,7 +31,9 @@ from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.walls import Capability, required, wall_kind
 
-Loop = Annotated[bool, Flag(help="There, back and there again: the hysteresis of petals with friction.")]
+Loop = Annotated[
+    bool, Flag(help=f"There, back and there again: the hysteresis of petals with friction. {TURNING_ONLY}")
+]
 
 
 @dataclass(frozen=True)

@@ -142,6 +142,11 @@ def _of_inputs(case: Case, scalars: Scalars) -> Iterator[str]:
     yield from SLENDERNESS.warning(0.5 * case.bearing.length / case.bearing.journal_radius)
     yield from _surface_speed(case, _number(scalars, "speed", case.operation.speed))
     yield from _unbalance(case)
+    if case.surface.petal_friction > 0.0:
+        yield (
+            "surface.petal_friction: it counts the turning of the petals' faces only, about a sixtieth of the slip in "
+            "the paper's bearing: the damping it gives is no prediction"
+        )
     yield from _measured_shape(case)
 
 

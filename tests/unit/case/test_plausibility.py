@@ -195,3 +195,10 @@ def test_a_foil_pack_that_has_bottomed_out_is_warned_of() -> None:
     assert contact.startswith("contact_fraction: ")
     assert solid.startswith("solution_path: the foil pack has bottomed out")
     assert warnings_of(one, scalars_of(petalfoil.balance(one, load=(0.0, -10.0)))) == []
+
+
+def test_friction_between_petals_is_said_to_be_no_prediction() -> None:
+    rubbing = case("paper_n8", **{"surface.petal_friction": 0.2})
+    (warning,) = [line for line in warnings_of(rubbing, {}) if line.startswith("surface.petal_friction: ")]
+    assert "a sixtieth of the slip" in warning
+    assert not any("petal_friction" in line for line in warnings_of(case("paper_n8"), {}))
