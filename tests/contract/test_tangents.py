@@ -10,6 +10,7 @@ import scipy.sparse as sp
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
+from petalfoil.physics import reynolds
 from petalfoil.physics.mass_balance import Entries, FilmBalance
 from petalfoil.physics.reynolds import Flux, axial_flux, circumferential_flux, langevin, mean_cube
 from petalfoil.walls import build_wall
@@ -92,6 +93,32 @@ def test_circumferential_flux_across_the_switch_of_the_fit(by: str) -> None:
     near = np.abs(x[0] - np.median(x)) < 2e-3 * np.median(x)
     assert np.count_nonzero(near) > 1
     check_side(by, SWITCH / float(np.median(x)), dphi, (P[..., near], H[..., near]))
+
+
+def opening_faces(count: int, share: float) -> tuple[Array, Array]:
+    """Faces behind a contact: the film opens a hundredfold within a cell; `share` of the pressure lies upstream."""
+    P, H = faces(count, 6)
+    return P * np.array([[[share], [1.0]]]), H * np.array([[[0.05], [5.0]]])
+
+
+@pytest.mark.parametrize("Kn", [0.0, 0.05])
+@pytest.mark.parametrize("by", SIDES)
+def test_circumferential_flux_where_the_upstream_node_limits_it(
+    by: str, Kn: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    P, H = opening_faces(40, 2e-3 if Kn == 0.0 else 1e-5)
+    check_side(by, 3.0, 0.05, (P, H), Kn)
+    limited = circumferential_flux(P, H, 3.0, np.array([[0.05]]), Kn).value
+    monkeypatch.setattr(reynolds, "DRAIN", np.inf)
+    assert np.all(limited < circumferential_flux(P, H, 3.0, np.array([[0.05]]), Kn).value)
+
+
+def test_no_face_drains_a_node_without_pressure() -> None:
+    """What leaves a node vanishes with its pressure, whatever lies downstream: no film needs a negative one."""
+    few, fewer = (circumferential_flux(*opening_faces(40, share), 3.0, np.array([[0.05]])).value
+                  for share in (1e-4, 1e-7))  # fmt: skip
+    assert np.all(fewer > 0.0)
+    assert_allclose(fewer / few, 1e-3, rtol=0.05)
 
 
 def check_side(by: str, Lam: float, dphi: float, state: tuple[Array, Array], Kn: float = 0.0) -> None:
