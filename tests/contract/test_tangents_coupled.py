@@ -29,11 +29,12 @@ def stepped_residual(problem: CoupledProblem, x: Array, shift: Array, start: tup
 
 
 def storage(problem: CoupledProblem, x: Array, shift: Array) -> Array:
-    """Mass in the cells of the film."""
+    """Mass in the cells of the film; a film without ends counts all of its gas in the row of its inventory."""
     layout = problem.layout
     stored = layout.balance.storage(problem.pressure(x), problem.film(x, shift), problem.bearing_number)
-    if layout.film_rows.inventory is not None:  # the gas inventory replaces the first balance
-        stored[0] = 0.0
+    if layout.film_rows.inventory is not None:
+        slenderness = layout.wall.film.axial.length / layout.balance.radius
+        stored[0] = slenderness**2 / 6.0 * stored.sum()
     return stored
 
 

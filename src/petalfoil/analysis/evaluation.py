@@ -11,7 +11,7 @@ from petalfoil.analysis.balances import mass_balance, reaction_balance, side_lea
 from petalfoil.analysis.extremes import highest, lowest
 from petalfoil.case import Case
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.physics.forces import attitude_angle, node_area, viscous_torque
+from petalfoil.physics.forces import attitude_angle, contact_fraction, node_area, viscous_torque
 from petalfoil.results.parts import Balances, Film, Forces
 from petalfoil.system.film_rows import FilmState
 
@@ -60,15 +60,10 @@ class Evaluation:
         return float(self.reactions.sum())
 
     @property
-    def lift(self) -> float:
-        """Excess pressure of the film times its area [N]."""
-        area = node_area(self.answer.problem.layout.wall.film, self.case.bearing.journal_radius)
-        return float(np.sum((self.pressure - self.case.gas.ambient_pressure) * area))
-
-    @property
     def contact_fraction(self) -> float:
         """Contact fraction (J3) [1]."""
-        return contact_fraction(self.normal_force, self.lift)
+        area = node_area(self.answer.problem.layout.wall.film, self.case.bearing.journal_radius)
+        return contact_fraction(self.normal_force, self.pressure - self.case.gas.ambient_pressure, area)
 
     def forces(self) -> Forces:
         """Forces on the journal (J1), (J2), and the fraction that solid contact carries (J3)."""
@@ -86,7 +81,7 @@ class Evaluation:
             contact_force_x=float(by_contact[0]),
             contact_force_y=float(by_contact[1]),
             contact_normal_force=total,
-            contact_fraction=contact_fraction(total, self.lift),
+            contact_fraction=self.contact_fraction,
         )
 
     def film(self) -> Film:
@@ -133,11 +128,6 @@ class Evaluation:
         scales, gas = self.answer.problem.layout.scales, self.case.gas
         unit = scales.pressure**2 * scales.length**3 / (12.0 * gas.viscosity)  # of pressure times volume flow
         return side_leakage(self.answer, self.rows.fluxes) * unit * gas.ambient_density / gas.ambient_pressure
-
-
-def contact_fraction(normal_force: float, lift: float) -> float:
-    """Part of the normal force on the journal that solid contact carries (J3) [1]."""
-    return normal_force / (normal_force + lift) if normal_force > 0.0 else 0.0
 
 
 def closed_film(case: Case, film_thickness: Array, between_nodes: float) -> float:

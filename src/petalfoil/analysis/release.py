@@ -143,11 +143,8 @@ def released(
     (x, lam, closed), (e, v), rotor = state, moving, system.rotor
     problem = system.problem.at(displacement=e, bearing_number=rotor.bearing_number(tau))
     film = FilmState(problem.layout.film_rows, problem.pressure(x), problem.film(x), problem.bearing_number)
-    outflow = film.residual.copy()
-    if problem.layout.film_rows.inventory is not None:
-        outflow[0] = 0.0  # the gas inventory replaces this balance
     force = problem.journal_force(x, lam) + rotor.outside(tau) - rotor.gyroscopic(tau) @ v
     speeding = np.asarray(np.linalg.solve(rotor.inertia, force), dtype=np.float64)
-    change = TimeState(-outflow, v, speeding)
+    change = TimeState(-film.residual, v, speeding)
     friction = None if system.friction is None else FrictionState.fresh(system.friction, x, lam)
     return Instant(tau, x, lam, closed, TimeState(problem.stored(x), e, v), change, friction)

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
-from petalfoil.analysis.evaluation import closed_film, contact_fraction
+from petalfoil.analysis.evaluation import closed_film
 from petalfoil.analysis.extremes import highest, lowest
 from petalfoil.case import Case
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
-from petalfoil.physics.forces import node_area, viscous_torque
+from petalfoil.physics.forces import contact_fraction, node_area, viscous_torque
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.friction import energy_lost
 from petalfoil.system.unknowns import DEFLECTION
@@ -135,7 +135,6 @@ class Trace:
         P, H = problem.pressure(instant.x), problem.film(instant.x)
         p, h, omega = P * ambient, H * length, self.system.rotor.schedule.speed(instant.tau / self._units[3])
         touching = float(instant.lam[contacts.journal].sum()) * force
-        lift = float(np.sum((p - ambient) * self._area))
         pushed = problem.journal_force(instant.x, instant.lam) * force
         shear = (case.gas.viscosity, omega * case.bearing.journal_radius)
         rubbing = case.surface.friction_coefficient * case.bearing.journal_radius * touching
@@ -144,13 +143,13 @@ class Trace:
         return {
             "min_film_thickness": closed_film(case, h, lowest(h, mesh.phi).value),
             "peak_pressure": highest(p, mesh.phi).value,
-            "contact_fraction": contact_fraction(touching, lift),
+            "contact_fraction": contact_fraction(touching, p - ambient, self._area),
             "force_x": float(pushed[0]),
             "force_y": float(pushed[1]),
             "friction_torque": viscous + rubbing,
             "rubbing_torque": rubbing,
-            "gas": float(np.sum(instant.moving.mass)),
-            "outflow": float(np.sum(film.residual)) * self._units[3],
+            "gas": film.rows.total(instant.moving.mass),
+            "outflow": film.rows.total(film.residual) * self._units[3],
         }
 
     def done_since(self, instant: Instant) -> dict[str, float]:

@@ -37,6 +37,21 @@ def film_force(mesh: FilmMesh, radius: float, Q: Array) -> Array:
     return force
 
 
+def contact_fraction(contact: float, Q: Array, area: Array) -> float:
+    """Share of the solid contacts in what presses on the journal (J3), in [0, 1].
+
+    Suction presses on nothing: counted as a negative pressure it would lift the share above 1.
+
+    Parameters
+    ----------
+    contact : float
+        Sum of the normal contact forces [N].
+    Q : array
+        Excess pressure of the film [Pa], of any shape that `area` [m^2] has too.
+    """
+    return contact / (contact + float(np.sum(np.maximum(Q, 0.0) * area))) if contact > 0.0 else 0.0
+
+
 def viscous_torque(
     mesh: FilmMesh, radius: float, state: tuple[Array, Array], shear: tuple[float, float], slip: float = 0.0
 ) -> float:

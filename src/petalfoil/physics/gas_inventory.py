@@ -4,6 +4,10 @@ A 2-D film that closes on itself exchanges no gas with its surroundings. Its mas
 of them follows from the others and the gas inventory is undetermined. In a bearing of finite length with ambient ends,
 `d_z^2 sum (H^3 P^2 + 12 Kn H^2 P) dphi = 0`. The sum therefore has the value of `P = 1` at every station, for any
 length (F6). The 2-D film takes this condition in place of its first mass balance.
+
+In motion the bearing fills and empties through its ends: with `q` this sum and `m = sum 2 Lam P H dphi`,
+`-d_Z^2 q / 2 + d_tau m = 0`. `q` over its ambient value is taken as a parabola in `Z`, as under a uniform source, so
+that its mean obeys `q - q_a + (L / R_j)^2 / 6 d_tau m = 0` (F6b).
 """
 
 from __future__ import annotations
@@ -31,13 +35,21 @@ class GasInventory:
         Strips and pressure unknowns.
     area : (node, axial) array
         Cell areas over the journal radius squared [1].
+    slenderness : float
+        Bearing length over journal radius [1].
     knudsen : float
         Knudsen number on the reference film at ambient pressure (F7); zero without slip [1].
     """
 
     mesh: FilmMesh
     area: Array
+    slenderness: float
     knudsen: float = 0.0
+
+    @property
+    def filling(self) -> float:
+        """Factor of the rate of the stored mass beside `value` (F6b) [1]."""
+        return self.slenderness**2 / 6.0
 
     @property
     def needed(self) -> bool:

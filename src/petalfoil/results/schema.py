@@ -158,7 +158,10 @@ HISTORIES: dict[str, Variable] = {
     "shaft_angle": Variable(_TIME, "rad", "angle that the shaft has turned", "theta_s"),
     "min_film_thickness": Variable(_TIME, "m", "minimum film thickness", "min h"),
     "contact_fraction": Variable(
-        _TIME, "1", "contact normal force over contact normal force plus integral of the film's excess pressure", "s_c"
+        _TIME,
+        "1",
+        "contact normal force over contact normal force plus integral of the film's pressure above ambient",
+        "s_c",
     ),
     "peak_pressure": Variable(_TIME, "Pa", "peak absolute pressure of the film", "p_max"),
     "force_x": Variable(_TIME, "N", "force of film and contact on the journal along x", "F_x"),
@@ -210,7 +213,7 @@ SCALARS: dict[str, Variable] = {
     "contact_force_y": _answer("N", "force of the contacts on the journal along y", "F_contact,y"),
     "contact_normal_force": _answer("N", "sum of the normal forces of contact on the journal", "sum lambda_J"),
     "contact_fraction": _answer(
-        "1", "contact normal force over contact normal force plus integral of the film's excess pressure", "s_c"
+        "1", "contact normal force over contact normal force plus integral of the film's pressure above ambient", "s_c"
     ),
     "min_film_thickness": _answer("m", "minimum film thickness", "min h"),
     "min_film_thickness_angle": _answer("rad", "bushing angle of the minimum film thickness", "theta(min h)"),

@@ -116,7 +116,7 @@ class BearingLayout:
     @cached_property
     def storage_column(self) -> Index:
         """Deflection unknown of every derivative of the stored mass by film thickness, -1 where none."""
-        return self.wall.film_unknown.ravel()[self.balance.storage_entries.cols]
+        return self.wall.film_unknown.ravel()[self.film_rows.storage_by_film.cols]
 
     @cached_property
     def gap_products(self) -> tuple[Index, Index, Index, Array]:
@@ -145,7 +145,8 @@ class BearingLayout:
     def pattern(self) -> BlockPattern:
         """Sparsity of the tangent with every contact, the same for all states."""
         A, by_P, by_H = self.push.tocoo(), self.film_rows.by_pressure, self.film_rows.by_film
-        held, moving, under = self.balance.storage_entries, self.film_column >= 0, self.storage_column >= 0
+        held_P, held_H = self.film_rows.storage_by_pressure, self.film_rows.storage_by_film
+        moving, under = self.film_column >= 0, self.storage_column >= 0
         return BlockPattern(
             self.unknowns,
             [
@@ -154,8 +155,8 @@ class BearingLayout:
                 BlockEntries(PRESSURE, PRESSURE, by_P.rows, by_P.cols),
                 BlockEntries(PRESSURE, DEFLECTION, by_H.rows[moving], self.film_column[moving]),
                 self.contact_entries,
-                BlockEntries(PRESSURE, PRESSURE, held.rows, held.rows),
-                BlockEntries(PRESSURE, DEFLECTION, held.rows[under], self.storage_column[under]),
+                BlockEntries(PRESSURE, PRESSURE, held_P.rows, held_P.cols),
+                BlockEntries(PRESSURE, DEFLECTION, held_H.rows[under], self.storage_column[under]),
                 *(entries for field in self.fields for entries in field.entries),
             ],
         )

@@ -25,7 +25,9 @@ class FilmRows:
     @cached_property
     def inventory(self) -> GasInventory | None:
         """The condition that replaces the first balance; None where the film has ends."""
-        inventory = GasInventory(self.balance.mesh, self.balance.area, self.balance.knudsen)
+        balance = self.balance
+        slenderness = balance.mesh.axial.length / balance.radius
+        inventory = GasInventory(balance.mesh, balance.area, slenderness, balance.knudsen)
         return inventory if inventory.needed else None
 
     @cached_property
@@ -37,6 +39,30 @@ class FilmRows:
     def by_film(self) -> Entries:
         """Places of the derivatives by the film thickness at every film node (flat number)."""
         return _joined(self.balance.by_film, None if self.inventory is None else self.inventory.by_film)
+
+    @cached_property
+    def storage_by_pressure(self) -> Entries:
+        """Places of the derivatives of the stored mass by the pressure unknowns."""
+        rows = self.balance.storage_entries.rows
+        cell = Entries(rows, rows)
+        return _joined(cell, None if self.inventory is None else Entries(np.zeros_like(rows), rows))
+
+    @cached_property
+    def storage_by_film(self) -> Entries:
+        """Places of the derivatives of the stored mass by the film thickness at every film node (flat number)."""
+        cell = self.balance.storage_entries
+        return _joined(cell, None if self.inventory is None else Entries(np.zeros_like(cell.rows), cell.cols))
+
+    def mass(self, P: Array, H: Array, Lam: float) -> Array:
+        """Mass whose rate joins each row (F5), (n_unknown,) [1]; that of all gas in the row of the inventory (F6b)."""
+        mass = self.balance.storage(P, H, Lam)
+        if self.inventory is not None:
+            mass[0] = self.inventory.filling * mass.sum()
+        return mass
+
+    def total(self, rows: Array) -> float:
+        """Gas in the whole film, or what of it leaves, from the masses or the residuals of all rows [1]."""
+        return float(rows.sum() if self.inventory is None else rows[0] / self.inventory.filling)
 
     def at(self, P: Array, H: Array, Lam: float) -> FilmState:
         """The rows at one state."""
@@ -90,16 +116,18 @@ class FilmState:
 
     @cached_property
     def storage(self) -> tuple[Array, Array]:
-        """Derivatives of the stored mass by pressure and film, in the order of `balance.storage_entries`."""
-        balance = self.rows.balance
+        """Derivatives of the stored mass in the order of `storage_by_pressure` and `storage_by_film`."""
+        balance, inventory = self.rows.balance, self.rows.inventory
         by_P, by_H = balance.storage_tangent(self.P, self.H, self.Lam)
-        return self.rows.without_first(by_P, balance.storage_entries), self.rows.without_first(
-            by_H, balance.storage_entries
-        )
+        if inventory is None:
+            return by_P, by_H
+        cells = balance.storage_entries
+        own_P, own_H = self.rows.without_first(by_P, cells), self.rows.without_first(by_H, cells)
+        return np.concatenate([own_P, inventory.filling * by_P]), np.concatenate([own_H, inventory.filling * by_H])
 
     def moved(self, change: Array, rate: float) -> Array:
         """Derivative of the rows (and of `rate` times the storage) by the film, applied to `change` (flat nodes)."""
-        steady, held, n = self.rows.by_film, self.rows.balance.storage_entries, self.rows.balance.mesh.n_unknown
+        steady, held, n = self.rows.by_film, self.rows.storage_by_film, self.rows.balance.mesh.n_unknown
         moved = add_up(steady.rows, self.tangent[1] * change[steady.cols], n)
         return moved + rate * add_up(held.rows, self.storage[1] * change[held.cols], n)
 

@@ -17,7 +17,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.system.coupled import CoupledProblem, Linearization
-from petalfoil.system.film_rows import FilmRows, FilmState
+from petalfoil.system.film_rows import FilmState
 from petalfoil.system.unknowns import PRESSURE
 
 Array = NDArray[np.float64]
@@ -43,7 +43,7 @@ class StepProblem(CoupledProblem):
 
     def stored(self, x: Array) -> Array:
         """Mass in the cell of each pressure unknown (F5), (n_film,) [1]."""
-        return masses(self.layout.film_rows, self.pressure(x), self.film(x), self.time_number)
+        return self.layout.film_rows.mass(self.pressure(x), self.film(x), self.time_number)
 
     def linearize(self, x: Array, shift: Array | None = None, low_order: Array | None = None) -> StepLinearization:
         """Residual, tangent and row scales at `x`, storage included."""
@@ -60,13 +60,13 @@ class StoringFilm(FilmState):
 
     @cached_property
     def storage(self) -> tuple[Array, Array]:
-        """Derivatives of the stored mass by pressure and film, in the order of `balance.storage_entries`."""
+        """Derivatives of the stored mass by pressure and film, in the order of the storage entries of `rows`."""
         return FilmState(self.rows, self.P, self.H, self.time_number).storage
 
     @cached_property
     def mass(self) -> Array:
         """Mass in the cell of each pressure unknown, (n_film,) [1]."""
-        return masses(self.rows, self.P, self.H, self.time_number)
+        return self.rows.mass(self.P, self.H, self.time_number)
 
 
 @dataclass(frozen=True)
@@ -91,11 +91,3 @@ class StepLinearization(Linearization):
     def slack_derivative(self, change: Array, rate: float = 0.0) -> Array:
         """Derivative of the residual by the slacks that it reads, times their `change` (m,); (n,)."""
         return super().slack_derivative(change, self.rate + rate)
-
-
-def masses(rows: FilmRows, P: Array, H: Array, bearing_number: float) -> Array:
-    """Mass in the cell of each pressure unknown (F5); none where the gas inventory replaces a balance."""
-    mass = rows.balance.storage(P, H, bearing_number)
-    if rows.inventory is not None:
-        mass[0] = 0.0
-    return mass
