@@ -78,6 +78,13 @@ class ContactConstraints:
         """Move every unknown with its group; shape (n,)."""
         return np.append(free, 0.0)[self.group]
 
+    def largest(self, scale: Array) -> Array:
+        """Largest of `scale` (n,) among the unknowns that each moves with, (n,): their equations share what is left."""
+        inside = self.group >= 0
+        of_group = np.zeros(self.n_free)
+        np.maximum.at(of_group, self.group[inside], scale[inside])
+        return np.where(inside, np.append(of_group, 0.0)[self.group], scale)
+
     def reduce(self, matrix: sp.csc_array) -> sp.csc_array:
         """The matrix over the free unknowns: rows and columns of a group added up."""
         if not self.G.shape[0]:

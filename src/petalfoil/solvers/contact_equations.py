@@ -22,7 +22,6 @@ from petalfoil.solvers.problem import (
     Linearized,
     no_border,
     positive_step,
-    scaled_residual,
 )
 
 Array = NDArray[np.float64]
@@ -234,7 +233,8 @@ def evaluate(
     if pushes is not None:
         lam[stops], active[stops] = pushes, pushes > 0.0
     lam[held] = constraints.reactions(linearized.residual - problem.G.T @ lam if len(stops) else linearized.residual)
-    residual = scaled_residual(linearized, problem.G.T @ lam)
+    left = np.abs(linearized.residual - problem.G.T @ lam)
+    residual = float(np.max(left / constraints.largest(linearized.row_scale), initial=0.0))
     return ContactState(x, at[1], lam, active, residual, constraints, linearized, gaps)
 
 

@@ -90,3 +90,11 @@ def test_everything_held() -> None:
     assert ties.n_free == 0
     assert_allclose(ties.spread(np.zeros(0)), 0.0, atol=0.0)
     assert ties.reduce(sp.csc_array(np.eye(2))).shape == (0, 0)
+
+
+def test_equations_of_unknowns_that_move_together_are_compared_with_the_largest_scale() -> None:
+    """Reactions leave the mean of a group's residuals in each of its rows, rounding of the largest included."""
+    G = sp.csr_array(np.array([[1.0, -1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]]))
+    ties = constrain(G, np.array([True, True]))
+    assert ties.largest(np.array([1.0, 50.0, 3.0, 7.0])).tolist() == [50.0, 50.0, 3.0, 7.0]
+    assert ties.reactions(np.array([0.0, 2.0, 0.0, 0.0]))[0] == pytest.approx(-1.0)
