@@ -64,7 +64,7 @@ def threshold_speed(case: Case, load: Vector | None, start: tuple[float, Whirl])
             ahead = known * factor
             there = margin_at(ahead)
             if (there > 0.0) != (here > 0.0):
-                return float(brentq(margin_at, min(known, ahead), max(known, ahead), rtol=PRECISION)), ""
+                return neutral_speed(margin_at, (known, here), (ahead, there))
             known, here = ahead, there
     except ConvergenceError as failure:
         current_run().note("threshold", outcome=str(failure))
@@ -72,6 +72,31 @@ def threshold_speed(case: Case, load: Vector | None, start: tuple[float, Whirl])
     if here > 0.0:
         return math.nan, f"no threshold speed: the rotor is stable up to {in_rpm(known)}"
     return math.nan, f"no threshold speed: the rotor is unstable down to {in_rpm(known)}"
+
+
+def neutral_speed(
+    margin_at: Callable[[float], float], known: tuple[float, float], ahead: tuple[float, float]
+) -> Threshold:
+    """Speed between two (speed, margin) of opposite signs at which the margin changes sign.
+
+    The margins of both ends are not computed anew: where equilibria overlap, the one followed depends on where it is
+    followed from, and with it the sign.
+    """
+    seen = dict([known, ahead])
+
+    def remembered(speed: float) -> float:
+        if speed not in seen:
+            seen[speed] = margin_at(speed)
+        return seen[speed]
+
+    speed = float(brentq(remembered, min(known[0], ahead[0]), max(known[0], ahead[0]), rtol=PRECISION))
+    jumps = all(min(abs(m) for m in seen.values() if (m > 0.0) == side) > JUMP for side in (True, False))
+    return speed, "at the threshold speed the critical mass jumps past the rotor's" if jumps else ""
+
+
+JUMP = 0.1
+"""Margin on both sides of a threshold beyond which it changes sign in a jump: within `PRECISION` of the speed a
+followed equilibrium changes it by some thousandths."""
 
 
 def margins(case: Case, load: Vector | None, mass: float) -> Callable[[float], float]:
