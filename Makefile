@@ -11,7 +11,7 @@ export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-all check lint types layers format bench constraints clean
+.PHONY: help setup demo test test-all fuzz check lint types layers format bench constraints clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -32,6 +32,10 @@ test: setup ## Fast tests
 
 test-all: setup ## All tests
 	$(BIN)/python -m pytest -n $(JOBS) tests
+
+N ?= 200
+fuzz: setup ## N random bearings over the whole domain: a table by stratum (docs/random-bearings.md)
+	$(BIN)/python -m tests.fuzz $(N) --jobs $(JOBS)
 
 check: lint types layers ## Everything that reads the code without running it
 

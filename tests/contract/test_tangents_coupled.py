@@ -7,12 +7,14 @@ import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
+from petalfoil.solvers.central_path import Change, PathPoint
 from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.interior_point import NewtonSystem
 from petalfoil.solvers.problem import PrimalDualPoint
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.damped import DampedWall
 from tests.contract.taylor import BEARINGS, assert_tangent, bearing, open_state
 
 Array = NDArray[np.float64]
@@ -163,3 +165,48 @@ def test_tangent_with_active_contacts(name: str, share: float) -> None:
         return ties.gather(problem.linearize(x + t * ties.spread(direction)).residual)[free_of_wall]
 
     assert_tangent(merged, change[free_of_wall], largest=2.0**-8)
+
+
+def path_point(name: str) -> PathPoint:
+    """A point near no path: random unknowns, open and closed contacts, a barrier of 0.5."""
+    problem, rng = build_problem(bearing(name)), np.random.default_rng(16)
+    x = open_state(problem, rng)
+    return PathPoint(problem, LinearSolver(), x, rng.uniform(-2.0, 2.0, len(problem.weight)), float(np.log(0.5)))
+
+
+def path_residual(point: PathPoint) -> Array:
+    """Imbalance of the equations, then slacks over gaps."""
+    imbalance = point.linearized.residual - point.problem.G.T @ point.lam
+    return np.concatenate([imbalance, point.open_by])
+
+
+@pytest.mark.parametrize("name", PETALS)
+def test_newton_on_the_central_path(name: str) -> None:
+    """It takes the residual off in full, to first order."""
+    point = path_point(name)
+    newton = point.newton()
+    share = 0.3 / max(float(np.max(np.abs(part))) for part in (newton.x, newton.z))
+    assert_tangent(lambda t: path_residual(point.moved(newton.times(share * t))), -share * path_residual(point))
+
+
+@pytest.mark.parametrize("name", PETALS)
+def test_tangent_of_the_central_path(name: str) -> None:
+    """Along it the residual stays, to first order, while the barrier changes."""
+    point = path_point(name)
+    tangent = point.tangent().times(1e-2)
+    assert isinstance(tangent, Change)
+    assert_tangent(lambda t: path_residual(point.moved(tangent.times(t))), np.zeros(len(point.x) + len(point.z)))
+    assert point.moved(tangent).barrier == pytest.approx(0.5 * np.exp(1e-2))
+
+
+@pytest.mark.parametrize("name", PETALS)
+def test_a_damped_wall_resists_motion_and_its_gas_stores_nothing(name: str) -> None:
+    problem, rng = build_problem(bearing(name)), np.random.default_rng(17)
+    x, shift = open_state(problem, rng), random_shift(problem, rng)
+    plain, damped = problem.linearize(x, shift), DampedWall.of(problem, 0.3).linearize(x, shift)
+    assert_allclose(damped.residual, plain.residual, rtol=0.0, atol=0.0)
+    none, change = np.zeros(len(shift)), rng.uniform(-1.0, 1.0, len(x))
+    resisted = (damped.matrix(none, 2.0) - plain.matrix(none)) @ change
+    assert_allclose(resisted[: problem.layout.n_wall], 0.6 * change[: problem.layout.n_wall], rtol=0.0, atol=1e-7)
+    assert_allclose(resisted[problem.layout.n_wall :], 0.0, atol=1e-12)
+    assert_allclose(damped.slack_derivative(shift, 2.0), plain.slack_derivative(shift), rtol=0.0, atol=0.0)

@@ -16,7 +16,7 @@ from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case, ModelKind
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.equilibrium.branches import distinct, probe
-from petalfoil.equilibrium.cold_start import nothing_found, solve_cold
+from petalfoil.equilibrium.cold_start import by_barriers, solve_cold
 from petalfoil.equilibrium.continuation import ascend, settle
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
@@ -165,7 +165,7 @@ def at_position(case: Case) -> OperatingPoint:
         Neither a cold start nor the continuation from zero speed found one.
     """
     problem = build_problem(case)
-    found = from_nothing(problem)
+    found = list(filter(None, [by_barriers(problem)]))
     rates = [leading_eigenvalue(answer) for answer in found]
     several = wall_kind(case).can(Capability.SEVERAL_EQUILIBRIA)
     known = probe(build_problem(coarse(case))) if several else 1
@@ -176,7 +176,8 @@ def at_position(case: Case) -> OperatingPoint:
             found, rates = [risen, *found], [leading_eigenvalue(risen), *rates]
             path = ascent_text(jumps)
     if not found:
-        raise nothing_found()
+        found = [solve_cold(problem, ())]
+        rates = [leading_eigenvalue(found[0])]
     if rates[0].real > 0.0:
         found, rates, path = settled(found, rates, path)
     return OperatingPoint(found[0], branch(rates[0], case, max(known, distinct(found)), path or found[0].solution_path))
@@ -192,15 +193,6 @@ def relaxed(case: Case, problem: CoupledProblem, neighbour: Solution | None = No
     """
     answer = by_classic(problem, neighbour)
     return OperatingPoint(answer, branch(leading_eigenvalue(answer), case, 1, answer.solution_path))
-
-
-def from_nothing(problem: CoupledProblem) -> list[Solution]:
-    """The answer of a cold start, if there is one."""
-    try:
-        return [solve_cold(problem)]
-    except ConvergenceError as failure:
-        current_run().note("film", outcome=str(failure))
-        return []
 
 
 def settled(found: list[Solution], rates: list[complex], path: str) -> tuple[list[Solution], list[complex], str]:

@@ -4,7 +4,7 @@
 `run_context.py`           counts, history, clock, progress and solvers of a run
 `solution.py`              an equilibrium, its operating state, how it was reached
 `pack_at_rest.py`          the foil pack alone, at zero speed
-`cold_start.py`            film and pack from nothing, through the interior point
+`cold_start.py`            film and pack from nothing, through the interior point and beyond
 `continuation.py`          from a known equilibrium to a neighbour; from rest up to speed
 `branches.py`              whether there is more than one equilibrium at a position
 `under_load.py`            the journal's position under a load

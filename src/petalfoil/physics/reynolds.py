@@ -162,8 +162,8 @@ def limited(flux: Flux, supply: Flux) -> Flux:
     ratio = np.where(over, bound / np.where(over, flux.value, 1.0), 1.0)  # flux = bound (2 - bound / flux)
     value = np.where(over, bound * (2.0 - ratio), flux.value)
     by_flux, by_bound = ratio**2, DRAIN * 2.0 * (1.0 - ratio)
-    parts = [by_flux * d + by_bound * b for d, b in zip(flux[1:5], supply[1:5], strict=True)]
-    return Flux(value, *parts, flux.scale)
+    by_P0, by_P1, by_H0, by_H1 = (by_flux * d + by_bound * b for d, b in zip(flux[1:5], supply[1:5], strict=True))
+    return Flux(value, by_P0, by_P1, by_H0, by_H1, flux.scale)
 
 
 DRAIN = 10.0

@@ -7,6 +7,7 @@
 `point_constraints.py`    the same for contact points between nodes
 `tangent.py`              the factorised tangent, with a few bordered unknowns
 `interior_point.py`       primal-dual interior point: cold starts, on any grid
+`central_path.py`         its central path, followed through folds by arc length
 `contact_equations.py`    what Newton's method on active contacts solves; its variants
 `contact_newton.py`       Newton's method on active contacts: exact zeros, warm starts
 `contact_search.py`       the active contacts of the linearised equations, found at once

@@ -10,6 +10,7 @@
 `loaded.py`            the journal's position unknown, a load given
 `friction.py`          friction between petals, and a problem with it
 `time_step.py`         an implicit step in time: the film stores gas
+`damped.py`            a march to rest: the wall resists motion, the film is steady
 `build.py`             from a case to its problem
 =====================  ========================================================================
 

@@ -1,0 +1,112 @@
+"""Random bearings over the whole declared domain, by stratum: how many find no equilibrium.
+
+::
+
+    make fuzz N=2000                         # or python -m tests.fuzz 2000 [first] [--edges continuous]
+
+Each number draws its bearing from a generator of its own, so that one that fails can be drawn again by its number.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+from petalfoil.analysis.solve import point
+from petalfoil.case import Case
+from petalfoil.errors import ConvergenceError
+from tests.random_packages import wide_case
+
+SEED = 7
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What became of a random bearing: None as its path where no equilibrium was found."""
+
+    number: int
+    strata: tuple[str, ...]
+    solution_path: str | None
+    stable: bool
+
+
+def bearing(number: int, edges: str | None = None) -> Case:
+    """The random bearing of a number."""
+    return wide_case(np.random.default_rng([number, SEED]), **({"model.edges": edges} if edges else {}))
+
+
+def strata(case: Case) -> tuple[str, ...]:
+    """The strata that a bearing counts in, each within its edges."""
+    assert case.petals is not None
+    assert case.package is not None
+    surface_speed = case.operation.speed * case.bearing.journal_radius
+    parts = [
+        "all",
+        case.petals.mount.value,
+        "slip" if case.model.slip else "no slip",
+        within(case.petals.count, "petals", (3, 6, 13, 20)),
+        within(case.package.overlap, "overlap", (1, 2, 3, 3.9)),
+        within(case.gas.ambient_pressure / 1e5, "bar", (0.1, 0.5, 2, 10)),
+        within(surface_speed, "m/s", (0.5, 10, 100, 400)),
+        "chordal root" if case.petals.root_tilt == "chordal" else "tilted root",
+        f"{case.gas.name or 'gas by numbers'}",
+    ]
+    return tuple(f"{case.model.edges.value} edges, {part}" for part in parts)
+
+
+def within(value: float, name: str, limits: tuple[float, ...]) -> str:
+    """The interval of `limits` that a value lies in."""
+    k = min(int(np.searchsorted(limits, value, side="right")), len(limits) - 1)
+    return f"{limits[k - 1]:g} to {limits[k]:g} {name}"
+
+
+def solved(number: int, edges: str | None = None) -> Drawn:
+    """Draw and solve one."""
+    case = bearing(number, edges)
+    try:
+        found = point(case).scalars
+    except ConvergenceError:
+        return Drawn(number, strata(case), None, False)
+    fraction, residual = found["contact_fraction"], found["residual"]
+    if not (0.0 <= fraction <= 1.0 and residual <= 1e-8):  # type: ignore[operator]
+        raise AssertionError(f"bearing {number}: contact fraction {fraction}, residual {residual}")
+    return Drawn(number, strata(case), str(found["solution_path"]), bool(found["stable"]))
+
+
+def table(drawn: Iterable[Drawn]) -> Iterator[str]:
+    """Markdown rows: stratum, bearings, without an equilibrium, unstable."""
+    counts: dict[str, list[int]] = defaultdict(lambda: [0, 0, 0])
+    for one in drawn:
+        for stratum in one.strata:
+            count = counts[stratum]
+            count[0] += 1
+            count[1] += one.solution_path is None
+            count[2] += one.solution_path is not None and not one.stable
+    yield "| stratum | bearings | no equilibrium found | share | unstable at a fixed journal |"
+    yield "|---|---|---|---|---|"
+    for stratum, (all_of, lost, unstable) in sorted(counts.items()):
+        yield f"| {stratum} | {all_of} | {lost} | {100.0 * lost / all_of:.1f} % | {unstable} |"
+
+
+def main() -> None:
+    """Draw, solve, print."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("count", type=int)
+    parser.add_argument("first", type=int, nargs="?", default=0)
+    parser.add_argument("--edges", choices=["ambient", "continuous"])
+    parser.add_argument("--jobs", type=int, default=1)
+    asked = parser.parse_args()
+    numbers = range(asked.first, asked.first + asked.count)
+    with ProcessPoolExecutor(asked.jobs) as pool:
+        drawn = list(pool.map(solved, numbers, [asked.edges] * len(numbers)))
+    print("\n".join(table(drawn)))
+    print("no equilibrium found:", *(one.number for one in drawn if one.solution_path is None))
+
+
+if __name__ == "__main__":
+    main()

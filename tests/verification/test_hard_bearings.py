@@ -1,0 +1,46 @@
+"""Bearings that found no equilibrium, or no end, once: one file each in `hard/`."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+import petalfoil
+from petalfoil.analysis.solve import point
+from petalfoil.case import Case
+
+HARD = Path(__file__).parent / "hard"
+
+
+def bearing(number: int) -> Case:
+    return Case.load(HARD / f"bearing_{number}.toml")
+
+
+@pytest.mark.parametrize(
+    "number",
+    [
+        1083,  # a film that asked for a negative pressure behind a contact
+        1091,  # a contact tied to a node that rounding blurs
+        1103,  # behind folds of the central path
+        1248,  # unstable in the time of the gas, at rest with a damped wall
+        pytest.param(1072, marks=pytest.mark.slow),
+        pytest.param(1160, marks=pytest.mark.slow),
+        pytest.param(1300, marks=pytest.mark.slow),
+    ],
+)
+def test_has_an_equilibrium(number: int) -> None:
+    found = point(bearing(number)).scalars
+    assert found["residual"] <= 1e-10  # type: ignore[operator]
+    assert found["mass_balance_error"] <= 1e-9  # type: ignore[operator]
+    assert found["reaction_balance_error"] <= 1e-9  # type: ignore[operator]
+    assert 0.0 <= found["contact_fraction"] <= 1.0  # type: ignore[operator]
+
+
+def test_a_threshold_speed_where_equilibria_overlap() -> None:
+    """The bracket of the threshold lost its change of sign, and the search ended in a ValueError."""
+    found = petalfoil.stability(bearing(5000))
+    assert found.threshold_speed.item() > 0.0
+    assert math.isinf(found.critical_mass.item())
+    assert "jumps" in found.status.item()
