@@ -71,8 +71,8 @@ def _forces(problem: CoupledProblem, solution: Solution | None, case: Case) -> t
     excess = (problem.pressure(solution.x) - 1.0) * scales.pressure
     force = problem.journal_force(solution.x, solution.lam) * scales.force
     contact = float(solution.lam[problem.layout.wall.contacts.journal].sum() * scales.force)
-    normal = float(np.sum(excess * node_area(film, radius)))
-    return float(np.hypot(*force)), normal, contact_fraction(contact, normal)
+    area = node_area(film, radius)
+    return float(np.hypot(*force)), float(np.sum(excess * area)), contact_fraction(contact, excess, area)
 
 
 def bounded(case: Case) -> CoupledProblem:
