@@ -17,7 +17,6 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.analysis.evaluation import contact_fraction
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
@@ -25,7 +24,7 @@ from petalfoil.equilibrium.continuation import advance
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 from petalfoil.physics.contact import Contacts
-from petalfoil.physics.forces import node_area
+from petalfoil.physics.forces import contact_fraction, node_area
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.walls.petals import build_mesh, petals_of
