@@ -23,9 +23,9 @@ def bearing(number: int) -> Case:
     [
         1083,  # a film that asked for a negative pressure behind a contact
         1091,  # a contact tied to a node that rounding blurs
-        1103,  # behind folds of the central path
         1248,  # unstable in the time of the gas, at rest with a damped wall
         pytest.param(1072, marks=pytest.mark.slow),
+        pytest.param(1103, marks=pytest.mark.slow),
         pytest.param(1160, marks=pytest.mark.slow),
         pytest.param(1300, marks=pytest.mark.slow),
     ],
