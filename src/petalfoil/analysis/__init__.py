@@ -21,6 +21,7 @@ How they are declared:
 `arguments.py`         kinds of arguments with unit, range and help; those that are shared
 `known_verbs.py`          the analyses by name
 `runs.py`              an analysis under way
+`resume.py`            a series that goes on from the points it wrote
 `session.py`           one BLAS thread, clock, progress
 =====================  ===================================================================
 
