@@ -40,7 +40,7 @@ class NextStep:
 
 SAFETY = 0.85
 LARGER, LARGEST = 1.3, 3.0
-"""A step grows only if it may grow by the first factor, for a longer step needs a new tangent; by the second at most"""
+"""A step grows only if the first factor is allowed, for a longer step needs a new tangent; at most by the second."""
 CALM = 3
 """Steps with a small error before the step may grow."""
 SAME_STEP = 1e-9
