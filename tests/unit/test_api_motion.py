@@ -199,6 +199,16 @@ def test_a_ramp_starts_from_the_balance(bearing: petalfoil.Case) -> None:
     assert_allclose([own["x"][0], own["y"][0]], bearing.operation.eccentricity, rtol=0.0, atol=1e-15)
 
 
+@pytest.mark.parametrize(("cells", "load"), [(32, (0.0, -29.0)), (18, (0.0, -29.0)), (50, (3.0, -9.0))])
+def test_a_plain_bearing_is_run_up_from_where_the_rotor_lies(cells: int, load: tuple[float, float]) -> None:
+    """At zero speed the journal lies on the contact film thickness, between nodes a little deeper."""
+    lying = PLAIN.replace(**{"operation.eccentricity": (0.0, 0.0), "model.cells_per_pitch": cells})
+    ds = petalfoil.orbit(lying, speeds="0 rpm : 1000 rpm : 1 ms", duration="0.01 ms", load=load)
+    clearance = lying.bearing.clearance - lying.surface.contact_film_thickness
+    assert_allclose(np.hypot(ds["x"][0], ds["y"][0]), clearance, rtol=2e-3)
+    assert float(ds["y"][0]) < -0.9 * clearance
+
+
 def test_progress_is_told() -> None:
     told: list[float] = []
     petalfoil.orbit(PLAIN, duration=1e-4, progress=lambda share, _: told.append(share))

@@ -25,6 +25,10 @@ from petalfoil.system.time_step import StepProblem
 
 Array = NDArray[np.float64]
 
+LYING = 0.999
+"""Part of the way to the wall where a journal is released that lies on it: between nodes contact lets it go deeper than
+the wall by up to the sagitta of a cell."""
+
 TOLERANCE = 1e-3
 """Local error of a step in reference films and ambient pressures."""
 
@@ -102,7 +106,11 @@ def first_position(case: Case, request: OrbitRequest) -> Vector | None:
         there = at(case, request.schedule(case).speed(0.0), (0.0, 0.0))
         found, _ = under_load(there, load)
         x, y = map(float, found.problem.displacement * found.problem.layout.scales.length)
-    return x - (0.0 if case.rotor is None else case.rotor.unbalance), y
+    if case.rotor is not None and request.schedule(case).speed(0.0) > 0.0:
+        x -= case.rotor.unbalance  # a shaft that does not turn feels none
+    beyond = np.hypot(x, y) >= case.pack_clearance
+    short = LYING * case.pack_clearance / np.hypot(x, y) if beyond else 1.0
+    return float(short * x), float(short * y)
 
 
 def system_of(case: Case, schedule: Schedule, load: Vector | None) -> RotorBearing:
