@@ -9,7 +9,7 @@ import pytest
 import petalfoil
 from petalfoil.analysis.known_verbs import find
 from petalfoil.analysis.runs import Points
-from petalfoil.errors import UnitError, UsageError
+from petalfoil.errors import ConvergenceError, UnitError, UsageError
 from petalfoil.results import Record
 from petalfoil.results.layout import Series
 from tests.cases import EXAMPLES, case
@@ -38,11 +38,11 @@ def called(monkeypatch: pytest.MonkeyPatch) -> Called:
 
 def test_solve(called: Called) -> None:
     petalfoil.solve(PLAIN)
-    assert called.pop() == {"case": PLAIN, "speed": None, "eccentricity": None, "error": False, "progress": None}
-    petalfoil.solve(PLAIN, speed="60 rpm", eccentricity=("1 um", -2e-6), progress=print, error=True)
+    assert called.pop() == {"case": PLAIN, "speed": None, "eccentricity": None, "progress": None}
+    petalfoil.solve(PLAIN, speed="60 rpm", eccentricity=("1 um", -2e-6), progress=print)
     given = called.pop()
     assert given["speed"] == pytest.approx(2 * math.pi, rel=1e-15)
-    assert (given["eccentricity"], given["progress"], given["error"]) == ((1e-6, -2e-6), print, True)
+    assert (given["eccentricity"], given["progress"]) == ((1e-6, -2e-6), print)
     petalfoil.solve(PLAIN, eccentricity="0 um, -5 um")
     assert called.pop()["eccentricity"] == (0.0, -5e-6)
 
@@ -90,8 +90,11 @@ def test_an_analysis_looks_like_its_function() -> None:
 
 
 def test_a_point_without_error_bars_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    record = Record(analysis="solve", scalars={"speed": 1.0}, errors={}, remarks=("no error bars: one grid",))
-    play("solve", lambda **_: record, monkeypatch)
+    def one_grid(*_: object) -> None:
+        raise ConvergenceError("one grid")
+
+    play("solve", lambda **_: Record(analysis="solve", scalars={"speed": 1.0}), monkeypatch)
+    monkeypatch.setattr("petalfoil.analysis.error_bars.error_bars", one_grid)
     with pytest.warns(UserWarning, match="no error bars: one grid"):
         petalfoil.solve(PLAIN, error=True)
 

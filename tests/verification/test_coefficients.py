@@ -103,8 +103,10 @@ def operating(bearing: Case) -> Solution:
 
 
 def test_centred_plain_journal_whirls_at_half_its_speed_however_light() -> None:
-    """Neutral for no mass at all: ratio and mass go to 1/2 and 0 with the square of the cell."""
-    coarse, fine = (stability.record(plain(grid)).scalars for grid in ((64, 32), (128, 64)))
+    """Neutral for no mass at all; a nanometre off, ratio and mass go to 1/2 and 0 with the square of the cell."""
+    centred = stability.record(plain((64, 32))).scalars
+    assert (centred["whirl_ratio"], centred["critical_mass"]) == (0.5, 0.0)
+    coarse, fine = (stability.record(plain(grid, (0.0, -1e-9))).scalars for grid in ((64, 32), (128, 64)))
     ratio, mass = np.array([[run["whirl_ratio"], run["critical_mass"]] for run in (coarse, fine)], dtype=float).T
     assert_allclose(ratio[1], 0.5, rtol=0.0, atol=3e-4)
     assert np.log2((0.5 - ratio[0]) / (0.5 - ratio[1])) >= 1.9

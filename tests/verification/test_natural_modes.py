@@ -19,6 +19,7 @@ from petalfoil.case import Case
 from petalfoil.dynamics import reduced_impedance
 from petalfoil.dynamics.critical_mass import neutral_whirl, whirl_impedance
 from petalfoil.dynamics.natural_modes import PEAK, Mode, natural_modes
+from petalfoil.dynamics.rotor_motion import Inertia
 from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.equilibrium.run_context import running
 from tests.cases import case
@@ -41,7 +42,7 @@ def modes_of(bearing: Case, masses: Sequence[float], load: float = 0.0) -> list[
     """The modes with each mass [kg]."""
     motion = at(bearing, load)
     Z = whirl_impedance(motion)
-    return [natural_modes(Z, mass * bearing.operation.speed**2) for mass in masses]
+    return [natural_modes(Z, Inertia.of_mass(mass), bearing.operation.speed) for mass in masses]
 
 
 # ---------------------------------------------------------------------------------------------- plain journal
@@ -144,7 +145,7 @@ def test_without_a_reduced_model_the_equations_give_the_same(monkeypatch: pytest
             motion = at(bearing, 200.0)
             Z = whirl_impedance(motion)
             whirl = neutral_whirl(Z, bearing.operation.speed)
-            modes = natural_modes(Z, mass * bearing.operation.speed**2)
+            modes = natural_modes(Z, Inertia.of_mass(mass), bearing.operation.speed)
         assert Z.reduced == (largest > 0.0)
         assert modes
         assert (run.probes.factorizations > 30) == (largest == 0.0)
@@ -214,7 +215,7 @@ def test_modes_are_the_eigenvalues_of_the_whole_operator(name: str) -> None:
     Z = whirl_impedance(motion)
     for mass in masses:
         inertia = mass * bearing.operation.speed**2
-        modes = natural_modes(Z, inertia)
+        modes = natural_modes(Z, Inertia.of_mass(mass), bearing.operation.speed)
         s, share = whole_operator(motion, inertia)
         assert modes
         for mode in modes:

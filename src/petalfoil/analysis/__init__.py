@@ -19,9 +19,9 @@ How they are declared:
 =====================  ===================================================================
 `declaration.py`       the decorator, and what follows from a declaration
 `arguments.py`         kinds of arguments with unit, range and help; those that are shared
-`known_verbs.py`          the analyses by name
+`known_verbs.py`       the analyses by name
 `runs.py`              an analysis under way
-`resume.py`            a series that goes on from the points it wrote
+`resume.py`            a series that goes on from the points that it wrote
 `session.py`           one BLAS thread, clock, progress
 =====================  ===================================================================
 
@@ -34,12 +34,14 @@ What they share:
 `speeds.py`            a load followed over speed
 `crossings.py`         speeds at which the contact fraction crosses a limit
 `impedance.py`         small motions of the journal
+`rotor_on_bearings.py` a rigid rotor on its bearing, or in two of them
 `threshold.py`         the speed at which a rotor becomes unstable
 `release.py`           where a large motion begins
-`orbit_motion.py`            a large motion, step by step
+`orbit_motion.py`      a large motion, step by step
 `restart.py`           a motion that goes on from a result
 `trace.py`             what a motion leaves behind
-`grid_study.py`        nested grids and error bars
+`grid_study.py`        nested grids
+`error_bars.py`        the error bars of any answer, from them
 `richardson.py`        values on a sequence of grids: limit, order, error bar
 `classic_method.py`    the paper's own method
 `evaluation.py`        a solution evaluated once, as typed parts

@@ -275,7 +275,7 @@ DOWNWARD = -math.pi / 2.0
 """Direction of the weight, along -y [rad]."""
 
 SPEED_HELP = 'Speed instead of the case\'s: "8000 rad/s", "60000 rpm".'
-LOAD_HELP = 'Load on the journal instead of the case\'s: "0 N, -50 N"; a single value acts along -y.'
+LOAD_HELP = 'Load on the rotor instead of the case\'s: "0 N, -50 N"; a single value acts along -y.'
 DISPLACEMENTS_HELP = 'Displacements along the direction: "0 um : 280 um : 15"; or a list or single one: "100 um".'
 
 Speed: TypeAlias = Annotated[float | None, Quantity(unit="rad/s", help=SPEED_HELP, at_least=0.0)]
@@ -304,8 +304,9 @@ Mass: TypeAlias = Annotated[
     float | None,
     Quantity(
         unit="kg",
-        help="Mass of the rotor on this bearing: \"2 kg\"; by default the case's rotor's, or the load's.",
+        help="Mass of the rotor: \"2 kg\", in two bearings all of it; by default the case's rotor's, or the load's.",
         above=0.0,
     ),
 ]
+ErrorBars: TypeAlias = Annotated[bool, Flag(help="Add error bars, from a study on the case's grid and two more.")]
 Place: TypeAlias = tuple[float, float] | Literal["balance"] | None

@@ -27,7 +27,7 @@ class CarriedBy:
     carried_by: str
 
 
-@analysis(Point())
+@analysis(Point(), error_bars=True)
 def balance(case: Case, load: Load = None, *, speed: Speed = None, progress: Progress | None = None) -> Record:
     """Find the position of the journal under a load.
 
@@ -39,7 +39,7 @@ def balance(case: Case, load: Load = None, *, speed: Speed = None, progress: Pro
     Raises
     ------
     UsageError
-        No load is given, or it is zero.
+        No load is given.
     ConvergenceError
         No position was found.
     """

@@ -25,7 +25,8 @@ from petalfoil.results.layout import ArrayTable, Cell, Point, Series, at_speed
 from petalfoil.results.parts import AppliedLoad, Outcome
 from petalfoil.results.record import Record
 from petalfoil.results.ross import LEAST_POINTS, ross_frequencies
-from petalfoil.results.summary import cell
+from petalfoil.results.schema import Variable
+from petalfoil.results.summary import cell, number
 from petalfoil.walls import Capability, required
 
 Frequencies = Annotated[
@@ -74,8 +75,13 @@ class Contact:
 
 
 def entry(name: str, row: int, column: int) -> Callable[[Record, int], Cell]:
-    """One entry of a matrix at each frequency."""
-    return lambda record, index: float(record.fields[name][index][row][column])
+    """One entry of a matrix at each frequency, and its error bar where it has one."""
+
+    def read(record: Record, index: int) -> Cell:
+        value, bars = float(record.fields[name][index][row][column]), record.fields.get(f"{name}_error")
+        return value if bars is None else f"{number(value)} ± {number(float(bars[index][row][column]))}"
+
+    return read
 
 
 TABLE = ArrayTable(
@@ -93,6 +99,11 @@ TABLE = ArrayTable(
     },
 )
 LISTS = ("whirl_frequency", *MATRICES)
+_ENTRIES = ("whirl_frequency", "row", "column")
+ERROR_BARS = {
+    "stiffness_error": Variable(_ENTRIES, "N m-1", "error bar of the stiffness, from a grid study", "dK"),
+    "damping_error": Variable(_ENTRIES, "N s m-1", "error bar of the damping, from a grid study", "dC"),
+}
 
 
 def check_ross(values: Mapping[str, Any], known_as: Mapping[str, str]) -> None:
@@ -163,10 +174,12 @@ EXPORTS = (
 
 
 @analysis(
-    Point(lists=LISTS, table=TABLE),
-    Series(lists=LISTS, table=TABLE, at=at_speed),
+    Point(lists=LISTS, histories=tuple(ERROR_BARS), table=TABLE),
+    Series(lists=LISTS, histories=tuple(ERROR_BARS), table=TABLE, at=at_speed),
     exports=EXPORTS,
     excludes={"speed": ("speeds",)},
+    results=ERROR_BARS,
+    error_bars=True,
 )
 def coefficients(  # noqa: PLR0913 - the options of the verb
     case: Case,
@@ -180,7 +193,8 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
 ) -> Record | Points:
     """Find stiffness and damping at whirl frequencies, at one speed or several.
 
-    At the case's eccentricity, or under a load where one is given. Force on
+    At the case's eccentricity, or under a load where one is given. Those of
+    one bearing: of two (rotor.span) each carries half of the load. Force on
     the journal: dF = -(K + i W C) de for a whirl de exp(i W t). Petals with
     friction stick, or rub in cycles of the --amplitude. Where petals lie on
     each other along stretches, stiffness is known to several per cent, small
@@ -231,8 +245,8 @@ def check_amplitude(case: Case, asked: Asked) -> None:
 def _points(
     cases: list[Case], asked: Asked, load: Vector | None, progress: Progress | None, done: Sequence[Record] = ()
 ) -> Iterator[Record]:
-    for number, case in enumerate(cases[len(done) :], len(done)):
-        with running(part(progress, number, len(cases)), "coefficients"):
+    for place, case in enumerate(cases[len(done) :], len(done)):
+        with running(part(progress, place, len(cases)), "coefficients"):
             try:
                 record = point(case, asked, load)
             except ConvergenceError as failure:

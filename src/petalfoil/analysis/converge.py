@@ -5,12 +5,12 @@ from __future__ import annotations
 from functools import partial
 from typing import Annotated
 
-from petalfoil.analysis.arguments import Position, Speed, Whole
+from petalfoil.analysis.arguments import Load, Position, Speed, Whole
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.grid_study import MOST_LEVELS, grid_records, grids, parts, table
 from petalfoil.analysis.operating_point import at
 from petalfoil.analysis.runs import Points
-from petalfoil.analysis.solve import point
+from petalfoil.analysis.solve import placed, point
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress
 from petalfoil.mesh.pitch import COARSEST_FAMILY
@@ -33,17 +33,20 @@ Coarsest = Annotated[
 ]
 
 
-@analysis(GridStudy(conclude=table))
-def converge(
+@analysis(GridStudy(conclude=table), excludes={"load": ("eccentricity",)})
+def converge(  # noqa: PLR0913 - the options of the verb
     case: Case,
     *,
     speed: Speed = None,
     eccentricity: Position = None,
+    load: Load = None,
     levels: Levels = 3,
     coarsest: Coarsest = None,
     progress: Progress | None = None,
 ) -> Points:
     """Solve a case on nested grids: order, grid-converged value and error bar of every result.
+
+    At a position of the journal, or at the one that balances a load, as solve.
 
     A bar is trusted where the observed order is near that of the method, 2.
     JSON: "grids" as from solve, with cells_per_pitch and axial_cells, and
@@ -53,12 +56,17 @@ def converge(
 
     Raises
     ------
+    UsageError
+        The case gives both a load and an eccentricity.
     ConvergenceError
         Fewer than two grids have a solution.
     PackageError
         The displaced journal leaves the package no clearance.
     """
-    cases = grids(at(case, speed, eccentricity), levels, coarsest)
+    case = at(case, speed)
+    if load is not None:
+        case = case.replace(**{"operation.load": load, "operation.eccentricity": (0.0, 0.0)})
+    cases = grids(placed(case, eccentricity), levels, coarsest)
     return Points(
         partial(grid_records, cases, point, progress), len(cases), noun="grids", least=LEAST_GRIDS, parts=parts(cases)
     )

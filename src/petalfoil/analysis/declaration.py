@@ -19,7 +19,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias, get_type_hints
 
-from petalfoil.analysis.arguments import Argument, StoredResult
+from petalfoil.analysis.arguments import Argument, ErrorBars, StoredResult
+from petalfoil.analysis.error_bars import WithErrorBars
 from petalfoil.analysis.known_verbs import register
 from petalfoil.analysis.resume import asked_for, points_done
 from petalfoil.analysis.runs import Points, Run, Single
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
 Question: TypeAlias = Callable[..., Record | Run]
 Values: TypeAlias = Mapping[str, Any]
 """Arguments by name, SI."""
+ERROR = "error"
+"""The argument that asks for error bars."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,12 +94,15 @@ class Analysis:
         Files for other programs.
     excludes : mapping
         Arguments that say nothing beside others, with these.
+    error_bars : bool
+        Whether it has the argument `error`, which adds error bars from a grid study.
     """
 
     question: Question
     layouts: tuple[Layout, ...]
     exports: tuple[Export, ...] = ()
     excludes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    error_bars: bool = False
 
     def __post_init__(self) -> None:
         """Look like the function to `help` and to editors."""
@@ -122,7 +128,7 @@ class Analysis:
     @cached_property
     def arguments(self) -> dict[str, Argument]:
         """The arguments by name, in order, without the case."""
-        hints = get_type_hints(self.question, include_extras=True)
+        hints = {**get_type_hints(self.question, include_extras=True), ERROR: ErrorBars}
         declared = {
             name: [part for part in getattr(hint, "__metadata__", ()) if isinstance(part, Argument)]
             for name, hint in hints.items()
@@ -131,8 +137,13 @@ class Analysis:
 
     @cached_property
     def signature(self) -> inspect.Signature:
-        """The signature of the function."""
-        return inspect.signature(self.question)
+        """The signature of the function, with the argument for error bars before the progress."""
+        own = inspect.signature(self.question)
+        if not self.error_bars:
+            return own
+        added = inspect.Parameter(ERROR, inspect.Parameter.KEYWORD_ONLY, default=False, annotation=ErrorBars)
+        *given, progress = own.parameters.values()
+        return own.replace(parameters=[*given, added, progress])
 
     @property
     def _tells_progress(self) -> bool:
@@ -193,18 +204,32 @@ class Analysis:
         """
         if not isinstance(case, Case):
             raise UsageError(f"{shown(case)} is not a Case; Case.load(path) reads one from a file")
+        asked = {name: value for name, value in values.items() if name != ERROR}
         with one_thread():
-            begun = self.question(case, **values, **({"progress": progress} if self._tells_progress else {}))
-        run = Single(begun) if isinstance(begun, Record) else begun
+            begun = self.question(case, **asked, **({"progress": progress} if self._tells_progress else {}))
+        run: Run = Single(begun) if isinstance(begun, Record) else begun
         if isinstance(run, Points):
-            defaults = {name: self.default(name) for name in self.arguments}
-            run.asked = asked_for(case, defaults | dict(values))
-        if resume is None:
+            defaults = {name: self.default(name) for name in self.arguments if name != ERROR}
+            run.asked = asked_for(case, defaults | asked)
+        if resume is not None:
+            if not isinstance(run, Points) or not callable(run.source):
+                raise UsageError(f"{self.verb} with these arguments is no series of points that could go on")
+            run.done.extend(points_done(resume, self.layout_of(resume), self.verb, run.asked))
+        if not values.get(ERROR, False):
             return run
-        if not isinstance(run, Points) or not callable(run.source):
-            raise UsageError(f"{self.verb} with these arguments is no series of points that could go on")
-        run.done.extend(points_done(resume, self.layout_of(resume), self.verb, run.asked))
-        return run
+        if not self._layout(run).takes_error_bars:
+            raise UsageError("error bars are for points, not for a table over load and speed: ask for one of each")
+        return WithErrorBars(run, case, lambda other: self._whole(other, asked))
+
+    def _whole(self, case: Case, values: Values) -> tuple[Record, ...]:
+        """All records of a case."""
+        run = self.start(case, values)
+        for _ in run.advance():
+            pass
+        return run.records()
+
+    def _layout(self, run: Run) -> Layout:
+        return next(layout for layout in self.layouts if bool(layout.dimension) is run.is_series)
 
     def advance(self, run: Run, progress: Progress | None = None) -> Iterator[None]:
         """Compute on, piece by piece."""
@@ -217,7 +242,7 @@ class Analysis:
     def answer(self, run: Run, ended: str = "") -> Answer:
         """What a run has computed, in its layout."""
         records = run.records(ended)
-        layout = next(layout for layout in self.layouts if bool(layout.dimension) is run.is_series)
+        layout = self._layout(run)
         estimates = layout.estimates(records)
         return Answer(
             verb=self.verb,
@@ -275,6 +300,7 @@ def analysis(
     exports: tuple[Export, ...] = (),
     excludes: Mapping[str, tuple[str, ...]] | None = None,
     results: Mapping[str, Variable] | None = None,
+    error_bars: bool = False,
 ) -> Callable[[Question], Analysis]:
     """Declare the function below as an analysis.
 
@@ -288,11 +314,13 @@ def analysis(
         Arguments that say nothing beside others, with these.
     results : mapping, optional
         Results that it introduces, by name.
+    error_bars : bool
+        Whether it has the argument `error`, which adds error bars from a grid study.
     """
 
     def declared(question: Question) -> Analysis:
         declare(results or {})
-        made = Analysis(question, layouts, exports, excludes or {})
+        made = Analysis(question, layouts, exports, excludes or {}, error_bars)
         register(made)
         return made
 

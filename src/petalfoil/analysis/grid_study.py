@@ -41,6 +41,8 @@ LEAST_AXIAL = 4
 """Coarsest division of the length: its pressure is zero at both ends, and one value is no profile."""
 
 
+POSITION = ("eccentricity_x", "eccentricity_y")
+
 ANGLES = {name for name, variable in SCALARS.items() if variable.units == "rad"}
 
 
@@ -125,7 +127,7 @@ def table(records: Sequence[Record]) -> list[Estimate]:
         advice = "choose other grids with --coarsest, or see why a single one does not converge with `solve`"
         raise ConvergenceError(f"a grid study needs answers on two grids at least ({states})", advice=advice)
     first, good = records[answered.index(True)], [record for record in records if record.converged]
-    names = [name for name in SCALARS if _is_result(name) and all(_known(name, record) for record in good)]
+    names = [name for name in SCALARS if _is_result(name, first) and all(_known(name, record) for record in good)]
     scale = resolution(first)
     return [_estimate(name, records, scale.get(SCALARS[name].units, 0.0)) for name in names]
 
@@ -143,6 +145,17 @@ def error_bars(own: Record, point: Point, progress: Progress | None = None) -> d
     own = replace(own, case_toml=case.to_toml())
     estimates = table(list(grid_records(grids(case), point, progress, known=own)))
     return {estimate.name: _bar(estimate, float(own.scalars[estimate.name])) for estimate in estimates}
+
+
+def array_error_bars(own: Array, on_grids: Sequence[Array | None]) -> Array:
+    """Error bars of the entries of an array on one of the grids, coarsest first; None where a grid has no answer."""
+    missing = np.full_like(own, np.nan)
+    values = np.stack([missing if array is None else array for array in on_grids])
+    bars = np.empty_like(own)
+    for entry in np.ndindex(own.shape):
+        counted = _unbroken(values[(slice(None), *entry)])
+        bars[entry] = abs(own[entry] - counted[-1]) + richardson([float(v) for v in counted], RATIO).error
+    return bars
 
 
 def resolution(record: Record) -> dict[str, float]:
@@ -207,7 +220,10 @@ def _part(progress: Progress | None, start: float, end: float, text: str) -> Pro
 # ---------------------------------------------------------------------------------------------- results
 
 
-def _is_result(name: str) -> bool:
+def _is_result(name: str, record: Record) -> bool:
+    """Whether a number answers the question; under a load the position of the journal does."""
+    if name in POSITION:
+        return "load_x" in record.scalars
     return SCALARS[name].role is Role.ANSWER and SCALARS[name].kind is DataType.FLOAT
 
 

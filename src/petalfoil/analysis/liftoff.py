@@ -75,7 +75,7 @@ LAYOUT = Columns(
 )
 
 
-@analysis(LAYOUT)
+@analysis(LAYOUT, error_bars=True)
 def liftoff(
     case: Case,
     loads: LoadList = None,

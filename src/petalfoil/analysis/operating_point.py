@@ -93,13 +93,13 @@ def applied_load(case: Case, load: Vector | None) -> Vector:
     wanted = case.operation.load if load is None else load
     if wanted is None:
         raise UsageError("no load to balance: give one, or set operation.load in the case")
-    if not np.hypot(*wanted) > 0.0:
-        raise UsageError("a load of zero leaves the journal where it is: give one that is not zero")
     return wanted
 
 
 def under_load(case: Case, load: Vector) -> tuple[Solution, Branch]:
     """The balance to report: if the first one found is unstable, the one that is followed from rest under the load.
+
+    The load is that of the whole rotor: two bearings carry half of it each.
 
     Raises
     ------
@@ -108,7 +108,7 @@ def under_load(case: Case, load: Vector) -> tuple[Solution, Branch]:
     """
     problem = build_problem(case)
     try:
-        found = balance_cold(problem, np.array(load) / problem.layout.scales.force)
+        found = balance_cold(problem, np.array(load) / case.bearings / problem.layout.scales.force)
     except ConvergenceError as failure:
         raise beyond_capacity(problem, load, failure) from failure
     rate = leading_eigenvalue(found)
@@ -138,9 +138,10 @@ def beyond_capacity(problem: CoupledProblem, load: Vector, failure: ConvergenceE
     failure : ConvergenceError
         Why it has no balance; returned where a smaller load has none either, or the film carries it.
     """
-    for fraction in SMALLER_LOADS:
+    shared = np.array(load) / problem.layout.case.bearings
+    for fraction in SMALLER_LOADS if np.any(load) else ():
         try:
-            found = balance_cold(problem, fraction * np.array(load) / problem.layout.scales.force)
+            found = balance_cold(problem, fraction * shared / problem.layout.scales.force)
         except ConvergenceError:
             continue
         carried = Evaluation.of(problem.layout.case, found).contact_fraction

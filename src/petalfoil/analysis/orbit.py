@@ -15,6 +15,7 @@ from petalfoil.analysis.orbit_motion import Orbit
 from petalfoil.analysis.release import TOLERANCE, OrbitRequest
 from petalfoil.case import Case
 from petalfoil.results.layout import Point
+from petalfoil.results.motion import Path
 from petalfoil.results.record import Record
 from petalfoil.results.schema import HISTORIES
 from petalfoil.results.summary import ABSENT, Row, cell, number
@@ -65,15 +66,19 @@ OVER_TIME = ("time", *(name for name, variable in HISTORIES.items() if variable.
 
 def summary(record: Record) -> Iterator[Row]:
     """Lines of the table: how far, how large, how close, and how far it can be trusted."""
-    scalars, over, time = record.scalars, record.fields, record.coords["time"]
+    scalars, time = record.scalars, record.coords["time"].astype(float)
+    over = {name: values.astype(float) for name, values in record.fields.items() if name in OVER_TIME}
     yield Row("status", str(scalars["status"]), "")
     yield Row("speed", _speeds(over["shaft_speed"].tolist()), "rpm")
     yield Row("turns", number(float(scalars["revolutions"])), "")
     yield Row("time", number(1e3 * float(time[-1] - time[0])), "ms")
     for name, label in (("steps", "steps"), ("factorizations", "factorisations"), ("failed_steps", "failed steps")):
         yield Row(label, str(scalars[name]), "")
-    yield Row("largest displacement", number(1e6 * float(np.hypot(over["x"], over["y"]).max())), "µm")
+    paths = Path.journals(time, over, 0.5 * float(scalars.get("span", 0.0)))
+    yield Row("largest displacement", number(1e6 * max(float(np.hypot(p.x, p.y).max()) for p in paths)), "µm")
     yield Row("amplitude, last turns", number(1e6 * float(scalars["amplitude"])), "µm")
+    if "tilt_amplitude" in scalars:
+        yield Row("tilt, last turns", number(1e6 * float(scalars["tilt_amplitude"])), "µrad")
     yield cell("min_film_thickness", float(over["min_film_thickness"].min()))
     yield cell("contact_fraction", float(over["contact_fraction"].max()))._replace(label="largest contact fraction")
     ratio = float(scalars["dominant_whirl_ratio"])  # to the digits that a spectrum of some turns gives

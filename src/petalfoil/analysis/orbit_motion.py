@@ -21,7 +21,7 @@ from petalfoil.dynamics.adaptive_steps import MarchOptions, march
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.equilibrium.run_context import RunContext, new_run
-from petalfoil.results.motion import figures_of
+from petalfoil.results.motion import figures_of, tilt_amplitude
 from petalfoil.results.parts import Outcome
 from petalfoil.results.record import Record
 
@@ -43,6 +43,14 @@ class MotionSummary:
     revolutions: float
     rotor_mass: float
     reference_film_thickness: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tilt:
+    """What is told of the tilt of a shaft in two bearings."""
+
+    tilt_amplitude: float
+    span: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -158,6 +166,7 @@ class Orbit:
             self.case,
             *geometry(self.case),
             self._summary(time, over),
+            *self._tilt(time, over),
             self.trace.audits(over),
             self._stepping(),
             effort(self.run.seconds, self.run),
@@ -170,11 +179,17 @@ class Orbit:
     def _summary(self, time: Array, over: dict[str, Array]) -> MotionSummary:
         return MotionSummary(
             speed=self.case.operation.speed,
-            **figures_of(time, over),
+            **figures_of(time, over, 0.0 if self.case.rotor is None else self.case.rotor.lever),
             revolutions=float(over["shaft_angle"][-1] - over["shaft_angle"][0]) / TURN,
             rotor_mass=0.0 if self.case.rotor is None else self.case.rotor.mass,
             reference_film_thickness=self.system.problem.layout.scales.length,
         )
+
+    def _tilt(self, time: Array, over: dict[str, Array]) -> tuple[Tilt, ...]:
+        """What is told of a shaft that tilts; nothing of another."""
+        if self.case.rotor is None or self.case.rotor.span is None:
+            return ()
+        return (Tilt(tilt_amplitude=tilt_amplitude(time, over), span=self.case.rotor.span),)
 
     def _stepping(self) -> Stepping:
         refused = [row.get("outcome") for row in self.run.history if row["phase"] == "motion"]

@@ -99,12 +99,10 @@ def first_position(case: Case, request: OrbitRequest) -> Vector | None:
     """
     if request.initial != "balance":
         return request.initial
-    load, (x, y) = constant_load(case, request.load), case.operation.eccentricity
-    if case.rotor is not None and case.rotor.span:
-        load = (0.5 * load[0], 0.5 * load[1])  # the bearings share it
-    if np.hypot(*load) > 0.0:  # without a load every place balances
-        there = at(case, request.schedule(case).speed(0.0), (0.0, 0.0))
-        found, _ = under_load(there, load)
+    load, speed = constant_load(case, request.load), request.schedule(case).speed(0.0)
+    x, y = case.operation.eccentricity
+    if np.any(load) or speed > 0.0:  # every place balances a shaft at rest without a load
+        found, _ = under_load(at(case, speed, (0.0, 0.0)), load)
         x, y = map(float, found.problem.displacement * found.problem.layout.scales.length)
     if case.rotor is not None and request.schedule(case).speed(0.0) > 0.0:
         x -= case.rotor.unbalance  # a shaft that does not turn feels none
@@ -115,9 +113,7 @@ def first_position(case: Case, request: OrbitRequest) -> Vector | None:
 
 def system_of(case: Case, schedule: Schedule, load: Vector | None) -> RotorBearing:
     """The bearing of `case` and its rotor in the units of the problem."""
-    problem = build_pair(case) if case.rotor is not None and case.rotor.span else build_problem(case)
-    if problem.layout.film_rows.inventory is not None and len(problem.displacement) > 2:
-        raise UsageError("two 2-D films without ends hold no gas of their own: take the 3-D model or ambient edges")
+    problem = build_pair(case) if case.bearings > 1 else build_problem(case)
     rotor = RotorMotion.of(case, problem.layout.scales, schedule, load)
     still = StepProblem(problem.layout, 0.0, problem.displacement, rotor.clock.bearing_number)
     return RotorBearing(still, rotor, friction_of(case, problem.layout))

@@ -3,63 +3,85 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Annotated
 
-from petalfoil.analysis.arguments import Flag, Position, Speed
+from petalfoil.analysis.arguments import Position, Speed
 from petalfoil.analysis.classic_method import is_classic, typical_steps
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.evaluation import Evaluation
-from petalfoil.analysis.grid_study import error_bars
-from petalfoil.analysis.operating_point import at, at_position, relaxed
-from petalfoil.analysis.records import asked_position, effort, solution_record
+from petalfoil.analysis.operating_point import OperatingPoint, Vector, at, operating_point, relaxed
+from petalfoil.analysis.records import asked_position, effort, position, solution_record
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, running
-from petalfoil.errors import ConvergenceError
+from petalfoil.errors import UsageError
 from petalfoil.results.layout import Point
+from petalfoil.results.parts import Branch
 from petalfoil.results.record import Record
 from petalfoil.system.build import build_problem
 
-ErrorBars = Annotated[bool, Flag(help="Add error bars, from a study on the case's grid and two more.")]
 
-
-@analysis(Point())
+@analysis(Point(), error_bars=True)
 def solve(
     case: Case,
     *,
     speed: Speed = None,
     eccentricity: Position = None,
-    error: ErrorBars = False,
     progress: Progress | None = None,
 ) -> Record:
     """Find film and petals in equilibrium at one position of the journal.
 
-    Gives the force on the journal, film, contacts, torque, leakage and stress;
-    with --error also how far each is from its grid-converged value.
+    The position is --eccentricity, else the case's; where the case gives a
+    load instead, the one that balances it. Gives the force on the journal,
+    film, contacts, torque, leakage and stress; with --error also how far each
+    is from its grid-converged value.
 
     Example: petalfoil solve case.toml --eccentricity "0 um, -100 um" --json
 
     Raises
     ------
+    UsageError
+        The case gives both a load and an eccentricity.
     ConvergenceError
         No equilibrium was found.
     PackageError
         The displaced journal leaves the package no clearance.
     """
-    record = point(at(case, speed, eccentricity), progress)
-    return with_error_bars(record, progress) if error else record
+    return point(placed(at(case, speed), eccentricity), progress)
+
+
+def placed(case: Case, eccentricity: Vector | None) -> Case:
+    """The case at a position, or under its load: what of both is meant.
+
+    Raises
+    ------
+    UsageError
+        The case gives both, and no position is asked for.
+    """
+    if eccentricity is not None:
+        return case.replace(**{"operation.eccentricity": eccentricity, "operation.load": None})
+    if case.operation.load is not None and any(case.operation.eccentricity):
+        raise UsageError(
+            "the case gives both operation.load and operation.eccentricity, and one follows from the other: give an "
+            "eccentricity with the call, leave one of them out of the case, or ask `balance` for the position under "
+            "the load"
+        )
+    return case
 
 
 def point(case: Case, progress: Progress | None = None) -> Record:
-    """The record of the case's position, on its grid."""
+    """The record of the case's position, or of the one that balances its load, on its grid."""
+    loaded = case.operation.load is not None
     with running(progress, "solve", typical_steps(case)) as run:
-        found = relaxed(case, build_problem(case)) if is_classic(case) else at_position(case)
-        own = (asked_position(case), found.branch, effort(run.seconds))
+        if is_classic(case) and not loaded:
+            found = relaxed(case, build_problem(case))
+        else:
+            found = operating_point(case, None)
+        place = position(case, found.answer) if loaded else asked_position(case)
+        own = (place, path_told(found), *found.loaded, effort(run.seconds))
         return solution_record("solve", Evaluation.of(case, found.answer), *own)
 
 
-def with_error_bars(record: Record, progress: Progress | None) -> Record:
-    """The record with error bars; with none, and a remark why, where only its own grid has a solution."""
-    try:
-        return replace(record, errors=error_bars(record, point, progress))
-    except ConvergenceError as failure:
-        return replace(record, errors={}, remarks=(f"no error bars: {failure}",))
+def path_told(found: OperatingPoint) -> Branch:
+    """How the equilibrium was reached; of a balance, that the position follows from the case's load."""
+    if not found.loaded:
+        return found.branch
+    return replace(found.branch, solution_path=f"at the position that balances the load: {found.branch.solution_path}")

@@ -33,7 +33,7 @@ class SpeedLine:
     case : Case
         The bearing.
     load : (x, y)
-        Load on the journal [N].
+        Load on the rotor [N]: two bearings carry half of it each.
     """
 
     case: Case
@@ -54,7 +54,7 @@ class SpeedLine:
         """
         scales, R_j = self.base.layout.scales, self.case.bearing.journal_radius
         number = scales.bearing_number(self.case.gas.viscosity, speed, R_j)
-        problem, load = self.base.at(bearing_number=number), np.array(self.load) / scales.force
+        problem, load = self.base.at(bearing_number=number), np.array(self.load) / self.case.bearings / scales.force
         if self.known is None:
             self.known = balance_cold(problem, load)
         else:

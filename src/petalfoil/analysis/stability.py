@@ -13,27 +13,29 @@ from petalfoil.analysis.arguments import Load, Loads, Mass, Speed, Speeds
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.coefficients import state_parts
 from petalfoil.analysis.declaration import analysis
-from petalfoil.analysis.impedance import elastic
 from petalfoil.analysis.operating_point import OperatingPoint, Vector, applied_load, at, operating_point
 from petalfoil.analysis.records import branch, effort, failed_record, record_of
+from petalfoil.analysis.rotor_on_bearings import RotorOnBearings, whole_length
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.analysis.threshold import rotor_mass, threshold_speed
 from petalfoil.case import Case
-from petalfoil.dynamics.critical_mass import Whirl, neutral_whirl, whirl_impedance
+from petalfoil.dynamics.critical_mass import Whirl
 from petalfoil.dynamics.film_stability import leading_eigenvalue
-from petalfoil.dynamics.natural_modes import Mode, natural_modes
+from petalfoil.dynamics.natural_modes import Mode
 from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.grid import Grid
 from petalfoil.results.layout import ArrayTable, Point
 from petalfoil.results.parts import AppliedLoad, Outcome
 from petalfoil.results.record import Array, Record
-from petalfoil.results.summary import cell
+from petalfoil.results.summary import ABSENT, cell
 
 MODES = ("natural_frequency", "mode_growth_rate", "damping_ratio", "participation", "whirl_direction")
 """What is told of each natural mode."""
+TILT = "mode_tilt"
+"""The same of a rotor that tilts."""
 
 MODE_TABLE = ArrayTable(
     dim="mode",
@@ -44,6 +46,9 @@ MODE_TABLE = ArrayTable(
         "damping\nratio": lambda record, k: float(record.fields["damping_ratio"][k]),
         "participation\nof the rotor": lambda record, k: float(record.fields["participation"][k]),
         "forward (+1) or\nbackward (-1)": lambda record, k: float(record.fields["whirl_direction"][k]),
+        "cylindrical (0)\nor conical (1)": lambda record, k: (
+            float(record.fields[TILT][k]) if TILT in record.fields else ABSENT
+        ),
     },
 )
 GRID = Grid(
@@ -72,9 +77,10 @@ class Rotor:
 
 
 @analysis(
-    Point(lists=MODES, table=MODE_TABLE),
+    Point(lists=MODES, histories=(TILT,), table=MODE_TABLE),
     GRID,
     excludes={"speed": ("speeds",), "load": ("loads",), "mass": ("speeds", "loads")},
+    error_bars=True,
 )
 def stability(  # noqa: PLR0913 - the options of the verb
     case: Case,
@@ -92,7 +98,8 @@ def stability(  # noqa: PLR0913 - the options of the verb
     --speeds or --loads as a table over load and speed. Petals with friction
     stick, as in the smallest motions. Where petals lie on each other along
     stretches, frequencies are known to several per cent, small damping to
-    half of it: compare two grids.
+    half of it: compare two grids. Of a rotor in two bearings (rotor.span)
+    load and masses are those of the whole rotor, and it may tilt.
 
     Example: petalfoil stability case.toml --load "20 N" --mass "2 kg"
 
@@ -126,26 +133,26 @@ def point(case: Case, load: Vector | None, mass: float | None, progress: Progres
     threshold speed (nan) and no modes.
     """
     with running(progress, "stability") as run:
-        found = operating_point(case, load)
-        impedance = whirl_impedance(elastic(case, found.answer))
-        whirl = neutral_whirl(impedance, case.operation.speed)
-        rotor = rotor_mass(case, load, mass)
-        inertia = rotor * case.operation.speed**2
-        modes = None if math.isnan(rotor) else natural_modes(impedance, inertia)
-        threshold, ended = threshold_speed(case, load, (rotor, whirl))
-        parts = (Rotor(rotor, threshold), *whirl_parts(case, found, whirl, ended), effort(run.seconds))
-        fields, coords = ({}, {}) if modes is None else mode_fields(modes, case.operation.speed)
+        speed, rotor = case.operation.speed, RotorOnBearings(whole_length(case), rotor_mass(case, load, mass))
+        found = operating_point(rotor.case, load)
+        impedance = rotor.impedance(found.answer)
+        whirl = rotor.whirl(impedance, speed)
+        modes = None if math.isnan(rotor.mass) else rotor.modes(impedance, speed)
+        threshold, ended = threshold_speed(rotor, load, whirl)
+        parts = (Rotor(rotor.mass, threshold), *whirl_parts(case, found, whirl, ended), effort(run.seconds))
+        fields, coords = ({}, {}) if modes is None else mode_fields(modes, speed, tilts=case.bearings > 1)
         return record_of("stability", case, *parts, fields=fields, coords=coords)
 
 
 def whirl_parts(case: Case, found: OperatingPoint, whirl: Whirl, ended: str) -> tuple[object, ...]:
     """The state and its critical mass; what has no number is told by the status."""
-    remarks = ["converged", "" if math.isfinite(whirl.mass) else "stable for any rotor mass", ended]
+    any_mass = {0.0: "whirls at half the speed at any speed and rotor mass", math.inf: "stable for any rotor mass"}
+    remarks = ["converged", any_mass.get(whirl.mass, ""), ended]
     outcome = Outcome(status="; ".join(filter(None, remarks)), residual=found.answer.residual)
     return *state_parts(case, found), CriticalMass(whirl.mass, whirl.ratio), outcome
 
 
-def mode_fields(modes: list[Mode], speed: float) -> tuple[dict[str, Array], dict[str, Array]]:
+def mode_fields(modes: list[Mode], speed: float, *, tilts: bool) -> tuple[dict[str, Array], dict[str, Array]]:
     """Fields and coordinates that tell the modes."""
     values = {
         "natural_frequency": [mode.s.imag * speed for mode in modes],
@@ -154,6 +161,8 @@ def mode_fields(modes: list[Mode], speed: float) -> tuple[dict[str, Array], dict
         "participation": [mode.participation for mode in modes],
         "whirl_direction": [mode.direction for mode in modes],
     }
+    if tilts:
+        values[TILT] = [mode.tilt for mode in modes]
     fields: dict[str, Array] = {name: np.array(each, dtype=float) for name, each in values.items()}
     return fields, {"mode": np.arange(1, len(modes) + 1)}
 
@@ -162,16 +171,17 @@ def _points(
     cases: list[Case], loads: list[Vector], progress: Progress | None, done: Sequence[Record] = ()
 ) -> Iterator[Record]:
     """Critical masses load by load, speeds in order, each balance followed from the one before."""
+    rotor = RotorOnBearings(whole_length(cases[0]), rotor_mass(cases[0], None, None))
     rows, columns = divmod(len(done), len(cases))  # whole rows that are done, and points of the next one
     for row, load in enumerate(loads[rows:], rows):
-        line, first = SpeedLine(cases[0], load), columns if row == rows else 0
+        line, first = SpeedLine(rotor.case, load), columns if row == rows else 0
         if first:
             line.regain([case.operation.speed for case in cases[:first]], done[-1])
         for column, case in enumerate(cases[first:], first):
             here = part(progress, row * len(cases) + column, len(loads) * len(cases))
             with running(here, "stability") as run:
                 try:
-                    found, whirl = _followed(line, case)
+                    found, whirl = _followed(line, case, rotor)
                     parts = (*whirl_parts(case, found, whirl, ""), effort(run.seconds))
                     record = record_of("stability", case, *parts)
                 except ConvergenceError as failure:
@@ -180,9 +190,9 @@ def _points(
             yield record
 
 
-def _followed(line: SpeedLine, case: Case) -> tuple[OperatingPoint, Whirl]:
+def _followed(line: SpeedLine, case: Case, rotor: RotorOnBearings) -> tuple[OperatingPoint, Whirl]:
     """The balance at the case's speed and its critical mass."""
     answer = line.at(case.operation.speed)
-    whirl = neutral_whirl(whirl_impedance(elastic(case, answer)), case.operation.speed)
+    whirl = rotor.whirl(rotor.impedance(answer), case.operation.speed)
     known = branch(leading_eigenvalue(answer), case, 1, answer.solution_path)
     return OperatingPoint(answer, known, (AppliedLoad.of(line.load),)), whirl

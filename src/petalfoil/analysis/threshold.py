@@ -8,11 +8,11 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import brentq
 
-from petalfoil.analysis.impedance import elastic
 from petalfoil.analysis.operating_point import Vector, applied_load, at, operating_point
+from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
-from petalfoil.dynamics.critical_mass import Whirl, neutral_whirl, whirl_impedance
+from petalfoil.dynamics.critical_mass import Whirl
 from petalfoil.dynamics.rotor_motion import GRAVITY
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.errors import ConvergenceError
@@ -28,35 +28,39 @@ Threshold = tuple[float, str]
 
 
 def rotor_mass(case: Case, load: Vector | None, mass: float | None) -> float:
-    """The mass on this bearing [kg]: as asked, else the case's, else the load's; nan where nothing tells it."""
+    """The mass of the rotor [kg]: as asked, else the case's, else the load's; nan where nothing tells it."""
     if mass is not None:
         return mass
     if case.rotor is not None:
-        return case.rotor.mass_on_bearing
+        return case.rotor.mass
     if load is None and case.operation.load is None:
         return math.nan
-    return float(np.hypot(*applied_load(case, load))) / GRAVITY  # a load without a mass is taken for a weight
+    weight = float(np.hypot(*applied_load(case, load)))  # a load without a mass is taken for a weight
+    return weight / GRAVITY if weight > 0.0 else math.nan
 
 
 def margin(whirl: Whirl, mass: float) -> float:
     """Logarithm of the critical mass over `mass`: positive where the rotor is stable."""
+    if not whirl.mass > 0.0:
+        return -NEVER
     return math.log(whirl.mass / mass) if math.isfinite(whirl.mass) else NEVER
 
 
 NEVER = 50.0
-"""Margin of a bearing on which a rotor of any mass is stable."""
+"""Margin of a bearing on which a rotor of any mass is stable; with the other sign, of one on which any whirls."""
 
 
-def threshold_speed(case: Case, load: Vector | None, start: tuple[float, Whirl]) -> Threshold:
-    """Speed at which a rotor of the mass becomes unstable, within the range.
+def threshold_speed(rotor: RotorOnBearings, load: Vector | None, whirl: Whirl) -> Threshold:
+    """Speed at which the rotor becomes unstable, within the range, from its neutral whirl at the case's speed.
 
     Upward from a stable bearing, downward from an unstable one. A speed without an equilibrium ends the search.
     """
-    mass, whirl = start
-    if math.isnan(mass):
+    if whirl.mass == 0.0:
+        return math.nan, ""  # it whirls at any speed
+    if math.isnan(rotor.mass):
         return math.nan, "no threshold speed: give a mass or a load"
-    margin_at = margins(case, load, mass)
-    known, here = case.operation.speed, margin(whirl, mass)
+    margin_at = margins(rotor, load)
+    known, here = rotor.case.operation.speed, margin(whirl, rotor.mass)
     factor = FACTOR if here > 0.0 else 1.0 / FACTOR
     first, last = sorted((known, known * RANGE if here > 0.0 else known / RANGE))
     try:
@@ -70,8 +74,8 @@ def threshold_speed(case: Case, load: Vector | None, start: tuple[float, Whirl])
         current_run().note("threshold", outcome=str(failure))
         return math.nan, f"no threshold speed: no operating point beyond {in_rpm(known)}"
     if here > 0.0:
-        return math.nan, f"no threshold speed: the rotor is stable up to {in_rpm(known)}"
-    return math.nan, f"no threshold speed: the rotor is unstable down to {in_rpm(known)}"
+        return math.nan, f"no threshold speed found up to {in_rpm(known)} (end of the search)"
+    return math.nan, f"no threshold speed found down to {in_rpm(known)} (end of the search): it is unstable there"
 
 
 def neutral_speed(
@@ -99,20 +103,21 @@ JUMP = 0.1
 followed equilibrium changes it by some thousandths."""
 
 
-def margins(case: Case, load: Vector | None, mass: float) -> Callable[[float], float]:
+def margins(rotor: RotorOnBearings, load: Vector | None) -> Callable[[float], float]:
     """The margin over speed [rad/s], under the load or at the case's position."""
+    case = rotor.case
     if load is None and case.operation.load is None:
 
         def in_place(speed: float) -> float:
             answer = operating_point(at(case, speed), None).answer
-            return margin(neutral_whirl(whirl_impedance(elastic(case, answer)), speed), mass)
+            return margin(rotor.whirl(rotor.impedance(answer), speed), rotor.mass)
 
         return in_place
     line = SpeedLine(case, applied_load(case, load))
 
     def under_load(speed: float) -> float:
         answer = line.at(speed)
-        return margin(neutral_whirl(whirl_impedance(elastic(case, answer)), speed), mass)
+        return margin(rotor.whirl(rotor.impedance(answer), speed), rotor.mass)
 
     return under_load
 

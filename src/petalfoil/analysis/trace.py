@@ -46,7 +46,7 @@ AS_THEY_ARE = (
 )
 """Figures of the steps that are kept as they are."""
 
-TILT = ("slope_x", "slope_y")
+TILT = ("slope_x", "slope_y", "slope_rate_x", "slope_rate_y")
 """The same of a shaft that tilts."""
 
 
@@ -96,11 +96,12 @@ class Trace:
         scales = self.system.problem.layout.scales
         return scales.length, scales.pressure, scales.force, self.system.rotor.clock.rate
 
-    def _tilt(self, e: Array) -> dict[str, float]:
-        """Slopes of the shaft in two bearings [rad]."""
+    def _tilt(self, e: Array, v: Array) -> dict[str, float]:
+        """Slopes of the shaft in two bearings [rad], and their rates [rad/s]."""
         if len(e) == 2 or self.case.rotor is None:
             return {}
-        return {"slope_x": float(e[2]) / self.case.rotor.lever, "slope_y": float(e[3]) / self.case.rotor.lever}
+        slopes = np.concatenate([e[2:], v[2:]]) / self.case.rotor.lever
+        return {name: float(slope) for name, slope in zip(TILT, slopes, strict=True)}
 
     @cached_property
     def _area(self) -> Array:
@@ -113,7 +114,7 @@ class Trace:
         t, (e, v) = instant.tau / rate, (instant.moving.e * length, instant.moving.v * length * rate)
         w = instant.x[layout.unknowns[DEFLECTION]]
         kinetic = 0.5 * float(instant.moving.v @ rotor.inertia @ instant.moving.v) * force * length
-        tilt = self._tilt(e)
+        tilt = self._tilt(e, v)
         return {
             "time": t,
             "x": float(e[0]),

@@ -130,6 +130,11 @@ class Case(Definition):
         return self.radial_clearance - (self.solid_height or 0.0) - self.surface.contact_film_thickness
 
     @property
+    def bearings(self) -> int:
+        """Equal bearings that share the load: 2 where the case has a rotor with a span."""
+        return 1 if self.rotor is None else self.rotor.bearings
+
+    @property
     def slip_length(self) -> float:
         """Mean free path at ambient pressure by which the film slips at its walls (F7); zero without slip [m]."""
         return self.gas.mean_free_path if self.model.slip else 0.0

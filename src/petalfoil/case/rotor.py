@@ -78,9 +78,9 @@ class Rotor(Definition):
         return 0.5 * self.span if self.span else 0.0
 
     @property
-    def mass_on_bearing(self) -> float:
-        """Part of the mass on one bearing [kg]."""
-        return 0.5 * self.mass if self.span else self.mass
+    def bearings(self) -> int:
+        """Equal bearings that it runs in."""
+        return 2 if self.span else 1
 
     @model_validator(mode="after")
     def _tilts_as_a_body(self) -> Self:

@@ -13,7 +13,7 @@ from rich.table import Table
 from petalfoil.results.estimate import Estimate
 from petalfoil.results.grid import Grid
 from petalfoil.results.layout import Answer, Cell, Layout, Point, Series
-from petalfoil.results.record import Record
+from petalfoil.results.record import Record, Scalar
 from petalfoil.results.study import GridStudy, grid_text
 from petalfoil.results.summary import ABSENT, cell, in_order, number, rows, with_bar, without_rounding
 from petalfoil.text import for_terminal
@@ -104,9 +104,17 @@ def _series(layout: Series, records: Sequence[Record]) -> Table:
     columns = [(f"{headings[name]}\n{cell(name, 0.0).unit}".rstrip(), "right") for name in names]
     table = _headed([("point", "right"), *columns, ("", "left")])
     for position, (point, record) in enumerate(zip(points, records, strict=True), start=1):
-        values = [cell(name, point.get(name, math.nan)).value for name in names]
+        values = [_with_bar(name, point.get(name, math.nan), record) for name in names]
         _add(table, str(position), *values, _remark(record))
     return table
+
+
+def _with_bar(name: str, value: Scalar, record: Record) -> str:
+    """A result of a point, and its error bar where it has one."""
+    if name not in (record.errors or {}):
+        return cell(name, value).value
+    (shown,), bar = with_bar(name, [float(value)], (record.errors or {})[name])
+    return f"{shown} ± {bar}"
 
 
 def _remark(record: Record) -> str:
@@ -128,15 +136,18 @@ def _grids(layout: Grid, records: Sequence[Record]) -> Iterator[Table]:
 
 
 def _arrays(layout: Layout, records: Sequence[Record]) -> Table:
-    """A line for each entry of the arrays of each record."""
+    """A line for each entry of the arrays of each record; columns that no record fills are left out."""
     if layout.table is None:
         raise ValueError("this layout has no table of arrays")
-    table = _headed([*((heading, "right") for heading in layout.table.columns), ("", "left")])
+    lines = [line for record in records for line in layout.table.lines(record)]
+    kept = [k for k in range(len(layout.table.columns)) if any(line[k] != ABSENT for line in lines)]
+    headings = list(layout.table.columns)
+    table = _headed([*((headings[k], "right") for k in kept), ("", "left")])
     for position, record in enumerate(records, start=1):
         for line in layout.table.lines(record):
-            _add(table, *map(_text, line), "")
+            _add(table, *(_text(line[k]) for k in kept), "")
         if not record.converged:
-            _add(table, *[""] * len(layout.table.columns), f"{layout.place(position, record)} failed")
+            _add(table, *[""] * len(kept), f"{layout.place(position, record)} failed")
     return table
 
 

@@ -1,4 +1,8 @@
-"""Stability of a rigid rotor on the bearing: `det(Z(i Omega) - m Omega^2) = 0` with a real mass `m` (E6)."""
+"""Stability of a rigid rotor on the bearing: `det(Z(i Omega) - m Omega^2) = 0` with a real mass `m` (E6).
+
+In two bearings `det(Z(i Omega) - m Omega^2 (M - i G omega / Omega)) = 0`, with the inertias `M` and `G` over the mass:
+the rotor that whirls has its inertias in the same proportion to its mass.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq, linear_sum_assignment
 
 from petalfoil.dynamics.reduced_impedance import Impedance
+from petalfoil.dynamics.rotor_motion import Inertia
 from petalfoil.equilibrium.linear_response import SmallMotion
 
 Complex = NDArray[np.complex128]
@@ -25,7 +30,8 @@ class Whirl:
     Attributes
     ----------
     mass : float
-        Mass of the rigid rotor on this bearing [kg]; infinite if it is stable for any mass.
+        Critical mass of a rigid rotor [kg]: on one bearing, or the whole of one that tilts in two bearings; infinite if
+        it is stable for any mass, zero if it whirls at any.
     ratio : float
         Whirl frequency over speed [1]; nan if there is none.
     """
@@ -39,26 +45,67 @@ def whirl_impedance(motion: SmallMotion) -> Impedance:
     return Impedance.over(motion, SCAN.tolist())
 
 
-def neutral_whirl(impedance: Impedance, speed: float) -> Whirl:
-    """Find the critical rotor mass.
+EVEN = 1e-9
+"""Difference of the thickness of a film round the bearing, over the thickness, below which it is even."""
+
+POLE = 1e-3
+"""Imaginary part over the size of an eigenvalue beyond which a change of its sign is no zero: it passes infinity where
+gyroscopic moments cancel inertia."""
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Impedance against inertia at each whirl ratio.
+
+    Attributes
+    ----------
+    impedance : Impedance
+        The bearing, or both.
+    inertia : Inertia or None
+        That of a rotor that tilts; None for a mass alone.
+    """
+
+    impedance: Impedance
+    inertia: Inertia | None = None
+
+    def eigenvalues(self, nu: float) -> Complex:
+        """Masses times the square of the whirl frequency that balance the impedance at whirl ratio `nu`, (d,) [N/m]."""
+        Z = self.impedance.at_ratio(nu)
+        if self.inertia is None:
+            return np.asarray(np.linalg.eigvals(Z), dtype=np.complex128)
+        shape = (self.inertia.mass - 1j * self.inertia.gyroscopic / nu) / self.inertia.mass[0, 0]
+        inverse = np.linalg.eigvals(np.linalg.solve(Z, shape))
+        return np.asarray(1.0 / np.where(inverse == 0.0, np.finfo(float).tiny, inverse), dtype=np.complex128)
+
+
+def whirls_at_any_mass(motion: SmallMotion) -> bool:
+    """Whether a rotor of any mass whirls at half the speed: the film is even all round, and no wall deflects.
+
+    In the frame that turns at half the speed the two surfaces of such a film move equally fast in opposite directions:
+    nothing is dragged into it, and it exerts no force.
+    """
+    H = motion.linearized.film.H
+    return motion.problem.layout.n_wall == 0 and bool(np.ptp(H) <= EVEN * np.max(H))
+
+
+def neutral_whirl(impedance: Impedance, speed: float, inertia: Inertia | None = None) -> Whirl:
+    """Find the critical rotor mass; with `inertia` that of a rotor whose inertias are in the same proportion.
 
     At the threshold one eigenvalue of `Z(i Omega)` is real and equals `m Omega^2`. The branches of the imaginary parts
     are followed over whirl ratio, and their zeros bracketed.
     """
+    if whirls_at_any_mass(impedance.motion):
+        return Whirl(0.0, 0.5)
     roots: list[Whirl] = []
-    values = [eigenvalues(impedance, nu) for nu in SCAN]
+    balance = Balance(impedance, inertia)
+    values = [balance.eigenvalues(nu) for nu in SCAN]
     for k in range(len(SCAN) - 1):
         ahead = matched(values[k], values[k + 1])
         for branch in range(len(ahead)):
             if np.sign(values[k][branch].imag) != np.sign(ahead[branch].imag):
-                roots += crossing(impedance, (SCAN[k], SCAN[k + 1]), values[k][branch], speed)
+                roots += crossing(balance, (SCAN[k], SCAN[k + 1]), values[k][branch], speed)
         values[k + 1] = ahead
     return min(roots, key=lambda root: root.mass, default=Whirl(np.inf, np.nan))
-
-
-def eigenvalues(impedance: Impedance, nu: float) -> Complex:
-    """Eigenvalues of the impedance at whirl ratio `nu`, (d,) [N/m]."""
-    return np.asarray(np.linalg.eigvals(impedance.at_ratio(nu)), dtype=np.complex128)
 
 
 def matched(before: Complex, after: Complex) -> Complex:
@@ -67,18 +114,19 @@ def matched(before: Complex, after: Complex) -> Complex:
     return out
 
 
-def crossing(impedance: Impedance, between: tuple[float, float], start: complex, speed: float) -> list[Whirl]:
+def crossing(balance: Balance, between: tuple[float, float], start: complex, speed: float) -> list[Whirl]:
     """The neutral whirl in a bracket of whirl ratios, if it belongs to a positive mass."""
     nearest = start
 
     def imaginary(nu: float) -> float:
-        values = eigenvalues(impedance, nu)
+        values = balance.eigenvalues(nu)
         return float(values[np.argmin(np.abs(values - nearest))].imag)
 
     low, high = imaginary(between[0]), imaginary(between[1])
     if np.sign(low) == np.sign(high):
         return []
     nu = float(brentq(imaginary, *between, xtol=1e-6, rtol=1e-8))
-    values = eigenvalues(impedance, nu)
-    mass = float(values[np.argmin(np.abs(values.imag))].real) / (nu * speed) ** 2
-    return [Whirl(mass, nu)] if mass > 0.0 else []
+    values = balance.eigenvalues(nu)
+    neutral = values[np.argmin(np.abs(values.imag))]
+    mass = float(neutral.real) / (nu * speed) ** 2
+    return [Whirl(mass, nu)] if mass > 0.0 and abs(neutral.imag) <= POLE * abs(neutral) else []

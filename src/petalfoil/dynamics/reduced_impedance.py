@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.dynamics.rotor_motion import Inertia
 from petalfoil.equilibrium.linear_response import LinearResponse, SmallMotion
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.solvers.reduced_model import ReducedModel, reduce_system
@@ -69,10 +70,11 @@ class Impedance:
         response = factorised(self.motion, s)
         return self._si(response.force_gradient), self._si(response.slope())
 
-    def free_motions(self, inertia: float) -> Complex:
-        """Every `s` of the model at which `inertia` [N/m] moves freely on the bearing, unordered."""
+    def free_motions(self, inertia: Inertia, speed: float) -> Complex:
+        """Every `s` of the model at which a rotor turning at `speed` [rad/s] moves freely on the bearing, unordered."""
         scales = self.motion.problem.layout.scales
-        return self.model.modes(inertia * scales.length / scales.force)
+        unit = speed**2 * scales.length / scales.force
+        return self.model.modes(inertia.mass * unit, inertia.gyroscopic * unit)
 
     def _si(self, gradient: Complex) -> Complex:
         scales = self.motion.problem.layout.scales

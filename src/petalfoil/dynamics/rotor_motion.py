@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.case import Case
+from petalfoil.case import Case, Rotor
 from petalfoil.dynamics.speed_schedule import Schedule
 from petalfoil.errors import UsageError
 from petalfoil.system.scales import Scales
@@ -48,6 +48,42 @@ class Clock:
         radius, viscosity = case.bearing.journal_radius, case.gas.viscosity
         rate = schedule.top or 1.0 / scales.bearing_number(viscosity, 1.0, radius)
         return cls(rate, scales.bearing_number(viscosity, rate, radius))
+
+
+@dataclass(frozen=True)
+class Inertia:
+    """Inertia of a rigid rotor in the coordinates of its position, `d` of them: `mass e'' + omega gyroscopic e'`.
+
+    Attributes
+    ----------
+    mass : (d, d) array
+        Of a shaft that tilts: `diag(m, m, I_t / l^2, I_t / l^2)` [kg].
+    gyroscopic : (d, d) array
+        Of a shaft that tilts: `I_p / l^2` between its slopes [kg].
+    """
+
+    mass: Array
+    gyroscopic: Array
+
+    @classmethod
+    def of_mass(cls, mass: float) -> Inertia:
+        """A mass [kg] that moves parallel to its axis."""
+        return cls(mass * np.eye(2), np.zeros((2, 2)))
+
+    @classmethod
+    def of(cls, rotor: Rotor) -> Inertia:
+        """The whole rotor."""
+        if not rotor.lever:
+            return cls.of_mass(rotor.mass)
+        transverse, polar = rotor.transverse_inertia / rotor.lever**2, rotor.polar_inertia / rotor.lever**2
+        gyroscopic = np.zeros((4, 4))
+        gyroscopic[2, 3], gyroscopic[3, 2] = polar, -polar
+        return cls(np.diag([rotor.mass, rotor.mass, transverse, transverse]), gyroscopic)
+
+    @property
+    def least(self) -> float:
+        """Least inertia of a coordinate [kg]."""
+        return float(np.diag(self.mass).min())
 
 
 @dataclass(frozen=True)
@@ -93,17 +129,13 @@ class RotorMotion:
             raise UsageError(NO_ROTOR)
         rotor, clock, given = case.rotor, Clock.of(case, scales, schedule), constant_load(case, load)
         unit, lever = scales.length * clock.rate**2 / scales.force, rotor.lever
-        masses, turning, force = [rotor.mass, rotor.mass], np.zeros((2, 2)), np.array(given) / scales.force
-        askew = 0.0
+        inertia, force, askew = Inertia.of(rotor), np.array(given) / scales.force, 0.0
         if lever:
-            masses += [rotor.transverse_inertia / lever**2] * 2
-            turning = np.zeros((4, 4))
-            turning[2, 3], turning[3, 2] = (sign * rotor.polar_inertia / lever**2 * unit for sign in (1.0, -1.0))
             force = np.append(force, [0.0, 0.0])
             askew = (rotor.transverse_inertia - rotor.polar_inertia) * rotor.skew / (lever * scales.force)
         return cls(
-            inertia=unit * np.diag(masses),
-            turning=turning,
+            inertia=unit * inertia.mass,
+            turning=unit * inertia.gyroscopic,
             load=force,
             unbalance=(rotor.mass * rotor.unbalance / scales.force, askew),
             rotating=(rotor.rotating_load / scales.force, rotor.rotating_speed),

@@ -89,7 +89,9 @@ def from_nothing(problem: CoupledProblem, load: Array) -> Solution | None:
 
 
 def loaded_gradually(problem: CoupledProblem, load: Array) -> Solution | None:
-    """Balance a fraction of the load, then more and more of it; None if that leads nowhere."""
+    """Balance a fraction of the load, then more and more of it; None if that leads nowhere, or there is no load."""
+    if not np.any(load):
+        return None
     for share in SHARES:
         known = from_nothing(problem, share * load)
         while known is not None and share < 1.0:

@@ -32,6 +32,7 @@ class Grid(Layout):
     """
 
     dimension: ClassVar[str] = "load"
+    takes_error_bars: ClassVar[bool] = False
 
     names: tuple[str, ...]
     tables: Mapping[str, str]

@@ -89,6 +89,8 @@ class Layout(ABC):
 
     dimension: ClassVar[str] = ""
     """Dimension by which a dataset of this layout is known; of one point there is none."""
+    takes_error_bars: ClassVar[bool] = True
+    """Whether its records may have error bars."""
 
     lists: tuple[str, ...] = ()
     histories: tuple[str, ...] = ()
@@ -223,14 +225,22 @@ class Series(Layout):
         return {**(self.head(points) if self.head else {}), "points": points}
 
     def to_dataset(self, records: Sequence[Record], verb: str) -> xr.Dataset:
-        """The points along ``point``."""
+        """The points along ``point``, with the error bar ``f_error`` of each result ``f`` that has one."""
         from petalfoil.results.dataset import curve_dataset
+        from petalfoil.results.study import with_errors_of_points
 
-        return curve_dataset(records, verb)
+        return with_errors_of_points(curve_dataset(records, verb), records)
 
     def points(self, ds: xr.Dataset) -> list[xr.Dataset]:
         """The points along ``point``."""
         return [ds.isel(point=number) for number in range(ds.sizes["point"])]
+
+    def records(self, ds: xr.Dataset) -> tuple[Record, ...]:
+        """The records, with their error bars."""
+        from petalfoil.results.study import errors_of_point
+
+        points = zip(super().records(ds), self.points(ds), strict=True)
+        return tuple(replace(record, errors=errors_of_point(point) or None) for record, point in points)
 
     def place(self, number: int, record: Record) -> str:
         """The point and where it stands."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,8 @@ LEAST_TURNS = 4.0
 """Turns below which a spectrum cannot tell half the speed from the speed."""
 SETTLED = 0.5
 """Part of a motion at its end that is taken for settled."""
+SLOPES = {"x": "slope_x", "y": "slope_y", "velocity_x": "slope_rate_x", "velocity_y": "slope_rate_y"}
+"""Histories of the shaft's slope beside those of the position."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,17 @@ class Path:
         """The path from histories by their names in the schema."""
         named = ("x", "y", "velocity_x", "velocity_y", "shaft_angle", "shaft_speed")
         return cls(time, *(over[name] for name in named))
+
+    @classmethod
+    def journals(cls, time: Array, over: Mapping[str, Array], lever: float) -> tuple[Path, ...]:
+        """The path of each journal; of a shaft that tilts, those `lever` [m] to both sides of the mass centre."""
+        centre = cls.of(time, over)
+        if not lever:
+            return (centre,)
+        return tuple(
+            replace(centre, **{name: over[name] + side * lever * over[slope] for name, slope in SLOPES.items()})
+            for side in (-1.0, 1.0)
+        )
 
     @property
     def turns(self) -> float:
@@ -174,12 +187,22 @@ def settled_amplitude(path: Path) -> float:
     return float(np.max(np.abs(z - z.mean())))
 
 
-def figures_of(time: Array, over: Mapping[str, Array]) -> dict[str, float]:
-    """Amplitude [m] and dominant frequency over the speed of a motion, from its histories."""
-    path = Path.of(time, over)
+def figures_of(time: Array, over: Mapping[str, Array], lever: float = 0.0) -> dict[str, float]:
+    """Amplitude [m] and dominant frequency over the speed of a motion, from its histories.
+
+    Of two journals, `lever` [m] to both sides of the mass centre, those of the one that swings more.
+    """
     if len(time) < 2:
         return {"amplitude": 0.0, "dominant_whirl_ratio": math.nan}
+    path = max(Path.journals(time, over, lever), key=settled_amplitude)
     return {"amplitude": settled_amplitude(path), "dominant_whirl_ratio": dominant_whirl_ratio(path)}
+
+
+def tilt_amplitude(time: Array, over: Mapping[str, Array]) -> float:
+    """Largest slope of the shaft from its mean in the settled part of a motion [rad]."""
+    if len(time) < 2:
+        return 0.0
+    return settled_amplitude(Path.of(time, {**over, **{name: over[slope] for name, slope in SLOPES.items()}}))
 
 
 @dataclass(frozen=True)

@@ -142,6 +142,7 @@ FIELDS: dict[str, Variable] = {
     "damping_ratio": Variable(("mode",), "1", "damping ratio of the mode, negative where it grows", "zeta"),
     "participation": Variable(("mode",), "1", "part of the rotor's mass in the mode", "q"),
     "whirl_direction": Variable(("mode",), "1", "1 for forward, -1 for backward whirl, 0 along a line", "kappa"),
+    "mode_tilt": Variable(("mode",), "1", "part of the tilt in the motion of the journals, by its square", "t"),
     "bending_stress": Variable(
         _PETAL, "Pa", "bending stress of the petal's metal along phi, assembly included", "sigma_phi"
     ),
@@ -154,6 +155,8 @@ HISTORIES: dict[str, Variable] = {
     "velocity_y": Variable(_TIME, "m s-1", "velocity of the journal's centre along y", "v_y"),
     "slope_x": Variable(_TIME, "rad", "slope of the shaft's axis along x", "a_x"),
     "slope_y": Variable(_TIME, "rad", "slope of the shaft's axis along y", "a_y"),
+    "slope_rate_x": Variable(_TIME, "rad s-1", "rate of the slope of the shaft's axis along x", "a_x'"),
+    "slope_rate_y": Variable(_TIME, "rad s-1", "rate of the slope of the shaft's axis along y", "a_y'"),
     "shaft_speed": Variable(_TIME, "rad s-1", "angular velocity of the shaft", "omega"),
     "shaft_angle": Variable(_TIME, "rad", "angle that the shaft has turned", "theta_s"),
     "min_film_thickness": Variable(_TIME, "m", "minimum film thickness", "min h"),
@@ -200,7 +203,7 @@ SCALARS: dict[str, Variable] = {
     ),
     "contact_fraction_limit": _given("1", "contact fraction at lift-off and touchdown", "s_c*"),
     "whirl_amplitude": _given("m", "amplitude of the whirl at which petals rub", "a"),
-    "rotor_mass": _given("kg", "mass of a rigid rotor on this bearing", "m"),
+    "rotor_mass": _given("kg", "mass of a rigid rotor; in two bearings all of it", "m"),
     "force_x": _answer("N", "force of film and contact on the journal along x", "F_x"),
     "force_y": _answer("N", "force of film and contact on the journal along y", "F_y"),
     "bearing_force": _answer("N", "magnitude of the force on the journal", "|F|"),
@@ -248,7 +251,10 @@ SCALARS: dict[str, Variable] = {
     "energy_balance_error": _answer(
         "1", "energy of rotor and petals beyond the work done on them, over the work exchanged", "d_energy"
     ),
-    "amplitude": _answer("m", "largest distance from the mean position, in the last half of a motion", "A"),
+    "amplitude": _answer(
+        "m", "largest distance of a journal from its mean position, in the last half of a motion", "A"
+    ),
+    "tilt_amplitude": _answer("rad", "largest slope of the shaft from its mean, in the last half of a motion", "A_t"),
     "dominant_whirl_ratio": _answer(
         "1", "frequency of the largest circle of the whirl over the speed, negative for backward whirl", "Omega/omega"
     ),
@@ -282,6 +288,7 @@ SCALARS: dict[str, Variable] = {
     "journal_radius": _geometry("m", "radius of the journal", "R_j"),
     "bushing_radius": _geometry("m", "radius of the bushing", "R_B"),
     "length": _geometry("m", "length of the bearing", "L"),
+    "span": _geometry("m", "distance between two equal bearings", "2 l"),
     "petal_thickness": _geometry("m", "thickness of a petal with its coating", "delta"),
     "ambient_pressure": _geometry("Pa", "ambient pressure, absolute", "p_a"),
     "contact_film_thickness": _geometry("m", "contact film thickness, at which the journal touches", "h_min"),

@@ -111,6 +111,25 @@ def with_error_bars(ds: xr.Dataset, errors: Mapping[str, float]) -> xr.Dataset:
     return ds
 
 
+def with_errors_of_points(ds: xr.Dataset, records: Sequence[Record]) -> xr.Dataset:
+    """Add ``f_error`` along ``point`` for each result ``f`` that has an error bar, NaN where a point has none."""
+    bars = [record.errors or {} for record in records]
+    names = [name for name in SCALARS if any(name in errors for errors in bars)]
+    return ds.assign({f"{name}_error": _error_along_points(name, bars) for name in names})
+
+
+def _error_along_points(name: str, bars: Sequence[Mapping[str, float]]) -> tuple[Any, ...]:
+    declared = SCALARS[name]
+    attributes = {"long_name": f"error bar of the {declared.long_name}", "units": declared.units}
+    return "point", np.array([errors.get(name, np.nan) for errors in bars]), attributes
+
+
+def errors_of_point(point: xr.Dataset) -> dict[str, float]:
+    """Read back the error bars of a point of a series."""
+    read = {name: float(point[f"{name}_error"]) for name in SCALARS if f"{name}_error" in point}
+    return {name: error for name, error in read.items() if np.isfinite(error)}
+
+
 def error_bars_of(ds: xr.Dataset) -> dict[str, float]:
     """Read back the error bars of a point's results."""
     return {name: float(ds[name].attrs[ERROR_BAR]) for name in SCALARS if name in ds and ERROR_BAR in ds[name].attrs}

@@ -23,8 +23,8 @@ ABSENT = "-"
 FINEST_SHARE = 1e-7
 """Share of a value below which its error bar adds no digits."""
 ROUNDING = 1e-12
-"""Part of a vector, and of ambient pressure on the bearing, below which a component is rounding: thousands of pressures
-are added."""
+"""Part of a vector, of ambient pressure on the bearing for a force, of the journal's radius for a displacement, below
+which a component is rounding: thousands of pressures are added."""
 _VECTORS = (
     (("force_x", "force_y"), "N"),
     (("load_x", "load_y"), "N"),
@@ -151,7 +151,8 @@ def without_rounding(record: Record) -> dict[str, Scalar]:
     reported = record.reported()
     sizes = [float(reported.get(name, 0.0)) for name in ("ambient_pressure", "journal_radius", "length")]
     pressed = math.prod(sizes)  # ambient pressure on the bearing [N]
-    for names, scale in ((names, pressed if kind == "N" else 0.0) for names, kind in _VECTORS):
+    scales = {"N": pressed, "m": sizes[1]}
+    for names, scale in ((names, scales[kind]) for names, kind in _VECTORS):
         here = [float(reported[name]) for name in names if name in reported]
         least = ROUNDING * max(scale, math.hypot(*here))
         reported |= {name: 0.0 for name in names if name in reported and abs(float(reported[name])) < least}

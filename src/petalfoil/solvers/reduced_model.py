@@ -96,8 +96,10 @@ class ReducedModel:
         rate = -self._solve(s, self.H @ moved + self.forcing[1])
         return np.asarray(self.force[1] @ moved + _at(self.force, s) @ rate + self.direct[1], dtype=np.complex128)
 
-    def modes(self, mass: float) -> Complex:
-        """Every finite `s` at which the system and a mass on each coordinate move freely, `mass s^2 e = F`; unordered.
+    def modes(self, mass: Array, gyroscopic: Array) -> Complex:
+        """Every finite `s` at which the system and a body on the coordinates move freely; unordered.
+
+        The body obeys `(mass s^2 + gyroscopic s) e = F`, both (d, d).
 
         With `v = s e` the equations are linear in `s`, in the unknowns `c`, `e` and `v`.
         """
@@ -105,12 +107,12 @@ class ReducedModel:
         one, none = np.eye(d), np.zeros((d, d))
         steady = [
             [np.eye(q), self.forcing[0], np.zeros((q, d))],
-            [-self.force[0], -self.direct[0], none],
+            [-self.force[0], -self.direct[0], gyroscopic],
             [np.zeros((d, q)), none, -one],
         ]
         rates = [
             [self.H, self.forcing[1], np.zeros((q, d))],
-            [-self.force[1], -self.direct[1], mass * one],
+            [-self.force[1], -self.direct[1], mass],
             [np.zeros((d, q)), one, none],
         ]
         alpha, beta = la.eigvals(-np.block(steady), np.block(rates), homogeneous_eigvals=True)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
+from petalfoil.errors import UsageError
 from petalfoil.memory import check_memory
 from petalfoil.physics.mass_balance import FilmBalance
 from petalfoil.system.bearing_layout import BearingLayout
@@ -22,14 +23,23 @@ def build_problem(case: Case) -> CoupledProblem:
 
 
 def build_pair(case: Case) -> CoupledProblem:
-    """Two of the bearings of `case` on a shaft that tilts, as its rotor has them; the whole length of each."""
+    """Two of the bearings of `case` on a shaft that tilts, as its rotor has them; the whole length of each.
+
+    Raises
+    ------
+    UsageError
+        Their 2-D films have no ends.
+    """
     if case.rotor is None or case.rotor.span is None:
         raise ValueError("this rotor runs in one bearing")
     whole = case.replace(**{"model.symmetry": False})
     check_memory(whole, bearings=2)
     wall = paired(build_wall(whole), case.rotor.span)
     slopes = np.zeros(wall.n_position - len(case.operation.eccentricity))
-    return discretised(whole, wall, np.append(case.operation.eccentricity, slopes))
+    problem = discretised(whole, wall, np.append(case.operation.eccentricity, slopes))
+    if problem.layout.film_rows.inventory is not None:
+        raise UsageError("two 2-D films without ends hold no gas of their own: take the 3-D model or ambient edges")
+    return problem
 
 
 def discretised(case: Case, wall: Wall, displacement: NDArray[np.float64]) -> CoupledProblem:

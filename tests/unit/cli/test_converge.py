@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ from numpy.testing import assert_allclose
 
 from petalfoil.analysis.converge import converge
 from petalfoil.analysis.runs import Points
+from petalfoil.errors import ConvergenceError
 from petalfoil.results import Record
 from petalfoil.results.estimate import Estimate
 from petalfoil.results.store import load
@@ -52,12 +52,12 @@ class Study:
         ]
 
     def solve(self, **given: Any) -> Record:
-        record = point(0.0, -1e-4)
-        if not given["error"]:
-            return record
+        return point(0.0, -1e-4)
+
+    def error_bars(self, record: Record, on_grid: object) -> dict[str, float]:
         if self.bars is None:
-            return replace(record, errors={}, remarks=("no error bars: a grid study needs two grids at least",))
-        return replace(record, errors=self.bars)
+            raise ConvergenceError("a grid study needs two grids at least")
+        return self.bars
 
 
 def _on(cells: int, force: float, converged: bool) -> Record:
@@ -70,6 +70,7 @@ def study(monkeypatch: pytest.MonkeyPatch) -> Study:
     plays = Study()
     play("converge", plays.converge, monkeypatch)
     play("solve", plays.solve, monkeypatch)
+    monkeypatch.setattr("petalfoil.analysis.error_bars.error_bars", plays.error_bars)
     monkeypatch.setattr(converge, "layouts", (GridStudy(conclude=plays.table),))
     return plays
 
@@ -86,10 +87,10 @@ def test_options_reach_the_study(cli, study: Study, case: str) -> None:
     arguments = ("--levels", "2", "--coarsest", "48", "--speed", "100 rad/s", "--eccentricity", "1 um, -2 um")
     assert cli("converge", case, *arguments).exit_code == 0
     assert study.asked.pop("case").title == "Plain [b]bearing[/b]"
-    assert study.asked == {"levels": 2, "coarsest": 48, "speed": 100.0, "eccentricity": (1e-6, -2e-6)}
+    assert study.asked == {"levels": 2, "coarsest": 48, "speed": 100.0, "eccentricity": (1e-6, -2e-6), "load": None}
     assert cli("converge", case).exit_code == 0
     del study.asked["case"]
-    assert study.asked == {"levels": 3, "coarsest": None, "speed": None, "eccentricity": None}
+    assert study.asked == {"levels": 3, "coarsest": None, "speed": None, "eccentricity": None, "load": None}
 
 
 def test_the_table_has_every_grid_order_limit_error_and_trust(cli, study: Study, case: str) -> None:

@@ -51,17 +51,19 @@ def test_derivative_is_that_of_the_force() -> None:
     assert_allclose(model.derivative(s), differences, rtol=1e-7)
 
 
-def test_modes_of_a_mass_are_the_eigenvalues_of_the_whole_system() -> None:
-    """`det(mass s^2 - F(s)) = 0`, against the whole system's eigenvalues within reach of the points."""
+@pytest.mark.parametrize("polar", [0.0, 30.0])
+def test_modes_of_a_body_are_the_eigenvalues_of_the_whole_system(polar: float) -> None:
+    """`det(mass s^2 + gyroscopic s - F(s)) = 0`, against the whole system's eigenvalues within reach of the points."""
     J, system = dense()
     mass, (f0, f1), (l0, l1), (d0, d1) = 40.0, system.forcing, system.force, system.direct
-    none, one = np.zeros((D, D)), np.eye(D)
-    A = np.block([[J, f0, np.zeros((N, D))], [-l0.T, -d0, none], [np.zeros((D, N)), none, -one]])
+    none, one, turning = np.zeros((D, D)), np.eye(D), np.zeros((D, D))
+    turning[0, 1], turning[1, 0] = polar, -polar
+    A = np.block([[J, f0, np.zeros((N, D))], [-l0.T, -d0, turning], [np.zeros((D, N)), none, -one]])
     B = np.block([[system.S.toarray(), f1, np.zeros((N, D))], [-l1.T, -d1, mass * one], [np.zeros((D, N)), one, none]])
     whole = la.eigvals(-A, B)
     whole = whole[np.isfinite(whole) & (np.abs(whole) < 0.8)]
     assert len(whole) >= 2
-    modes = reduce_system(system, POINTS.tolist()).modes(mass)
+    modes = reduce_system(system, POINTS.tolist()).modes(mass * one, turning)
     for s in whole:
         assert np.min(np.abs(modes - s)) <= 1e-7 * abs(s)
 
