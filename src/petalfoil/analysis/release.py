@@ -26,8 +26,8 @@ from petalfoil.system.time_step import StepProblem
 Array = NDArray[np.float64]
 
 LYING = 0.999
-"""Part of the way to the wall where a journal is released that lies on it: between nodes contact lets it go deeper than
-the wall by up to the sagitta of a cell."""
+"""Part of the way to the wall where a journal is released that lies on it: between nodes it may lie deeper than the
+wall by up to the sagitta of a cell."""
 
 TOLERANCE = 1e-3
 """Local error of a step in reference films and ambient pressures."""
