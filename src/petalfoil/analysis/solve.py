@@ -54,7 +54,7 @@ def placed(case: Case, eccentricity: Vector | None) -> Case:
     Raises
     ------
     UsageError
-        The case gives both, and no position is asked for.
+        No position is asked for, and the case gives both, or a load that its method does not balance.
     """
     if eccentricity is not None:
         return case.replace(**{"operation.eccentricity": eccentricity, "operation.load": None})
@@ -63,6 +63,11 @@ def placed(case: Case, eccentricity: Vector | None) -> Case:
             "the case gives both operation.load and operation.eccentricity, and one follows from the other: give an "
             "eccentricity with the call, leave one of them out of the case, or ask `balance` for the position under "
             "the load"
+        )
+    if case.operation.load is not None and is_classic(case):
+        raise UsageError(
+            "the case gives operation.load, under which the classic method finds no position: give an eccentricity "
+            'with the call, or set model.method = "newton"'
         )
     return case
 

@@ -78,7 +78,8 @@ def _with_bars(record: Record) -> Iterator[tuple[str, ...]]:
         return
     for name in in_order(reported):
         row, bar = cell(name, reported[name]), ""
-        if name in errors:
+        is_rounding = reported[name] == 0.0 != record.scalars[name]
+        if name in errors and not is_rounding:
             (value,), bar = with_bar(name, [float(reported[name])], errors[name])
             row = row._replace(value=value)
         yield row.label, row.value, bar and f"± {bar}", row.unit

@@ -193,6 +193,21 @@ def test_which_of_load_and_eccentricity_is_meant_is_asked() -> None:
     assert "load_y" not in record.scalars
 
 
+def test_the_classic_method_is_not_asked_for_a_balance() -> None:
+    classic = case("paper_n6", **{"model.method": "classic", "operation.eccentricity": (0.0, 0.0)})
+    with pytest.raises(UsageError, match="the classic method finds no position"):
+        solve.record(classic.replace(**{"operation.load": (0.0, -10.0)}))
+
+
+def test_rounding_has_no_bar_in_the_table() -> None:
+    free = LOADED.replace(**{"operation.load": (0.0, 0.0)})
+    lines = render(Answer.stored(balance(free, error=True), balance.layouts[0])).splitlines()
+    assert [line.split() for line in lines if line.startswith("displacement")] == [
+        ["displacement", "x", "0", "µm"],
+        ["displacement", "y", "0", "µm"],
+    ]
+
+
 def test_an_eccentricity_of_the_call_goes_before_the_load_of_the_case() -> None:
     record = solve.record(LOADED, eccentricity=(0.0, 0.0))
     assert record.scalars["eccentricity_y"] == 0.0
