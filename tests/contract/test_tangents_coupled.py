@@ -14,7 +14,8 @@ from petalfoil.solvers.problem import PrimalDualPoint
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
-from petalfoil.system.damped import DampedWall
+from petalfoil.system.damped import DampedBalance, DampedWall
+from petalfoil.system.loaded import LoadedProblem
 from tests.contract.taylor import BEARINGS, assert_tangent, bearing, open_state
 
 Array = NDArray[np.float64]
@@ -210,3 +211,19 @@ def test_a_damped_wall_resists_motion_and_its_gas_stores_nothing(name: str) -> N
     assert_allclose(resisted[: problem.layout.n_wall], 0.6 * change[: problem.layout.n_wall], rtol=0.0, atol=1e-7)
     assert_allclose(resisted[problem.layout.n_wall :], 0.0, atol=1e-12)
     assert_allclose(damped.slack_derivative(shift, 2.0), plain.slack_derivative(shift), rtol=0.0, atol=0.0)
+
+
+@pytest.mark.parametrize("name", PETALS)
+def test_a_damped_balance_resists_motion_of_wall_and_journal(name: str) -> None:
+    problem, rng = build_problem(bearing(name)), np.random.default_rng(18)
+    load, n_wall = np.array([0.3, -2.0]), problem.layout.n_wall
+    z, shift = np.append(open_state(problem, rng), problem.displacement), random_shift(problem, rng)
+    plain, damped = LoadedProblem(problem, load), DampedBalance.of(problem, load, 0.3)
+    before, after = plain.linearize(z, shift), damped.linearize(z, shift)
+    assert_allclose(after.residual, before.residual, rtol=0.0, atol=0.0)
+    none, change = np.zeros(len(shift)), rng.uniform(-1.0, 1.0, len(z))
+    resisted = (after.matrix(none, 2.0) - before.matrix(none)) @ change
+    expected = np.zeros(len(z))
+    expected[:n_wall] = 0.6 * change[:n_wall]
+    expected[-2:] = 0.6 * problem.layout.wall.film.unknown.size * change[-2:]
+    assert_allclose(resisted, expected, rtol=0.0, atol=1e-7)

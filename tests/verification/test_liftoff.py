@@ -98,6 +98,15 @@ def test_a_plain_bearing_has_no_package_to_lift_off_from() -> None:
             asked()
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["paper_n6", "paper_n8", "paper_n10"])
+def test_continuous_edges_lift_off_too(name: str) -> None:
+    """Balances there may be unstable in the time of the gas: the march with a damped wall finds them."""
+    (record,) = liftoff.records(case(name, **{"model.cells_per_pitch": 24, "model.edges": "continuous"}), [15.0])
+    assert record.scalars["status"] == "converged"
+    assert 0.0 < number(record, "touchdown_speed") < math.inf
+
+
 # ---------------------------------------------------------------------------------------------- run-up
 
 

@@ -6,7 +6,7 @@ against a damping of its own, and at last the path is followed through its folds
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -19,7 +19,7 @@ from petalfoil.solvers.central_path import PathOptions, follow_central_path
 from petalfoil.solvers.contact_equations import ContactOptions
 from petalfoil.solvers.contact_newton import solve_contacts
 from petalfoil.solvers.interior_point import InteriorOptions, InteriorStep, contact_set, interior_point
-from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, PrimalDualPoint
+from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, ContactProblem, PrimalDualPoint
 from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.damped import DampedWall
@@ -43,7 +43,7 @@ def solve_cold(problem: CoupledProblem, barriers: tuple[float, ...] = BARRIERS) 
     ConvergenceError
         Nothing led to an answer.
     """
-    answer = by_barriers(problem, barriers) or damped_march(problem) or along_central_path(problem)
+    answer = by_barriers(problem, barriers) or by_slower_ways(problem)
     if answer is None:
         raise nothing_found()
     return answer
@@ -54,29 +54,27 @@ def by_barriers(problem: CoupledProblem, barriers: tuple[float, ...] = BARRIERS)
     return next(filter(None, (attempt(problem, barrier) for barrier in barriers)), None)
 
 
-MARCHES = ((0.1, 3.0), (1.0, 3.0), (0.01, 3.0), (0.1, 30.0))
-"""Dampings of the wall and barriers at which the film joins, in the order of trial. Of twelve bearings with continuous
-edges that no barrier serves, either of the first two serves eight, in 40 to 114 factorisations."""
-
-MARCH = InteriorOptions(march=True, max_steps=150, least_barrier=0.1 * GOALS[0])
-
-
-def damped_march(problem: CoupledProblem) -> Solution | None:
-    """The equilibrium to which the wall comes with a damping of its own, the film steady at every instant (P6)."""
-    run = current_run()
-    for damping, barrier in MARCHES if problem.layout.n_wall else ():
+def by_slower_ways(problem: CoupledProblem) -> Solution | None:
+    """The answer of a march with a damped wall, or along the central path; None if they lead nowhere."""
+    if not problem.layout.n_wall:
+        return None
+    damped, start = (lambda damping: DampedWall.of(problem, damping)), (lambda barrier: assembled(problem, barrier))
+    for point, path in slower_ways(problem, damped, start):
         try:
-            start = assembled(problem, barrier)
-            damped, watch = DampedWall.of(problem, damping), run.watch("damped wall", reached(GOALS[0]))
-            point, found = interior_point(damped, start, run.film_solver, MARCH, watch)
-            answer = finish(problem, point, "marched to rest with a damped wall") if found else None
+            answer = finish(problem, point, path)
         except SingularMatrixError as failure:
-            run.note("damped wall", outcome=str(failure))
+            current_run().note("film", outcome=str(failure))
             continue
         if answer is not None:
             return answer
     return None
 
+
+MARCHES = ((0.1, 3.0), (1.0, 3.0), (0.01, 3.0), (0.1, 30.0))
+"""Dampings of the wall and barriers at which the film joins, in the order of trial. Of twelve bearings with continuous
+edges that no barrier serves, either of the first two serves eight, in 40 to 114 factorisations."""
+
+MARCH = InteriorOptions(march=True, max_steps=150, least_barrier=0.1 * GOALS[0])
 
 PATHS = ((100.0, 10.0), (10.0, 10.0), (100.0, 1.0), (1000.0, 1.0))
 """First barriers of a central path and weights of the unknowns in its arc length, in the order of trial. A step that
@@ -86,22 +84,41 @@ PATH_END = 1e-6
 """Barrier at the end of a path, whence the contact set is read."""
 
 
-def along_central_path(problem: CoupledProblem) -> Solution | None:
-    """The answer to which the central path leads, whatever its folds; None if it was lost."""
+def slower_ways(
+    problem: ContactProblem,
+    damped: Callable[[float], ContactProblem],
+    start: Callable[[float], PrimalDualPoint],
+) -> Iterator[tuple[PrimalDualPoint, str]]:
+    """Points close to a solution and how they were reached: with a damped wall (P6), along the central path (P7).
+
+    Parameters
+    ----------
+    problem : ContactProblem
+        What is solved.
+    damped : callable
+        The same with a damping of the wall.
+    start : callable
+        The assembled pack at a barrier.
+    """
     run = current_run()
-    for barrier, weight in PATHS if problem.layout.n_wall else ():
+    for damping, barrier in MARCHES:
         try:
-            start = assembled(problem, barrier)
+            watch = run.watch("damped wall", reached(GOALS[0]))
+            point, found = interior_point(damped(damping), start(barrier), run.film_solver, MARCH, watch)
+        except SingularMatrixError as failure:
+            run.note("damped wall", outcome=str(failure))
+            continue
+        if found:
+            yield point, "marched to rest with a damped wall"
+    for barrier, weight in PATHS:
+        end, ends = None, (barrier, PATH_END)
+        try:
+            end = follow_central_path(problem, start(barrier), ends, run.film_solver, PathOptions(weight=weight))
         except SingularMatrixError as failure:
             run.note("central path", outcome=str(failure))
-            continue
-        options = PathOptions(weight=weight)
-        end = follow_central_path(problem, start, (barrier, PATH_END), run.film_solver, options)
         run.note("central path", first_barrier=barrier, outcome="lost" if end is None else "followed")
-        answer = None if end is None else finish(problem, end, "followed the central path through its folds")
-        if answer is not None:
-            return answer
-    return None
+        if end is not None:
+            yield end, "followed the central path through its folds"
 
 
 def nothing_found() -> ConvergenceError:

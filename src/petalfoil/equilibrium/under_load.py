@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.cold_start import GOALS, nothing_found, reached
+from petalfoil.equilibrium.cold_start import GOALS, nothing_found, reached, slower_ways
 from petalfoil.equilibrium.continuation import predicted, widened
 from petalfoil.equilibrium.pack_at_rest import assembled
 from petalfoil.equilibrium.run_context import current_run
@@ -32,6 +32,7 @@ from petalfoil.solvers.interior_point import InteriorOptions, InteriorStep, cont
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, Border, ContactProblem, PrimalDualPoint
 from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.damped import DampedBalance
 from petalfoil.system.loaded import LoadedProblem, load_scale
 
 Array = NDArray[np.float64]
@@ -69,7 +70,7 @@ def balance_cold(problem: CoupledProblem, load: Array) -> Solution:
     ConvergenceError
         No position was found.
     """
-    found = from_nothing(problem, load) or loaded_gradually(problem, load)
+    found = from_nothing(problem, load) or loaded_gradually(problem, load) or by_slower_ways(problem, load)
     if found is None:
         raise nothing_found()
     return found
@@ -99,6 +100,28 @@ def loaded_gradually(problem: CoupledProblem, load: Array) -> Solution | None:
             known = from_neighbour(known, problem, share * load)
         if known is not None:
             return known
+    return None
+
+
+def by_slower_ways(problem: CoupledProblem, load: Array) -> Solution | None:
+    """The balance of a march with a damped wall and journal, or along the central path; None if they lead nowhere."""
+    if not problem.layout.n_wall:
+        return None
+    whole = LoadedProblem(problem, load)
+
+    def start(barrier: float) -> PrimalDualPoint:
+        pack = assembled(problem, barrier)
+        return replace(pack, x=np.append(pack.x, problem.displacement))
+
+    for point, _ in slower_ways(whole, lambda damping: DampedBalance.of(problem, load, damping), start):
+        moved, x = whole.split(point.x)
+        try:
+            found = through_interior(moved, replace(point, x=x), load)
+        except SingularMatrixError as failure:
+            current_run().note("balance", outcome=str(failure))
+            continue
+        if found is not None:
+            return found
     return None
 
 

@@ -2,6 +2,7 @@
 
     wall   K w - A (P - 1) - G^T lam + c dw/dtau = 0
     film   net outflow of each cell = 0, at every instant
+    journal, under a load:  c N de/dtau = F_film + by_e^T lam + load, N the nodes that it faces
 
 An equilibrium may be unstable in the time of the gas, where petals and film flutter, and still attract this march.
 """
@@ -15,7 +16,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.system.coupled import CoupledProblem, Linearization
-from petalfoil.system.unknowns import DEFLECTION
+from petalfoil.system.loaded import LoadedLinearization, LoadedProblem
+from petalfoil.system.unknowns import DEFLECTION, POSITION
 
 Array = NDArray[np.float64]
 
@@ -59,3 +61,40 @@ class DampedLinearization(Linearization):
     def slack_derivative(self, change: Array, rate: float = 0.0) -> Array:
         """Derivative of the residual by the slacks that it reads, times their `change` (m,): the gas stores nothing."""
         return super().slack_derivative(change)
+
+
+@dataclass(frozen=True)
+class DampedBalance(LoadedProblem):
+    """A bearing under a load whose time is that of a damped wall and a damped journal.
+
+    Attributes
+    ----------
+    damping : float
+        As in `DampedWall`.
+    """
+
+    damping: float = 1.0
+
+    @classmethod
+    def of(cls, problem: CoupledProblem, load: Array, damping: float) -> DampedBalance:
+        """The damped wall of `problem` and its journal under `load`."""
+        return cls(DampedWall.of(problem, damping), load, damping)
+
+    def linearize(self, z: Array, shift: Array | None = None) -> DampedBalanceLinearization:
+        """Residual and tangent at `z`."""
+        plain = super().linearize(z, shift)
+        return DampedBalanceLinearization(plain.problem, plain.z, plain.coupled, self.damping)
+
+
+@dataclass(frozen=True)
+class DampedBalanceLinearization(LoadedLinearization):
+    """The balance at one state: at rest that of the loaded problem."""
+
+    damping: float = 1.0
+
+    def matrix(self, barrier_weight: Array, rate: float = 0.0) -> sp.csc_array:
+        """Tangent plus `G_z^T diag(barrier_weight) G_z`, plus `rate` times the damping of wall and journal."""
+        plain, unknowns = super().matrix(barrier_weight, rate), self.problem.unknowns
+        damping = unknowns.zeros()
+        damping[unknowns[POSITION]] = rate * self.damping * self.problem.coupled.layout.wall.film.unknown.size
+        return sp.csc_array(plain + sp.diags_array(damping)) if rate else plain
