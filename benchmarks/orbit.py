@@ -11,6 +11,7 @@ from pathlib import Path
 
 import explicit
 import numpy as np
+import scipy.sparse as sp
 from measure import Row, Value, at_least, at_most, in_turn
 
 from petalfoil.analysis.orbit_motion import Orbit
@@ -20,7 +21,6 @@ from petalfoil.case import Case
 from petalfoil.classic.kernels import Engine
 from petalfoil.dynamics.stage import StageOptions
 from petalfoil.dynamics.time_state import Instant
-from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.build import build_problem
@@ -184,16 +184,16 @@ def factorisation(motion: Followed) -> dict[str, float]:
     stage = system.stage(begin.moving, end.tau, end.tau - begin.tau, begin, StageOptions())
     problem = stage.problem.at(displacement=end.e)
 
-    ties = constrain(problem.G, end.active, problem.layout.wall.contacts.journal)
+    constraints, solver = constrain(problem.G, end.active, problem.layout.wall.contacts.journal), LinearSolver()
 
-    def reduced() -> SmallMotion:
-        return SmallMotion(problem, problem.linearize(end.x), ties)
+    def tangent() -> sp.csc_array:
+        return problem.linearize(end.x).matrix(np.zeros(len(problem.weight)))
 
     with one_thread():
         best = in_turn(
             {
-                "seconds_factorisation": lambda: reduced().respond(0.0, LinearSolver()),
-                "seconds_factorisation_anew": lambda: LinearSolver().factor(ties.reduce(reduced().steady)),
+                "seconds_factorisation": lambda: constraints.factor(tangent(), solver, problem.elimination_key),
+                "seconds_factorisation_anew": lambda: LinearSolver().factor(constraints.reduce(tangent())),
             },
             7,
         )
