@@ -68,8 +68,10 @@ def _forces(problem: CoupledProblem, solution: Solution | None, case: Case) -> t
         return math.nan, math.nan, math.nan
     film, scales, radius = problem.layout.wall.film, problem.layout.scales, case.bearing.journal_radius
     excess = (problem.pressure(solution.x) - 1.0) * scales.pressure
-    force = problem.journal_force(solution.x, solution.lam) * scales.force
-    contact = float(solution.lam[problem.layout.wall.contacts.journal].sum() * scales.force)
+    reactions = np.zeros(len(solution.lam))  # bounds that move with the journal do not touch it
+    reactions[problem.layout.wall.contacts.journal] = solution.lam[problem.layout.wall.contacts.journal]
+    force = problem.journal_force(solution.x, reactions) * scales.force
+    contact = float(reactions.sum() * scales.force)
     area = node_area(film, radius)
     return float(np.hypot(*force)), float(np.sum(excess * area)), contact_fraction(contact, excess, area)
 
