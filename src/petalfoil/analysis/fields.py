@@ -23,7 +23,7 @@ def film_fields(found: Evaluation) -> Named:
 def wall_state(answer: Solution) -> WallState:
     """Deflections [m] and contact pressures [Pa] of a solution."""
     layout = answer.problem.layout
-    deflection = answer.deflection * layout.scales.length
+    deflection = (answer.deflection + answer.state.low_order) * layout.scales.length  # to the last digit of each
     return WallState(deflection, answer.lam * layout.scales.force / layout.wall.contacts.area)
 
 
