@@ -18,6 +18,7 @@ In the order data flows:
 - `package`: geometry that follows, and whether the foil pack can be assembled.
 - `toml`: files and texts.
 - `definitions`: `Case`, which puts all of it together.
+- `parameters`: numbers of a case that may vary, by dotted path.
 - `plausibility`: warnings of what is implausible about a case and its answer.
 
 All numbers are floats in SI units; texts such as ``"25 um"`` are read when a definition is made.
@@ -27,6 +28,7 @@ from petalfoil.case.definitions import Case
 from petalfoil.case.free_shape import arc_radius, chordal_tilt
 from petalfoil.case.gas import Gas
 from petalfoil.case.package import Package, package_of
+from petalfoil.case.parameters import Parameter, parameter_of, parameters_of, with_values
 from petalfoil.case.petal_table import Mount, Petals
 from petalfoil.case.plausibility import warnings_of
 from petalfoil.case.rotor import Rotor
@@ -44,6 +46,7 @@ __all__ = [
     "Mount",
     "Operation",
     "Package",
+    "Parameter",
     "Petals",
     "Rotor",
     "Surface",
@@ -51,7 +54,10 @@ __all__ = [
     "arc_radius",
     "chordal_tilt",
     "package_of",
+    "parameter_of",
+    "parameters_of",
     "register_table",
     "unregister_table",
     "warnings_of",
+    "with_values",
 ]
