@@ -44,9 +44,10 @@ def rows_of(name: str) -> list[Row]:
 
 
 def normal(unit: str) -> str:
-    """A unit in the spelling of result files: "J/(kg*K)" becomes "J kg-1 K-1", no unit "–"."""
+    """A unit in the spelling of result files: "J/(kg*K)" becomes "J kg-1 K-1", "kg/m^3" "kg m-3", no unit "–"."""
     over, _, under = unit.replace("(", "").replace(")", "").partition("/")
-    parts = over.replace("*", " ").split() + [f"{part}-1" for part in under.replace("*", " ").split()]
+    below = [part.partition("^") for part in under.replace("*", " ").split()]
+    parts = over.replace("*", " ").split() + [f"{name}-{power or 1}" for name, _, power in below]
     return " ".join(parts) or "–"
 
 

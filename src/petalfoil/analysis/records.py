@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.fields import all_fields, coordinates
 from petalfoil.case import Case, warnings_of
@@ -76,14 +78,24 @@ def geometry(case: Case) -> tuple[object, ...]:
 
 def asked_position(case: Case) -> Position:
     """Speed and displacement that the case asks for."""
-    e_x, e_y = case.operation.eccentricity
-    return Position(speed=case.operation.speed, eccentricity_x=e_x, eccentricity_y=e_y)
+    return position_at(case, np.array(case.operation.eccentricity))
 
 
 def position(case: Case, answer: Solution) -> Position:
     """Speed of the case and displacement of a solution."""
-    e = answer.problem.displacement * answer.problem.layout.scales.length
-    return Position(speed=case.operation.speed, eccentricity_x=float(e[0]), eccentricity_y=float(e[1]))
+    return position_at(case, answer.problem.displacement * answer.problem.layout.scales.length)
+
+
+def position_at(case: Case, e: Array) -> Position:
+    """The displacement `e` [m] at the speed of the case, and how shaft and bushing have grown there."""
+    speed = case.operation.speed
+    return Position(
+        speed=speed,
+        eccentricity_x=float(e[0]),
+        eccentricity_y=float(e[1]),
+        shaft_growth=None if case.shaft is None else case.growth.journal(speed),
+        bushing_growth=None if case.bushing is None else case.growth.bushing,
+    )
 
 
 def effort(wall_time: float | None = None, run: RunContext | None = None) -> Effort:

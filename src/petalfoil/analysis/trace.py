@@ -16,6 +16,7 @@ from petalfoil.case import Case
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.physics.forces import contact_fraction, node_area, viscous_torque
+from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.friction import energy_lost
 from petalfoil.system.unknowns import DEFLECTION
@@ -96,6 +97,12 @@ class Trace:
         scales = self.system.problem.layout.scales
         return scales.length, scales.pressure, scales.force, self.system.rotor.clock.rate
 
+    def _problem(self, instant: Instant) -> CoupledProblem:
+        """The bearing at the speed and position of an instant."""
+        return self.system.problem.at(
+            bearing_number=self.system.rotor.bearing_number(instant.tau), displacement=instant.e
+        )
+
     def _tilt(self, e: Array, v: Array) -> dict[str, float]:
         """Slopes of the shaft in two bearings [rad], and their rates [rad/s]."""
         if len(e) == 2 or self.case.rotor is None:
@@ -131,7 +138,7 @@ class Trace:
     def film_figures(self, instant: Instant) -> dict[str, float]:
         """Film, pressure, forces and friction at an instant, its gas and what of it leaves."""
         length, ambient, force, _ = self._units
-        problem = self.system.problem.at(displacement=instant.e)
+        problem = self._problem(instant)
         mesh, case, contacts = problem.layout.wall.film, self.case, problem.layout.wall.contacts
         P, H = problem.pressure(instant.x), problem.film(instant.x)
         p, h, omega = P * ambient, H * length, self.system.rotor.schedule.speed(instant.tau / self._units[3])
@@ -140,7 +147,7 @@ class Trace:
         shear = (case.gas.viscosity, omega * case.bearing.journal_radius)
         rubbing = case.surface.friction_coefficient * case.bearing.journal_radius * touching
         viscous = viscous_torque(mesh, case.bearing.journal_radius, (p, h), shear, case.slip_length * ambient)
-        film = FilmState(problem.layout.film_rows, P, H, self.system.rotor.bearing_number(instant.tau))
+        film = FilmState(problem.layout.film_rows, P, H, problem.bearing_number)
         return {
             "min_film_thickness": closed_film(case, h, lowest(h, mesh.phi).value),
             "peak_pressure": highest(p, mesh.phi).value,
@@ -154,10 +161,10 @@ class Trace:
         }
 
     def done_since(self, instant: Instant) -> dict[str, float]:
-        """Work of film and loads on rotor and petals since the latest instant, by the trapezium rule [J]."""
+        """Work of film, loads and growth on rotor and petals since the latest instant, by the trapezium rule [J]."""
         before = self.last
         if before is None:
-            return {"film_step": 0.0, "load_step": 0.0, "petals_step": 0.0}
+            return {"film_step": 0.0, "load_step": 0.0, "petals_step": 0.0, "growth_step": 0.0}
         length, _, force, _ = self._units
         layout, system = self.system.problem.layout, self.system
         kept, wall = system.problem.positive, layout.unknowns[DEFLECTION]
@@ -169,7 +176,14 @@ class Trace:
         if friction is not None and before.friction is not None and instant.friction is not None:
             worn = energy_lost(friction.in_step(before.lam), before.friction, instant.friction)
         done = float(by_film @ moved + pushed @ bent)
-        return {"film_step": done * unit, "load_step": float(loads @ moved) * unit, "petals_step": worn * unit}
+        touching = float(np.sum((before.lam + instant.lam)[layout.wall.contacts.journal]))
+        grown = 0.5 * touching * (self._problem(instant).closing - self._problem(before).closing)
+        return {
+            "film_step": done * unit,
+            "load_step": float(loads @ moved) * unit,
+            "petals_step": worn * unit,
+            "growth_step": grown * unit,
+        }
 
     def column(self, name: str) -> Array:
         """One figure over all steps."""
@@ -194,6 +208,7 @@ class Trace:
         gained = gas - gas[0] + cumulative_trapezoid(outflow, time, initial=0.0)
         energy = over["kinetic_energy"] + over["elastic_energy"] - over["kinetic_energy"][0]
         missing = energy - over["load_work"] - over["film_work"] + over["petal_friction_work"]
+        missing -= np.cumsum(self.column("growth_step"))  # a journal that grows bends the petals it touches
         exchanged = np.sum(np.abs(self.column("load_step"))) + np.sum(np.abs(self.column("film_step")))
         return Audits(
             mass_balance_error=float(np.max(np.abs(gained)) / gas[0]) if gas[0] else 0.0,
@@ -214,7 +229,7 @@ class Trace:
             "phi_exposed": mesh.phi,
             "z": mesh.axial.whole_z,
         }
-        films = [problem.at(displacement=instant.e).film(instant.x) * length for instant in instants]
+        films = [self._problem(instant).film(instant.x) * length for instant in instants]
         fields: Named = {
             "frame_pressure": np.array([whole(problem.pressure(at.x)[:first] * ambient) for at in instants]),
             "frame_film_thickness": np.array([whole(film[:first]) for film in films]),

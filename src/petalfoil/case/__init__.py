@@ -11,6 +11,7 @@ In the order data flows:
 - `petal_table`: the table of the petals.
 - `gas`: the table of the gas.
 - `rotor`: the table of the rotor.
+- `growth`: the tables of shaft and bushing, and how they grow.
 - `wall_tables`: base and registry of the tables that describe a wall.
 - `free_shape`: radius of a free petal bent to an arc.
 - `measured_shape`: radius of a measured one.
@@ -27,6 +28,7 @@ All numbers are floats in SI units; texts such as ``"25 um"`` are read when a de
 from petalfoil.case.definitions import Case
 from petalfoil.case.free_shape import arc_radius, chordal_tilt
 from petalfoil.case.gas import Gas
+from petalfoil.case.growth import Bushing, Growth, Shaft
 from petalfoil.case.package import Package, package_of
 from petalfoil.case.parameters import Parameter, parameter_of, parameters_of, with_values
 from petalfoil.case.petal_table import Mount, Petals
@@ -37,9 +39,11 @@ from petalfoil.case.wall_tables import WallTable, register_table, unregister_tab
 
 __all__ = [
     "Bearing",
+    "Bushing",
     "Case",
     "Edges",
     "Gas",
+    "Growth",
     "Method",
     "Model",
     "ModelKind",
@@ -49,6 +53,7 @@ __all__ = [
     "Parameter",
     "Petals",
     "Rotor",
+    "Shaft",
     "Surface",
     "WallTable",
     "arc_radius",

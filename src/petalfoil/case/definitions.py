@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Self
 
@@ -13,6 +14,7 @@ from pydantic import Field, model_validator
 from petalfoil.case import toml
 from petalfoil.case.definition import Definition
 from petalfoil.case.gas import Gas
+from petalfoil.case.growth import Bushing, Growth, Shaft, growth_problems
 from petalfoil.case.package import Package, bearing_problems, package_of, package_problems
 from petalfoil.case.petal_table import Petals
 from petalfoil.case.problems import Problem, joined
@@ -21,6 +23,7 @@ from petalfoil.case.sections import Bearing, Model, ModelKind, Operation, Surfac
 from petalfoil.case.wall_tables import WallTable, with_table
 from petalfoil.errors import DefinitionError, PackageError
 from petalfoil.text import for_terminal
+from petalfoil.units import format_quantity
 
 # Grids whose error in the bearing force stays under 1 %: measured on the paper's foil packs (six to ten petals,
 # displaced by 100 to 280 um: at most 0.3 % in 2-D, 0.6 % in 3-D) and on plain bearings (L/D 1/2 to 2).
@@ -48,6 +51,8 @@ class Case(Definition):
 
     title: str = Field(default="", max_length=500)
     bearing: Bearing
+    shaft: Shaft | None = None
+    bushing: Bushing | None = None
     petals: Petals | None = None
     gas: Gas
     surface: Surface = Field(default_factory=Surface)
@@ -113,9 +118,20 @@ class Case(Definition):
         return None if self.petals is None else package_of(self.bearing, self.petals)
 
     @property
+    def growth(self) -> Growth:
+        """How shaft and bushing have grown (G5); nothing without their tables."""
+        return Growth.of(self.shaft, self.bushing, (self.bearing.journal_radius, self.bearing.bushing_radius))
+
+    @property
+    def grown_bearing(self) -> Bearing:
+        """The bearing with the clearance that growth leaves at the case's speed, all of it given to the journal."""
+        radius = self.bearing.journal_radius + self.growth.closing(self.operation.speed)
+        return self.bearing.model_copy(update={"journal_radius": radius})
+
+    @property
     def radial_clearance(self) -> float:
-        """Radial clearance between journal and bushing where it is narrowest, ``R_B − R_j − |e|`` [m]."""
-        return self.bearing.clearance - math.hypot(*self.operation.eccentricity)
+        """Radial clearance of journal and bushing as grown where it is narrowest, ``R_B − R_j − |e|`` [m]."""
+        return self.grown_bearing.clearance - math.hypot(*self.operation.eccentricity)
 
     @property
     def solid_height(self) -> float | None:
@@ -178,10 +194,28 @@ class Case(Definition):
         if len(self.walls) > 1:
             names = " and ".join(f"[{wall.section}]" for wall in self.walls)
             yield Problem("", f"{names} both describe the wall; allowed: one of them", names, "one of them")
-        found = list(bearing_problems(self.bearing, self.surface, self.operation))
-        yield from found
+        found = list(growth_problems(self.bearing, self.shaft))
+        if not found:
+            found = list(bearing_problems(self.bearing, self.surface, self.operation))
         if not found and self.petals is not None:
-            yield from package_problems(self.bearing, self.petals, self.surface, self.operation)
+            found = list(package_problems(self.bearing, self.petals, self.surface, self.operation))
+        yield from found or self._problems_as_grown()
+
+    def _problems_as_grown(self) -> Iterator[Problem]:
+        """Yield what fits at rest at 20 °C, but not as shaft and bushing have grown."""
+        closing, grown = self.growth.closing(self.operation.speed), self.grown_bearing
+        if closing == 0.0:
+            return
+        found = list(bearing_problems(grown, self.surface, self.operation))
+        if not found and self.petals is not None:
+            found = list(package_problems(grown, self.petals, self.surface, self.operation))
+        for problem in found:
+            text = (
+                f"shaft and bushing as grown at {format_quantity(self.operation.speed, 'rad/s')} take "
+                f"{format_quantity(closing, 'm')} of the radial clearance (see `shaft` and `bushing`): "
+                f"{problem.text}"
+            )
+            yield replace(problem, text=text)
 
     def _grid_problems(self) -> Iterator[Problem]:
         cells = self.axial_cells

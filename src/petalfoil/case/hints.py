@@ -14,11 +14,14 @@ SYNONYMS = {
     "angular_velocity": "operation.speed",
     "axial_length": "bearing.length",
     "bearing_radius": "bearing.bushing_radius",
+    "bushing_temperature": "bushing.temperature",
+    "cte": "shaft.expansion",
     "e": "petals.youngs_modulus",
     "elastic_modulus": "petals.youngs_modulus",
     "film_floor": "surface.contact_film_thickness",
     "foil_thickness": "petals.thickness",
     "inertia": "rotor.transverse_inertia",
+    "journal_temperature": "shaft.temperature",
     "leaf_count": "petals.count",
     "leaves": "petals",
     "min_film": "surface.contact_film_thickness",
@@ -34,6 +37,8 @@ SYNONYMS = {
     "roughness": "surface.contact_film_thickness",
     "rpm": "operation.speed",
     "shaft_radius": "bearing.journal_radius",
+    "shaft_temperature": "shaft.temperature",
+    "thermal_expansion": "shaft.expansion",
     "weight": "operation.load",
     "yield_stress": "petals.yield_strength",
 }
@@ -67,8 +72,8 @@ _EXPLAINED = (
     (r"groove|herringbone|texture|dimple", "Grooves and textures are not modelled: the surfaces are smooth."),
     (r"wear", "Wear is not modelled."),
     (
-        r"heat|therm|conductivity|expansion|cooling|(shaft|journal|bushing|wall|inlet)_temperature",
-        "Heat is not modelled: the gas is isothermal at gas.temperature.",
+        r"heat|therm|conductivity|cooling|(wall|inlet)_temperature",
+        "Heat is not modelled: the gas is isothermal at gas.temperature; temperatures of shaft and bushing are given.",
     ),
 )
 """Patterns of keys that no other key stands for, and what is modelled in their place; the first that fits counts."""

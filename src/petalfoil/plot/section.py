@@ -25,6 +25,7 @@ from petalfoil.plot.views import (
     Floats,
     array,
     displacement,
+    grown_radius,
     is_3d,
     journal_surface,
     mid_plane,
@@ -250,7 +251,7 @@ def _band(ds: xr.Dataset, stretch: Stretch, pressure: tuple[Floats, Shades], the
     """Base line (ambient pressure) and top of the pressure band; suction goes outside the base line."""
     ratio, shades = pressure
     drawn = stretch.radius(journal_surface(ds, theta))
-    height = _BAND * stretch.radius(np.array(number(ds, "journal_radius"))) / shades.largest
+    height = _BAND * stretch.radius(np.array(grown_radius(ds))) / shades.largest
     base = drawn - height * shades.suction
     direction = np.stack([np.cos(theta), np.sin(theta)], axis=-1)
     return base[..., None] * direction, (base - height * (ratio - 1.0))[..., None] * direction
@@ -283,7 +284,7 @@ def _draw_contacts(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
 def _draw_arrows(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
     """Draw displacement, force and rotation at the journal's centre, side by side rather than over each other."""
     e = stretch.scale * np.array(displacement(ds))
-    drawn = float(stretch.radius(np.array(number(ds, "journal_radius"))))
+    drawn = float(stretch.radius(np.array(grown_radius(ds))))
     force = np.array([number(ds, "force_x"), number(ds, "force_y")])
     size, distance = float(np.hypot(*force)), float(np.hypot(*e))
     ax.plot(0.0, 0.0, "+", color=style.INK, markersize=9, gid="centre")

@@ -140,5 +140,11 @@ def displacement(ds: xr.Dataset) -> tuple[float, float]:
 def journal_surface(ds: xr.Dataset, theta: Floats) -> Floats:
     """Radius of the displaced journal about the bushing's axis, as the film and the contacts see it [m]."""
     e_x, e_y = displacement(ds)
-    surface: Floats = number(ds, "journal_radius") + e_x * np.cos(theta) + e_y * np.sin(theta)
+    surface: Floats = grown_radius(ds) + e_x * np.cos(theta) + e_y * np.sin(theta)
     return surface
+
+
+def grown_radius(ds: xr.Dataset) -> float:
+    """Radius of the journal as the film sees it: what shaft and bushing have grown closes the clearance [m]."""
+    shaft, bushing = (number(ds, name) if name in ds else 0.0 for name in ("shaft_growth", "bushing_growth"))
+    return number(ds, "journal_radius") + shaft - bushing

@@ -27,11 +27,13 @@ class Geometry:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Position:
-    """Speed and displacement of the journal."""
+    """Speed and displacement of the journal, and how shaft and bushing have grown where the case says so."""
 
     speed: float
     eccentricity_x: float
     eccentricity_y: float
+    shaft_growth: float | None = None
+    bushing_growth: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -196,6 +196,8 @@ SCALARS: dict[str, Variable] = {
     "speed": _given("rad s-1", "angular velocity of the journal", "omega"),
     "eccentricity_x": _given("m", "displacement of the journal's centre along x", "e_x"),
     "eccentricity_y": _given("m", "displacement of the journal's centre along y", "e_y"),
+    "shaft_growth": _given("m", "growth of the journal's radius by speed and temperature", "u_s"),
+    "bushing_growth": _given("m", "growth of the bushing's radius by temperature", "u_b"),
     "load_x": _given("N", "load on the journal along x", "load_x"),
     "load_y": _given("N", "load on the journal along y", "load_y"),
     "leg": Variable(

@@ -53,6 +53,8 @@ _SHOWN: dict[str, Shown] = {
     "threshold_speed": Shown("threshold speed", "rpm", _RPM),
     "eccentricity_x": Shown("displacement x", "µm", 1e6),
     "eccentricity_y": Shown("displacement y", "µm", 1e6),
+    "shaft_growth": Shown("growth of the shaft", "µm", 1e6),
+    "bushing_growth": Shown("growth of the bushing", "µm", 1e6),
     "bearing_force": Shown("bearing force", "N"),
     "force_x": Shown("force x", "N"),
     "force_y": Shown("force y", "N"),

@@ -70,6 +70,15 @@ class BearingLayout:
         return self.unknowns.join({DEFLECTION: deflection, PRESSURE: 1.0, **initial})
 
     @cached_property
+    def _radian(self) -> float:
+        """Bearing number of a speed of 1 rad/s [s]."""
+        return self.scales.bearing_number(self.case.gas.viscosity, 1.0, self.balance.radius)
+
+    def closing(self, bearing_number: float) -> float:
+        """What growth takes from the gaps on the journal at a bearing number (G5), over the reference length [1]."""
+        return self.case.growth.closing(bearing_number / self._radian) / self.scales.length
+
+    @cached_property
     def film_rows(self) -> FilmRows:
         """The film's equations."""
         return FilmRows(self.balance)

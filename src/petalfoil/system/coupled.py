@@ -72,17 +72,24 @@ class CoupledProblem:
         """Unknowns that must stay positive: the pressures."""
         return self.layout.unknowns[PRESSURE]
 
+    @property
+    def closing(self) -> float:
+        """What growth takes from the gaps on the journal at this speed (G5), over the reference length [1]."""
+        return self.layout.closing(self.bearing_number)
+
     def gaps(self, x: Array) -> Array:
         """Gaps over the reference length, (m,) [1]."""
         contacts, h_ref = self.layout.wall.contacts, self.layout.scales.length
         moved: Array = contacts.by_e @ self.displacement + contacts.G @ x[self.layout.unknowns[DEFLECTION]]
-        return contacts.rest / h_ref + moved
+        gaps: Array = contacts.rest / h_ref + moved
+        gaps[contacts.journal] -= self.closing
+        return gaps
 
     def film(self, x: Array, shift: Array | None = None) -> Array:
         """Film thickness over the reference length; `shift` (m,) replaces `g` by `g + shift` on the journal rows."""
         wall, h_ref = self.layout.wall, self.layout.scales.length
         w = x[self.layout.unknowns[DEFLECTION]]
-        H = wall.film_thickness(w * h_ref, self.displacement * h_ref) / h_ref
+        H: Array = wall.film_thickness(w * h_ref, self.displacement * h_ref) / h_ref - self.closing
         if shift is None or not len(shift):
             return H
         return H + shift[wall.contacts.journal].reshape(H.shape)
