@@ -20,7 +20,7 @@ from petalfoil.cli.show import show_command
 from tests.docs.texts import DOCS, ROOT, SOURCE, labels_in, modules, name_of, pages, text, theory_labels
 
 FILE = re.compile(r"[\w<>.-]*/[\w<>./-]*|[\w<>-]+\.(?:py|md|toml|csv|json)")
-OF_THE_READER = {"case.toml", "result.nc"}
+OF_THE_READER = {"case.toml", "index.html", "result.nc"}
 """Files that a reader makes."""
 
 PLACES = (ROOT, SOURCE, ROOT / "examples", DOCS)

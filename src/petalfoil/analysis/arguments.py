@@ -164,7 +164,15 @@ class Pair(Argument):
 
 @dataclass(frozen=True, kw_only=True)
 class LoadVector(Argument):
-    """A load on the journal: a pair (x, y), or a single value along -y."""
+    """A load on the journal: a pair (x, y), or a single value along -y.
+
+    Attributes
+    ----------
+    unit : str
+        SI unit.
+    """
+
+    unit: str = "N"
 
     def read(self, given: Any) -> tuple[float, float]:
         """The load (x, y) [N]."""

@@ -50,6 +50,7 @@ class Case(Definition):
     """
 
     title: str = Field(default="", max_length=500)
+    """Title of the case, shown above tables and in figures; at most 500 characters."""
     bearing: Bearing
     shaft: Shaft | None = None
     bushing: Bushing | None = None

@@ -35,6 +35,7 @@ class Gas(Definition):
 
     # in the order of validation: what a name gives needs the state
     name: str | None = None
+    """Gas whose viscosity and gas constant CoolProp gives, such as `air`, `helium` or `R134a`."""
     temperature: Annotated[
         float, Quantity(unit="K", meaning="gas temperature", symbol="T", above=0.0, at_most=5000.0)
     ] = Field(default=293.15, validate_default=True)
@@ -44,9 +45,11 @@ class Gas(Definition):
     viscosity: Annotated[
         float, Quantity(unit="Pa*s", meaning="dynamic viscosity", symbol="mu", above=0.0, at_most=10.0)
     ] = Field(default=UNSET, validate_default=True)
+    """Required unless the gas has a name."""
     gas_constant: Annotated[
         float, Quantity(unit="J/(kg*K)", meaning="specific gas constant", symbol="R_g", above=0.0, at_most=1e5)
     ] = Field(default=UNSET, validate_default=True)
+    """That of air, 287.05 J/(kg K), unless the gas has a name."""
 
     @property
     def ambient_density(self) -> float:

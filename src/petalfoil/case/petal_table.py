@@ -48,6 +48,7 @@ class Petals(WallTable):
         float, Quantity(unit="m", meaning="coating thickness", symbol="delta_c", at_least=0.0, at_most=0.1)
     ] = 0.0
     free_shape: Annotated[tuple[tuple[_Angle, _Radius], ...], BeforeValidator(as_shape)] | None = None
+    """Rows `[angle, radius]`, or the name of a CSV file of them."""
     free_shape_tolerance: Annotated[
         float,
         Quantity(
@@ -61,13 +62,16 @@ class Petals(WallTable):
         ]
         | None
     ) = Field(default=None, validate_default=True)
+    """Required without a measured free shape, from which it follows."""
     root_tilt: Annotated[
         float | Literal["chordal"],
         QuantityOrWord(
             unit="rad", meaning="root tilt from the bore's tangent", symbol="psi", above=-1.5, below=1.5, word="chordal"
         ),
     ] = "chordal"
+    """With `"chordal"` the free edge of the free petal lies on the bore (G4)."""
     mount: Mount
+    """Root free to turn, or clamped."""
     youngs_modulus: Annotated[
         float, Quantity(unit="Pa", meaning="Young's modulus", symbol="E_y", above=0.0, at_most=1e13)
     ]
@@ -80,6 +84,7 @@ class Petals(WallTable):
         Annotated[float, Quantity(unit="Pa", meaning="yield strength", symbol="sigma_y", above=0.0, at_most=1e11)]
         | None
     ) = None
+    """Without it, stress above 2 GPa is warned of."""
 
     @property
     def total_thickness(self) -> float:

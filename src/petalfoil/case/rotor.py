@@ -44,6 +44,7 @@ class Rotor(Definition):
         ]
         | None
     ) = None
+    """Without it there is one bearing, and the rotor moves parallel to its axis."""
     transverse_inertia: Annotated[
         float,
         Quantity(unit="kg*m^2", meaning="moment of inertia about a diameter", symbol="I_t", at_least=0.0, at_most=1e9),
@@ -71,6 +72,7 @@ class Rotor(Definition):
         ]
         | None
     ) = None
+    """That of the shaft unless given; negative against the shaft's."""
 
     @property
     def lever(self) -> float:

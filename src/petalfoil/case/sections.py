@@ -84,7 +84,9 @@ class Operation(Definition):
         float, Quantity(unit="rad/s", meaning="angular speed", symbol="omega", at_least=0.0, at_most=MAX_SPEED)
     ]
     eccentricity: Annotated[tuple[_Displacement, _Displacement], BeforeValidator(as_pair)] = (0.0, 0.0)
+    """Components `[x, y]`."""
     load: Annotated[tuple[_Force, _Force], BeforeValidator(as_load)] | None = None
+    """Components `[x, y]`, or one value along -y. Give a load or an eccentricity: one follows from the other."""
 
 
 class ModelKind(StrEnum):
@@ -114,9 +116,13 @@ class Model(Definition):
     section: ClassVar[str] = "model"
 
     kind: ModelKind
+    """Infinitely long without side leakage, or of finite length."""
     edges: Edges = Edges.AMBIENT
+    """Pressure at the edges of a petal's film: ambient, or continuous across the step."""
     cells_per_pitch: Annotated[int, Count(meaning="cells per pitch", at_least=4, at_most=4096)] | None = None
+    """128 in 2-D and 64 in 3-D unless given; of a plain bearing 128 round the circle."""
     axial_cells: Annotated[int, Count(meaning="cells over the whole length", at_least=2, at_most=512)] | None = None
+    """24 unless given, of a plain bearing 32; of no effect in 2-D."""
     axial_grading: (
         Annotated[
             float,
@@ -124,6 +130,10 @@ class Model(Definition):
         ]
         | None
     ) = None
+    """0 unless given, of a plain bearing 0.6; of no effect in 2-D."""
     symmetry: StrictBool = True
+    """Solve half of the length in 3-D."""
     slip: StrictBool = False
+    """First-order slip at the walls of the film (F7)."""
     method: Method = Method.NEWTON
+    """Film, petals and contacts together by Newton's method, or the paper's relaxation."""

@@ -1,0 +1,107 @@
+"""Every key of a case, read from its definitions: unit, range, default, meaning."""
+
+from __future__ import annotations
+
+import inspect
+import typing
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+from pydantic.fields import FieldInfo
+from pydantic_core import PydanticUndefined
+
+from petalfoil.case import Case
+from petalfoil.case.definition import Definition
+from petalfoil.case.number_fields import Count, Quantity, QuantityOrWord
+from petalfoil.units.writing import format_quantity
+from petalfoil.walls import wall_kinds
+
+
+@dataclass(frozen=True)
+class Key:
+    """One key of a case."""
+
+    name: str
+    symbol: str
+    unit: str
+    allowed: str
+    default: str
+    meaning: str
+
+
+def sections() -> dict[str, type[Definition]]:
+    """Definitions of the tables of a case by name: those that every case knows, and those of further walls."""
+    found = {name: definition for name, field in Case.model_fields.items() if (definition := _definition(field))}
+    tables = [kind.table for kind in wall_kinds() if kind.table is not None]
+    return found | {table.section: table for table in tables}
+
+
+def keys(definition: type[Definition], prefix: str = "") -> Iterator[Key]:
+    """The keys of a table; those of a table inside it are dotted."""
+    for name, field in definition.model_fields.items():
+        inner = _definition(field)
+        if inner is None:
+            yield _key(prefix + name, field)
+        elif definition is not Case:
+            yield from keys(inner, f"{prefix}{name}.")
+
+
+def _key(name: str, field: FieldInfo) -> Key:
+    declared = list(_parts(field.annotation, field.metadata))
+    numbers = [part for part in declared if isinstance(part, Quantity | Count)]
+    words = [part for part in declared if inspect.isclass(part) and issubclass(part, StrEnum)]
+    number = numbers[0] if numbers else None
+    said = [part for part in (number.meaning if number else "", _flow(field.description)) if part]
+    return Key(
+        name=name,
+        symbol=", ".join(dict.fromkeys(part.symbol for part in numbers if part.symbol)),
+        unit=", ".join(dict.fromkeys(getattr(part, "unit", "1") for part in numbers)),
+        allowed=_allowed(number, words, declared),
+        default=_default(field, getattr(number, "unit", "")),
+        meaning=". ".join(text[:1].upper() + text[1:].rstrip(".") for text in said),
+    )
+
+
+def _allowed(number: Quantity | Count | None, words: list[type[StrEnum]], declared: list[Any]) -> str:
+    if words:
+        return ", ".join(f'`"{member}"`' for member in words[0])
+    if number is None:
+        return "`true`, `false`" if any(getattr(part, "__name__", "") == "bool" for part in declared) else "text"
+    bounds = number.bounds(getattr(number, "unit", "1")) or "any"
+    return f'{bounds}, or `"{number.word}"`' if isinstance(number, QuantityOrWord) else bounds
+
+
+def _default(field: FieldInfo, unit: str) -> str:
+    value = field.get_default(call_default_factory=True) if not field.is_required() else PydanticUndefined
+    if value is PydanticUndefined:
+        return "required"
+    if value is None:
+        return "–"
+    if isinstance(value, bool):
+        return f"`{str(value).lower()}`"
+    if isinstance(value, str):
+        return f'`"{value}"`'
+    if isinstance(value, tuple):
+        return ", ".join(format_quantity(entry, unit) for entry in value)
+    return format_quantity(value, unit) if unit else f"{value}"
+
+
+def _definition(field: FieldInfo) -> type[Definition] | None:
+    """The definition of a table that a field holds, optional or not."""
+    kinds = (field.annotation, *typing.get_args(field.annotation))
+    return next((kind for kind in kinds if inspect.isclass(kind) and issubclass(kind, Definition)), None)
+
+
+def _parts(annotation: Any, metadata: list[Any]) -> Iterator[Any]:
+    """Everything that an annotation is made of, and what is declared beside it."""
+    yield from metadata
+    yield annotation
+    yield from getattr(annotation, "__metadata__", ())
+    for inner in typing.get_args(annotation):
+        yield from _parts(inner, [])
+
+
+def _flow(text: str | None) -> str:
+    return " ".join((text or "").split())

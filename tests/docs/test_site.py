@@ -1,0 +1,71 @@
+"""The site is complete: pages are listed, keys described, analyses and figures shown in the gallery."""
+
+from __future__ import annotations
+
+import re
+import runpy
+from pathlib import Path
+
+import pytest
+import xarray as xr
+from matplotlib.figure import Figure
+
+from petalfoil import plot
+from petalfoil.analysis import known_verbs
+from petalfoil.case import Case
+from tests.docs.site import GALLERY, extension, listed
+from tests.docs.texts import DOCS, text
+
+NO_FIGURES = {"animate", "register", "save", "summary"}
+"""Names of `petalfoil.plot` that draw no figure of their own."""
+
+
+def test_every_page_stands_in_a_table_of_contents() -> None:
+    written = set(DOCS.rglob("*.md")) - {DOCS / "index.md"}
+    lost = sorted(path.relative_to(DOCS).as_posix() for path in written - listed() if "gallery" not in path.parts)
+    assert lost == [], "move them to docs/how-to or docs/tutorials, or name them in an index.md"
+
+
+def test_every_key_of_a_case_is_described() -> None:
+    case_keys = extension("case_keys")
+    described = list(case_keys.keys(Case))
+    for name, definition in case_keys.sections().items():
+        described += case_keys.keys(definition, f"{name}.")
+    assert len(described) > 40
+    assert [key.name for key in described if not key.meaning] == [], "write a text below the key in its definition"
+
+
+def test_the_reference_reads_units_ranges_and_defaults() -> None:
+    case_keys = extension("case_keys")
+    keys = {key.name: key for section in case_keys.sections().values() for key in case_keys.keys(section)}
+    thickness = keys["contact_film_thickness"]
+    assert (thickness.symbol, thickness.unit, thickness.default) == ("h_c", "m", "1 µm")
+    assert thickness.allowed == "greater than 0 m and at most 0.01 m"
+    assert keys["mount"].allowed == '`"hinged"`, `"clamped"`'
+    assert keys["mount"].default == "required"
+    assert keys["root_tilt"].allowed.endswith('or `"chordal"`')
+    assert keys["root_tilt"].default == '`"chordal"`'
+    assert (keys["load"].unit, keys["load"].default) == ("N", "–")
+    assert keys["symmetry"].allowed == "`true`, `false`"
+
+
+def test_every_analysis_has_a_script_in_the_gallery() -> None:
+    shown = {path.stem.removeprefix("plot_") for path in GALLERY}
+    assert set(known_verbs.summaries()) - shown == set(), "add examples/gallery/plot_<verb>.py"
+
+
+def test_every_figure_is_in_the_gallery() -> None:
+    drawn = {name for path in GALLERY for name in re.findall(r"\bplot\.(\w+)\(", text(path))}
+    assert set(plot.__all__) - NO_FIGURES - drawn == set()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", GALLERY, ids=lambda path: path.stem)
+def test_a_script_of_the_gallery_draws_converged_results(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(path.parent)
+    names = runpy.run_path(str(path))
+    result = names["result"]
+    assert isinstance(result, xr.Dataset)
+    assert path.stem in {f"plot_{result.attrs['analysis']}", "plot_maps"}
+    assert "converged" not in result or bool(result["converged"].all())
+    assert any(isinstance(value, Figure) for value in names.values())

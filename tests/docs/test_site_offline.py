@@ -1,0 +1,129 @@
+"""The built site: no warning, no dead link, and no request to another server when a browser loads every page."""
+
+from __future__ import annotations
+
+import functools
+import http.server
+import shutil
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+from urllib.parse import unquote, urlsplit
+
+import pytest
+
+from tests.docs.texts import DOCS, ROOT
+
+pytestmark = pytest.mark.slow
+
+pytest.importorskip("sphinx", reason="needs petalfoil[docs]")
+playwright = pytest.importorskip("playwright.sync_api", reason="needs petalfoil[docs]")
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+QUIET = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking"]
+QUIET += ["--disable-component-update", "--disable-sync"]
+
+
+class Page(HTMLParser):
+    """Anchors and links of a page."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.anchors: set[str] = set()
+        self.links: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Collect what a tag names and where it leads."""
+        given = dict(attrs)
+        self.anchors |= {value for name in ("id", "name") if (value := given.get(name))}
+        self.links += [value for name in ("href", "src") if (value := given.get(name))]
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The site, built as `make docs` builds it."""
+    folder = tmp_path_factory.mktemp("site")
+    command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-b", "html", "-d", str(folder / "trees")]
+    built = subprocess.run([*command, str(DOCS), str(folder / "html")], capture_output=True, text=True, cwd=ROOT)
+    assert built.returncode == 0, built.stderr
+    return folder / "html"
+
+
+@pytest.fixture(scope="module")
+def pages(site: Path) -> dict[Path, Page]:
+    """The pages of the site."""
+    written = [path for path in sorted(site.rglob("*.html")) if "_static" not in path.parts]
+    return {path: Page(path.read_text(encoding="utf-8")) for path in written}
+
+
+@pytest.fixture
+def address(site: Path) -> Iterator[str]:
+    """Address of the site on a server of this machine."""
+    handler = functools.partial(Silent, directory=str(site))
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_address[1]}"
+        server.shutdown()
+
+
+class Silent(http.server.SimpleHTTPRequestHandler):
+    """A server of files that writes no log."""
+
+    def log_message(self, format: str, *args: Any) -> None:
+        """Say nothing."""
+
+
+def test_all_links_inside_the_site_resolve(pages: dict[Path, Page]) -> None:
+    assert len(pages) > 50
+    lost = []
+    for path, page in pages.items():
+        for link in page.links:
+            parts = urlsplit(link)
+            if parts.scheme or parts.netloc:
+                continue
+            target = (path.parent / unquote(parts.path)).resolve() if parts.path else path
+            anchors = pages[target].anchors if target in pages else None
+            if not target.exists() or (parts.fragment and anchors is not None and parts.fragment not in anchors):
+                lost.append((path.name, link))
+    assert lost == []
+
+
+def test_the_search_knows_keys_and_commands(site: Path) -> None:
+    index = (site / "searchindex.js").read_text(encoding="utf-8")
+    assert "bend_radius" in index
+    assert "liftoff" in index
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
+def test_no_page_asks_another_server_and_no_script_fails(address: str, site: Path, pages: dict[Path, Page]) -> None:
+    outside: list[str] = []
+    problems: list[str] = []
+
+    def answer(route: Any) -> None:
+        if route.request.url.startswith((address, "data:", "blob:")):
+            route.continue_()
+        else:
+            outside.append(route.request.url)
+            route.abort()
+
+    with playwright.sync_playwright() as play:
+        browser = play.chromium.launch(executable_path=CHROMIUM, args=QUIET)
+        tab = browser.new_page()
+        tab.route("**/*", answer)
+        tab.on("pageerror", lambda error: problems.append(f"{tab.url}: {error}"))
+        tab.on("response", lambda got: problems.append(f"{got.status}: {got.url}") if got.status >= 400 else None)
+        for path in pages:
+            tab.goto(f"{address}/{path.relative_to(site).as_posix()}", wait_until="load")
+        tab.goto(f"{address}/theory.html", wait_until="load")
+        tab.wait_for_selector("mjx-container svg", timeout=60_000)
+        formulas = tab.locator("mjx-container").count()
+        broken = tab.locator("mjx-container [data-mml-node='merror']").count()
+        browser.close()
+    assert (outside, problems) == ([], [])
+    assert formulas > 100
+    assert broken == 0
