@@ -76,7 +76,7 @@ def grid_of(case: Case) -> Grid:
     """The grid of a case."""
     package, axial = case.package, 0 if case.model.kind is ModelKind.TWO_D else case.axial_cells
     count, overlap = (0, 0.0) if package is None else (package.count, package.overlap)
-    return Grid(count, overlap, case.cells_per_pitch, axial, case.model.symmetry)
+    return Grid(count, overlap, case.cells_per_pitch, axial, case.symmetric)
 
 
 def check_memory(case: Case, bearings: int = 1) -> None:

@@ -45,6 +45,8 @@ BEARINGS: dict[str, tuple[str, str, str, bool]] = {
     "stepped petals, 2d": ("paper_n8", "2d", "continuous", True),
     "stepped petals, half": ("paper_n8", "3d", "continuous", True),
     "stepped petals, whole": ("paper_n8", "3d", "continuous", False),
+    "tilted petals, whole": ("paper_n8", "3d", "ambient", True),
+    "tilting petals, whole": ("paper_n8", "3d", "continuous", True),
     "slipping plain, 2d": ("plain_journal", "2d", "ambient", True),
     "slipping plain, half": ("plain_journal", "3d", "ambient", True),
     "slipping petals, half": ("paper_n8", "3d", "ambient", True),
@@ -54,6 +56,11 @@ BEARINGS: dict[str, tuple[str, str, str, bool]] = {
 
 THIN = {"model.slip": True, "gas.ambient_pressure": 2e3}
 """The mean free path is 3.4 um: Knudsen numbers of 0.1 to 0.3 on the reference films."""
+
+
+TILTED = {"operation.tilt": (3e-4, -2e-4)}
+TILTING = {"operation.moment": (0.0, 0.0)}
+"""A journal that is held at slopes, and one that is free to tilt."""
 
 
 def bearing(name: str) -> Case:
@@ -66,6 +73,8 @@ def bearing(name: str) -> Case:
         "model.cells_per_pitch": 6 if example.startswith("paper") else 16,
         "model.axial_cells": 4,
         **(THIN if name.startswith("slipping") else {}),
+        **(TILTED if name.startswith("tilted") else {}),
+        **(TILTING if name.startswith("tilting") else {}),
     }
     return case(example, **changes)
 

@@ -304,6 +304,15 @@ Direction: TypeAlias = Annotated[
     float, Quantity(unit="rad", metavar="ANGLE", help="Direction of the displacements, from x toward y.")
 ]
 Load: TypeAlias = Annotated[tuple[float, float] | None, LoadVector(also="loads", metavar="LOAD", help=LOAD_HELP)]
+Moment: TypeAlias = Annotated[
+    tuple[float, float] | None,
+    Pair(
+        unit="N*m",
+        metavar="X,Y",
+        help='Moment on the journal about the bearing\'s centre, toward x and y: "0 N*m, 0.1 N*m"; the journal is '
+        "then free to tilt.",
+    ),
+]
 Loads: TypeAlias = Annotated[
     Sequence[float] | None,
     Values(unit="N", metavar="LIST", help='Several loads along -y instead of one: "10 N, 20 N".', above=0.0),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from petalfoil.analysis.arguments import Load, Speed
+from petalfoil.analysis.arguments import Load, Moment, Speed
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.operating_point import ForceResidual, applied_load, at, under_load
@@ -28,11 +28,19 @@ class CarriedBy:
 
 
 @analysis(Point(), error_bars=True)
-def balance(case: Case, load: Load = None, *, speed: Speed = None, progress: Progress | None = None) -> Record:
+def balance(
+    case: Case,
+    load: Load = None,
+    *,
+    moment: Moment = None,
+    speed: Speed = None,
+    progress: Progress | None = None,
+) -> Record:
     """Find the position of the journal under a load.
 
     Results as from solve, at that position. A load that the film does not
     carry alone is an answer too: "carried by" tells what solid contact carries.
+    Under a moment about the bearing's centre the journal tilts as well.
 
     Example: petalfoil balance case.toml --load "0 N, -50 N" --speed "60000 rpm"
 
@@ -44,9 +52,13 @@ def balance(case: Case, load: Load = None, *, speed: Speed = None, progress: Pro
         No position was found.
     """
     case, wanted = at(case, speed, (0.0, 0.0)), applied_load(case, load)
+    if moment is not None:
+        case = case.replace(**{"operation.moment": moment, "operation.tilt": None})
     with running(progress, "balance") as run:
         found, known = under_load(case, wanted)
-        return balance_record("balance", case, found, AppliedLoad.of(wanted), known, effort(run.seconds))
+        return balance_record(
+            "balance", case, found, AppliedLoad.of(wanted, case.operation.moment), known, effort(run.seconds)
+        )
 
 
 def balance_record(analysis: str, case: Case, found: Solution, *parts: object) -> Record:

@@ -47,7 +47,9 @@ def check(case: Case) -> Record:
     derived = (*geometry(case), asked_position(case), bearing_numbers(case), kind.check_scalars(case))
     if not kind.can(Capability.PACK):
         return record_of("check", case, *derived, history=[])
-    slow = case.replace(**{"model.kind": ModelKind.TWO_D, "operation.speed": 0.0})
+    slow = case.replace(
+        **{"model.kind": ModelKind.TWO_D, "operation.speed": 0.0, "operation.tilt": None, "operation.moment": None}
+    )
     with running() as run:
         answer = rest(build_problem(slow))
     if answer is None:

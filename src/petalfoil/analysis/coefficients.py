@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from petalfoil.analysis.arguments import TURNING_ONLY, Load, Name, Quantity, Speed, Speeds, Values, Whole
+from petalfoil.analysis.arguments import TURNING_ONLY, Flag, Load, Name, Quantity, Speed, Speeds, Values, Whole
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.declaration import Export, analysis
 from petalfoil.analysis.evaluation import Evaluation
@@ -18,6 +18,7 @@ from petalfoil.analysis.operating_point import OperatingPoint, Vector, at, opera
 from petalfoil.analysis.records import effort, failed_record, geometry, position, record_of
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
+from petalfoil.analysis.tilted_journal import free_to_tilt, held, whole_length
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, current_run, running
 from petalfoil.errors import ConvergenceError, UsageError
@@ -26,7 +27,8 @@ from petalfoil.results.parts import AppliedLoad, Outcome
 from petalfoil.results.record import Record
 from petalfoil.results.ross import LEAST_POINTS, ross_frequencies
 from petalfoil.results.schema import Variable
-from petalfoil.results.summary import cell, number
+from petalfoil.results.summary import ABSENT, cell, number
+from petalfoil.system.build import lever_of
 from petalfoil.walls import Capability, required
 
 Frequencies = Annotated[
@@ -49,15 +51,17 @@ Amplitude = Annotated[
         above=0.0,
     ),
 ]
+Tilt = Annotated[bool, Flag(help="Also those of the slopes of the journal's axis: 4 by 4, the whole length.")]
 MATRICES = {"stiffness": ("K", "N/m"), "damping": ("C", "N s/m")}
 
 
 @dataclass(frozen=True)
 class Asked:
-    """Whirl frequencies [rad/s], and the amplitude at which petals rub [m]."""
+    """Whirl frequencies [rad/s], the amplitude at which petals rub [m], and whether the journal tilts too."""
 
     frequencies: Array
     amplitude: float | None
+    tilt: bool = False
 
 
 @dataclass(frozen=True)
@@ -74,10 +78,34 @@ class Contact:
     contact_fraction: float
 
 
+TILT_BLOCKS = {
+    "force_tilt": (slice(0, 2), slice(2, 4), ("N rad-1", "N s rad-1"), "on the force, of the slopes of the axis"),
+    "moment_displacement": (slice(2, 4), slice(0, 2), ("N", "N s"), "on the moment, of the displacement"),
+    "moment_tilt": (slice(2, 4), slice(2, 4), ("N m rad-1", "N m s rad-1"), "on the moment, of the slopes of the axis"),
+}
+"""Blocks of the stiffness and damping of a journal that tilts beside those of force and displacement: their name, rows
+and columns, units, and what they are."""
+
+
+def blocks(case: Case, pairs: list[tuple[Array, Array]]) -> dict[str, Array]:
+    """Stiffness and damping at each frequency by name, (frequency, 2, 2) each; of a journal that tilts all blocks."""
+    both = {"stiffness": np.array([K for K, _ in pairs]), "damping": np.array([C for _, C in pairs])}
+    fields = {name: matrix[:, :2, :2] for name, matrix in both.items()}
+    if next(iter(both.values())).shape[1] == 2:
+        return fields
+    lever = np.array([1.0, 1.0, lever_of(case), lever_of(case)])  # of slopes, and of moments
+    for name, matrix in both.items():
+        scaled = matrix * lever[:, None] * lever
+        fields |= {f"{name}_{block}": scaled[:, row, col] for block, (row, col, _, _) in TILT_BLOCKS.items()}
+    return fields
+
+
 def entry(name: str, row: int, column: int) -> Callable[[Record, int], Cell]:
     """One entry of a matrix at each frequency, and its error bar where it has one."""
 
     def read(record: Record, index: int) -> Cell:
+        if name not in record.fields:
+            return ABSENT
         value, bars = float(record.fields[name][index][row][column]), record.fields.get(f"{name}_error")
         return value if bars is None else f"{number(value)} ± {number(float(bars[index][row][column]))}"
 
@@ -96,10 +124,21 @@ TABLE = ArrayTable(
             for row in (0, 1)
             for column in (0, 1)
         },
+        **{
+            f"{letter}_{'ab'[row]}{'ab'[column]}\n{unit}": entry(f"{name}_moment_tilt", row, column)
+            for name, letter, unit in (("stiffness", "K", "N m"), ("damping", "C", "N m s"))
+            for row in (0, 1)
+            for column in (0, 1)
+        },
     },
 )
 LISTS = ("whirl_frequency", *MATRICES)
 _ENTRIES = ("whirl_frequency", "row", "column")
+TILTING = {
+    f"{name}_{block}": Variable(_ENTRIES, unit[number], f"{name} {words}", f"{letter}_{symbol}")
+    for number, (name, letter) in enumerate((("stiffness", "K"), ("damping", "C")))
+    for (block, (_, _, unit, words)), symbol in zip(TILT_BLOCKS.items(), ("Fa", "Me", "Ma"), strict=True)
+}
 ERROR_BARS = {
     "stiffness_error": Variable(_ENTRIES, "N m-1", "error bar of the stiffness, from a grid study", "dK"),
     "damping_error": Variable(_ENTRIES, "N s m-1", "error bar of the damping, from a grid study", "dC"),
@@ -174,11 +213,11 @@ EXPORTS = (
 
 
 @analysis(
-    Point(lists=LISTS, histories=tuple(ERROR_BARS), table=TABLE),
-    Series(lists=LISTS, histories=tuple(ERROR_BARS), table=TABLE, at=at_speed),
+    Point(lists=LISTS, histories=(*ERROR_BARS, *TILTING), table=TABLE),
+    Series(lists=LISTS, histories=(*ERROR_BARS, *TILTING), table=TABLE, at=at_speed),
     exports=EXPORTS,
     excludes={"speed": ("speeds",)},
-    results=ERROR_BARS,
+    results={**ERROR_BARS, **TILTING},
     error_bars=True,
 )
 def coefficients(  # noqa: PLR0913 - the options of the verb
@@ -189,6 +228,7 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
     speed: Speed = None,
     speeds: Speeds = None,
     amplitude: Amplitude = None,
+    tilt: Tilt = False,
     progress: Progress | None = None,
 ) -> Record | Points:
     """Find stiffness and damping at whirl frequencies, at one speed or several.
@@ -198,7 +238,8 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
     the journal: dF = -(K + i W C) de for a whirl de exp(i W t). Petals with
     friction stick, or rub in cycles of the --amplitude. Where petals lie on
     each other along stretches, stiffness is known to several per cent, small
-    damping to half of it: compare two grids.
+    damping to half of it: compare two grids. With --tilt the slopes of the
+    journal's axis and the moments about the bearing's centre are added.
 
     Example: petalfoil coefficients case.toml --frequency "4000 rad/s, 8000 rad/s"
 
@@ -213,7 +254,7 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
     turn = list(speeds) if speeds is not None else [at(case, speed).operation.speed]
     if not all(omega > 0.0 for omega in turn):
         raise UsageError("coefficients need a turning shaft: give speeds above zero")
-    asked = Asked(np.array(turn if frequencies is None else frequencies, dtype=float), amplitude)
+    asked = Asked(np.array(turn if frequencies is None else frequencies, dtype=float), amplitude, tilt)
     check_amplitude(case, asked)
     cases = [at(case, omega) for omega in turn]
     if speeds is None:
@@ -265,8 +306,9 @@ def point(case: Case, asked: Asked, load: Vector | None) -> Record:
         The operating point was not found, or the pack is bottomed out.
     """
     speed = case.operation.speed
-    found = operating_point(case, load)
-    motion, sliding = elastic(case, found.answer), sliding_at(case, found.answer)
+    found = operating_point(whole_length(case) if asked.tilt else case, load)
+    answer = free_to_tilt(case, found.answer) if asked.tilt else held(case, found.answer)
+    motion, sliding = elastic(case, answer), sliding_at(case, answer)
     if asked.amplitude is None or sliding is None:
         pairs = impedances(motion, asked.frequencies, speed)
     else:
@@ -280,7 +322,7 @@ def point(case: Case, asked: Asked, load: Vector | None) -> Record:
         Amplitudes(asked.amplitude),
         Outcome(residual=found.answer.residual),
         cost,
-        fields={"stiffness": np.array([K for K, _ in pairs]), "damping": np.array([C for _, C in pairs])},
+        fields=dict(blocks(case, pairs)),
         coords={"whirl_frequency": asked.frequencies, "row": np.arange(2), "column": np.arange(2)},
     )
 

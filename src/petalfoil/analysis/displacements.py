@@ -9,6 +9,7 @@ import numpy as np
 
 from petalfoil.analysis.operating_point import at
 from petalfoil.case import Case
+from petalfoil.errors import UsageError
 
 CHARACTERISTIC = {
     "eccentricity_x": "e_x",
@@ -28,6 +29,16 @@ CHARACTERISTIC = {
 
 
 def displaced(case: Case, distances: Sequence[float], direction: float, speed: float | None) -> list[Case]:
-    """The case at every displacement [m] along a direction [rad], each checked."""
+    """The case at every displacement [m] along a direction [rad], each checked.
+
+    Raises
+    ------
+    UsageError
+        The case gives a moment, under which the journal is free to tilt.
+    """
+    if case.operation.moment is not None:
+        raise UsageError(
+            "operation.moment is balanced, and here the journal is held in place: give its slopes, operation.tilt"
+        )
     n = np.round([math.cos(direction), math.sin(direction)], 15)  # -90 deg means straight down
     return [at(case, speed, (float(e * n[0]), float(e * n[1]))) for e in distances]

@@ -70,19 +70,30 @@ class Evaluation:
         problem, total = self.answer.problem, self.normal_force
         unit = problem.layout.scales.force
         by_film, by_contact = problem.film_force(self.answer.x) * unit, problem.contact_force(self.answer.lam) * unit
-        force = by_film + by_contact
+        force = (by_film + by_contact)[:2]
+        moment_x, moment_y = self._moment()
         return Forces(
             force_x=float(force[0]),
             force_y=float(force[1]),
             bearing_force=float(np.hypot(*force)),
-            attitude_angle=attitude_angle(force, problem.displacement),
+            attitude_angle=attitude_angle(force, problem.displacement[:2]),
             film_force_x=float(by_film[0]),
             film_force_y=float(by_film[1]),
             contact_force_x=float(by_contact[0]),
             contact_force_y=float(by_contact[1]),
             contact_normal_force=total,
             contact_fraction=self.contact_fraction,
+            moment_x=moment_x,
+            moment_y=moment_y,
         )
+
+    def _moment(self) -> tuple[float, float] | tuple[None, None]:
+        """Moment on the journal about the bearing's centre (J7) [N m]; None of an axis that is parallel by itself."""
+        operation, answer = self.case.operation, self.answer
+        if operation.tilt is None and operation.moment is None:
+            return None, None
+        x, y = answer.problem.journal_moment(answer.x, answer.lam) * answer.problem.layout.scales.force
+        return float(x), float(y)
 
     def film(self) -> Film:
         """Extremes of film and pressure, friction and leakage."""

@@ -177,7 +177,7 @@ def _shared(case: Case, coarsest: int) -> tuple[int, int]:
 def _can_be_halved(case: Case, cells: int, axial: int) -> bool:
     if cells % 2 or cells // 2 < LEAST_CELLS[case.model.kind]:
         return False
-    step = 4 if case.model.symmetry else 2  # half the length takes half the cells
+    step = 4 if case.symmetric else 2  # half the length takes half the cells
     return case.model.kind is ModelKind.TWO_D or (axial % step == 0 and axial // 2 >= LEAST_AXIAL)
 
 

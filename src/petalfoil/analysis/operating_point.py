@@ -25,6 +25,7 @@ from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.parts import AppliedLoad, Branch
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.loaded import load_of
 from petalfoil.walls import Capability, wall_kind
 
 Vector = tuple[float, float]
@@ -77,7 +78,9 @@ def operating_point(case: Case, load: Vector | None) -> OperatingPoint:
         return at_position(case)
     wanted = applied_load(case, load)
     found, known = under_load(at(case, eccentricity=(0.0, 0.0)), wanted)
-    return OperatingPoint(found, known, (AppliedLoad.of(wanted), ForceResidual(found.force_residual)))
+    return OperatingPoint(
+        found, known, (AppliedLoad.of(wanted, case.operation.moment), ForceResidual(found.force_residual))
+    )
 
 
 def at(case: Case, speed: float | None = None, eccentricity: Vector | None = None) -> Case:
@@ -108,7 +111,7 @@ def under_load(case: Case, load: Vector) -> tuple[Solution, Branch]:
     """
     problem = build_problem(case)
     try:
-        found = balance_cold(problem, np.array(load) / case.bearings / problem.layout.scales.force)
+        found = balance_cold(problem, load_of(case, load, problem.layout))
     except ConvergenceError as failure:
         raise beyond_capacity(problem, load, failure) from failure
     rate = leading_eigenvalue(found)
@@ -138,10 +141,10 @@ def beyond_capacity(problem: CoupledProblem, load: Vector, failure: ConvergenceE
     failure : ConvergenceError
         Why it has no balance; returned where a smaller load has none either, or the film carries it.
     """
-    shared = np.array(load) / problem.layout.case.bearings
+    whole = load_of(problem.layout.case, load, problem.layout)
     for fraction in SMALLER_LOADS if np.any(load) else ():
         try:
-            found = balance_cold(problem, fraction * shared / problem.layout.scales.force)
+            found = balance_cold(problem, fraction * whole)
         except ConvergenceError:
             continue
         carried = Evaluation.of(problem.layout.case, found).contact_fraction
@@ -165,6 +168,10 @@ def at_position(case: Case) -> OperatingPoint:
     ConvergenceError
         Neither a cold start nor the continuation from zero speed found one.
     """
+    if case.operation.moment is not None:
+        raise UsageError(
+            "operation.moment is balanced together with a load: give one, or the slopes operation.tilt in its place"
+        )
     problem = build_problem(case)
     found = list(filter(None, [by_barriers(problem)]))
     rates = [leading_eigenvalue(answer) for answer in found]

@@ -13,6 +13,7 @@ from petalfoil.equilibrium.run_context import HistoryRow, RunContext, current_ru
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.results.parts import Branch, Effort, Geometry, Outcome, Position, scalars_of
 from petalfoil.results.record import Array, Record
+from petalfoil.system.build import lever_of
 from petalfoil.walls import wall_kind
 
 
@@ -78,23 +79,29 @@ def geometry(case: Case) -> tuple[object, ...]:
 
 def asked_position(case: Case) -> Position:
     """Speed and displacement that the case asks for."""
-    return position_at(case, np.array(case.operation.eccentricity))
+    return position_at(case, np.array(case.operation.eccentricity), case.operation.tilt)
 
 
 def position(case: Case, answer: Solution) -> Position:
     """Speed of the case and displacement of a solution."""
-    return position_at(case, answer.problem.displacement * answer.problem.layout.scales.length)
+    e, tilt = answer.problem.displacement * answer.problem.layout.scales.length, case.operation.tilt
+    if case.operation.moment is not None:
+        a_x, a_y = e[2:] / lever_of(case)
+        tilt = (float(a_x), float(a_y))
+    return position_at(case, e, tilt)
 
 
-def position_at(case: Case, e: Array) -> Position:
-    """The displacement `e` [m] at the speed of the case, and how shaft and bushing have grown there."""
-    speed = case.operation.speed
+def position_at(case: Case, e: Array, tilt: tuple[float, float] | None) -> Position:
+    """The displacement `e` [m] and the `tilt` [rad] at the speed of the case, and the growth there."""
+    speed, (tilt_x, tilt_y) = case.operation.speed, tilt or (None, None)
     return Position(
         speed=speed,
         eccentricity_x=float(e[0]),
         eccentricity_y=float(e[1]),
         shaft_growth=None if case.shaft is None else case.growth.journal(speed),
         bushing_growth=None if case.bushing is None else case.growth.bushing,
+        tilt_x=tilt_x,
+        tilt_y=tilt_y,
     )
 
 

@@ -113,6 +113,11 @@ def first_position(case: Case, request: OrbitRequest) -> Vector | None:
 
 def system_of(case: Case, schedule: Schedule, load: Vector | None) -> RotorBearing:
     """The bearing of `case` and its rotor in the units of the problem."""
+    if case.operation.moment is not None:
+        raise UsageError(
+            "a rotor in one bearing stays parallel to its axis and feels no operation.moment: give the slopes that it "
+            "is held at, operation.tilt, or a rotor.span"
+        )
     problem = build_pair(case) if case.bearings > 1 else build_problem(case)
     rotor = RotorMotion.of(case, problem.layout.scales, schedule, load)
     still = StepProblem(problem.layout, 0.0, problem.displacement, rotor.clock.bearing_number)

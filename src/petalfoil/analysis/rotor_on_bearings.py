@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from petalfoil.analysis.impedance import elastic
+from petalfoil.analysis.tilted_journal import held
 from petalfoil.case import Case
 from petalfoil.dynamics.critical_mass import Whirl, neutral_whirl, whirl_impedance
 from petalfoil.dynamics.natural_modes import Mode, natural_modes
@@ -62,7 +63,7 @@ class RotorOnBearings:
         ConvergenceError
             The pack is bottomed out.
         """
-        motion = elastic(self.case, answer)
+        motion = elastic(self.case, held(self.case, answer))
         if self.pair is not None:
             motion = elastic(self.case, in_both(self.pair, answer))
         return whirl_impedance(motion)

@@ -82,7 +82,7 @@ def _points(
         line.regain([speed for _, speed in way[: len(done)]], done[-1])
     for number, (leg, speed) in enumerate(way[len(done) :], len(done)):
         here = at(case, speed, (0.0, 0.0))
-        asked = (AppliedLoad.of(load), Leg(leg))
+        asked = (AppliedLoad.of(load, case.operation.moment), Leg(leg))
         with running(part(progress, number, len(way)), f"runup {leg}") as run:
             try:
                 found = line.at(speed)

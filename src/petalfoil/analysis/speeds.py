@@ -17,6 +17,7 @@ from petalfoil.errors import ConvergenceError
 from petalfoil.results.record import Record
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.loaded import load_of
 
 Array = NDArray[np.float64]
 
@@ -54,7 +55,7 @@ class SpeedLine:
         """
         scales, R_j = self.base.layout.scales, self.case.bearing.journal_radius
         number = scales.bearing_number(self.case.gas.viscosity, speed, R_j)
-        problem, load = self.base.at(bearing_number=number), np.array(self.load) / self.case.bearings / scales.force
+        problem, load = self.base.at(bearing_number=number), load_of(self.case, self.load, self.base.layout)
         if self.known is None:
             self.known = balance_cold(problem, load)
         else:

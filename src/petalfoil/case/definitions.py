@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -19,7 +18,7 @@ from petalfoil.case.package import Package, bearing_problems, package_of, packag
 from petalfoil.case.petal_table import Petals
 from petalfoil.case.problems import Problem, joined
 from petalfoil.case.rotor import Rotor
-from petalfoil.case.sections import Bearing, Model, ModelKind, Operation, Surface
+from petalfoil.case.sections import Bearing, Method, Model, ModelKind, Operation, Surface
 from petalfoil.case.wall_tables import WallTable, with_table
 from petalfoil.errors import DefinitionError, PackageError
 from petalfoil.text import for_terminal
@@ -132,7 +131,12 @@ class Case(Definition):
     @property
     def radial_clearance(self) -> float:
         """Radial clearance of journal and bushing as grown where it is narrowest, ``R_B − R_j − |e|`` [m]."""
-        return self.grown_bearing.clearance - math.hypot(*self.operation.eccentricity)
+        return self.grown_bearing.clearance - self.operation.farthest(self.bearing.length)
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether half the length is solved: not where the axis of the journal tilts."""
+        return self.model.symmetry and self.operation.tilt is None and self.operation.moment is None
 
     @property
     def solid_height(self) -> float | None:
@@ -185,7 +189,7 @@ class Case(Definition):
         problems = list(self._geometry_problems())
         kind: type[DefinitionError] = PackageError
         if not problems:
-            problems, kind = list(self._grid_problems()), DefinitionError
+            problems, kind = [*self._grid_problems(), *self._tilt_problems()], DefinitionError
         if problems:
             first = problems[0]
             raise kind(joined(problems), key=first.key, given=first.given, allowed=first.allowed)
@@ -220,11 +224,29 @@ class Case(Definition):
 
     def _grid_problems(self) -> Iterator[Problem]:
         cells = self.axial_cells
-        if self.model.kind is ModelKind.THREE_D and self.model.symmetry and cells % 2:
+        if self.model.kind is ModelKind.THREE_D and self.symmetric and cells % 2:
             text = (
                 f"{cells} cells cannot be halved at the plane of symmetry; allowed: an even number, or symmetry = false"
             )
             yield Problem("model.axial_cells", text, cells, "an even number")
+
+    def _tilt_problems(self) -> Iterator[Problem]:
+        """Yield why a journal cannot tilt: no length, the paper's method, two bearings, or two ways to say it."""
+        operation = self.operation
+        key = "operation.tilt" if operation.tilt is not None else "operation.moment"
+        if operation.tilt is None and operation.moment is None:
+            return
+        given = operation.tilt or operation.moment
+        if self.model.kind is ModelKind.TWO_D:
+            yield Problem(key, 'needs the length of the bearing; allowed: model.kind = "3d"', given, '"3d"')
+        if self.model.method is Method.CLASSIC:
+            yield Problem(key, 'is not in the paper; allowed: model.method = "newton"', given, '"newton"')
+        if self.bearings > 1:
+            text = "says how one journal is held, and with rotor.span the shaft tilts by itself; allowed: one of them"
+            yield Problem(key, text, given, "no rotor.span")
+        if operation.tilt is not None and operation.moment is not None:
+            text = "is given beside operation.tilt, and one follows from the other; allowed: one of them"
+            yield Problem("operation.moment", text, operation.moment, "a tilt or a moment")
 
 
 def _from_folder(data: dict[str, Any], folder: Path) -> dict[str, Any]:

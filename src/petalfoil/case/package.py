@@ -126,7 +126,7 @@ def bearing_problems(bearing: Bearing, surface: Surface, operation: Operation) -
             f"less than {bearing.bushing_radius:g} m",
         )
         return
-    eccentricity = math.hypot(*operation.eccentricity)
+    eccentricity = operation.farthest(bearing.length)
     farthest = bearing.clearance - surface.contact_film_thickness
     if eccentricity >= farthest:
         yield Problem(
@@ -180,7 +180,7 @@ def _overlap_problems(package: Package, petals: Petals) -> Iterator[Problem]:
 def _clearance_problems(
     package: Package, bearing: Bearing, surface: Surface, operation: Operation
 ) -> Iterator[Problem]:
-    eccentricity = math.hypot(*operation.eccentricity)
+    eccentricity = operation.farthest(bearing.length)
     clearance = bearing.clearance - eccentricity
     need = package.layers * package.thickness + surface.contact_film_thickness
     if package.overlap <= 1.0 + FLUSH or need <= clearance:

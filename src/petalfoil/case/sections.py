@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from enum import StrEnum
 from typing import Annotated, ClassVar
 
@@ -69,13 +70,20 @@ class Surface(Definition):
 _Displacement = Annotated[
     float, Quantity(unit="m", meaning="journal displacement", symbol="e", at_least=-10.0, at_most=10.0)
 ]
+_Slope = Annotated[
+    float, Quantity(unit="rad", meaning="slope of the journal's axis", symbol="a", at_least=-0.1, at_most=0.1)
+]
+_Moment = Annotated[
+    float, Quantity(unit="N*m", meaning="moment on the journal", symbol="moment", at_least=-1e9, at_most=1e9)
+]
 _Force = Annotated[float, Quantity(unit="N", meaning="load on the journal", symbol="load", at_least=-1e9, at_most=1e9)]
 
 
 class Operation(Definition):
     """What the journal does: its speed and where it sits, or the load on it (`x`, `y` in the bushing frame).
 
-    A load given as one quantity acts along -y, as a weight does.
+    A load given as one quantity acts along -y, as a weight does. The axis of the journal is parallel to the bushing's,
+    held at the slopes `tilt`, or free to tilt under a `moment` about the bearing's centre.
     """
 
     section: ClassVar[str] = "operation"
@@ -87,6 +95,16 @@ class Operation(Definition):
     """Components `[x, y]`."""
     load: Annotated[tuple[_Force, _Force], BeforeValidator(as_load)] | None = None
     """Components `[x, y]`, or one value along -y. Give a load or an eccentricity: one follows from the other."""
+    tilt: Annotated[tuple[_Slope, _Slope], BeforeValidator(as_pair)] | None = None
+    """Slopes `[x, y]` of the axis at which the journal is held; needs the 3-D model."""
+    moment: Annotated[tuple[_Moment, _Moment], BeforeValidator(as_pair)] | None = None
+    """Components `[x, y]` about the bearing's centre. The journal is then free to tilt; give a load as well."""
+
+    def farthest(self, length: float) -> float:
+        """Largest displacement of the journal's axis over a bearing `length` [m], at one of its ends [m]."""
+        ends = (-0.5 * length, 0.5 * length)
+        (x, y), (a_x, a_y) = self.eccentricity, self.tilt or (0.0, 0.0)
+        return max(math.hypot(x + a_x * z, y + a_y * z) for z in ends)
 
 
 class ModelKind(StrEnum):

@@ -27,13 +27,15 @@ class Geometry:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Position:
-    """Speed and displacement of the journal, and how shaft and bushing have grown where the case says so."""
+    """Speed and displacement of the journal; where a case has them, its tilt and the growth of shaft and bushing."""
 
     speed: float
     eccentricity_x: float
     eccentricity_y: float
     shaft_growth: float | None = None
     bushing_growth: float | None = None
+    tilt_x: float | None = None
+    tilt_y: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -42,11 +44,14 @@ class AppliedLoad:
 
     load_x: float
     load_y: float
+    load_moment_x: float | None = None
+    load_moment_y: float | None = None
 
     @classmethod
-    def of(cls, load: tuple[float, float]) -> AppliedLoad:
-        """The load (x, y) [N]."""
-        return cls(load_x=load[0], load_y=load[1])
+    def of(cls, load: tuple[float, float], moment: tuple[float, float] | None = None) -> AppliedLoad:
+        """The load (x, y) [N] and, where one is given, the moment about the bearing's centre [N m]."""
+        moment_x, moment_y = moment or (None, None)
+        return cls(load_x=load[0], load_y=load[1], load_moment_x=moment_x, load_moment_y=moment_y)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -63,6 +68,8 @@ class Forces:
     contact_force_y: float
     contact_normal_force: float
     contact_fraction: float
+    moment_x: float | None = None
+    moment_y: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -196,6 +196,10 @@ SCALARS: dict[str, Variable] = {
     "speed": _given("rad s-1", "angular velocity of the journal", "omega"),
     "eccentricity_x": _given("m", "displacement of the journal's centre along x", "e_x"),
     "eccentricity_y": _given("m", "displacement of the journal's centre along y", "e_y"),
+    "tilt_x": _given("rad", "slope of the journal's axis along x", "a_x"),
+    "tilt_y": _given("rad", "slope of the journal's axis along y", "a_y"),
+    "load_moment_x": _given("N m", "moment of the load about the bearing's centre, toward x", "moment_x"),
+    "load_moment_y": _given("N m", "moment of the load about the bearing's centre, toward y", "moment_y"),
     "shaft_growth": _given("m", "growth of the journal's radius by speed and temperature", "u_s"),
     "bushing_growth": _given("m", "growth of the bushing's radius by temperature", "u_b"),
     "load_x": _given("N", "load on the journal along x", "load_x"),
@@ -208,6 +212,8 @@ SCALARS: dict[str, Variable] = {
     "rotor_mass": _given("kg", "mass of a rigid rotor; in two bearings all of it", "m"),
     "force_x": _answer("N", "force of film and contact on the journal along x", "F_x"),
     "force_y": _answer("N", "force of film and contact on the journal along y", "F_y"),
+    "moment_x": _answer("N m", "moment of film and contact on the journal about the bearing's centre, toward x", "M_x"),
+    "moment_y": _answer("N m", "moment of film and contact on the journal about the bearing's centre, toward y", "M_y"),
     "bearing_force": _answer("N", "magnitude of the force on the journal", "|F|"),
     "attitude_angle": _answer(
         "rad", "angle from the carried load to the displacement, positive with the rotation", "beta"

@@ -18,6 +18,7 @@ from petalfoil.system.film_rows import FilmRows
 from petalfoil.system.scales import Scales
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE, BlockEntries, BlockPattern, ExtraField, Unknowns
 from petalfoil.walls.base import Wall
+from petalfoil.walls.tilting import tilt_columns
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -181,7 +182,18 @@ class BearingLayout:
 
         A gap narrows along the normal, so that its derivative by the position gives the normals of the film's force.
         """
-        mesh, by_e = self.wall.film, self.wall.contacts.by_e
+        return self._border(self.wall.contacts.by_e)
+
+    @cached_property
+    def moment_border(self) -> Border:
+        """The same of the slopes of the journal's axis over 1 m: moments about the bearing's centre (J7) [m].
+
+        The rows of half a length would be half of a moment that is zero: it has none.
+        """
+        return self._border(tilt_columns(self.wall, 1.0))
+
+    def _border(self, by_e: Array) -> Border:
+        mesh = self.wall.film
         numbers = np.where(mesh.unknown >= 0, mesh.unknown, mesh.n_unknown).ravel()
         area = node_area(mesh, self.balance.radius) * self.scales.pressure / self.scales.force
         nodal = film_force_rows(mesh, area, by_e[self.wall.contacts.journal].T)

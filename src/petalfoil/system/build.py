@@ -13,13 +13,32 @@ from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.scales import scales_of
 from petalfoil.walls import Wall, build_wall
+from petalfoil.walls.tilting import tilting
 from petalfoil.walls.two_bearings import paired
 
 
 def build_problem(case: Case) -> CoupledProblem:
-    """Discretise `case` at its speed and eccentricity; a grid beyond the memory there is is refused first."""
+    """Discretise `case` at its speed and eccentricity; a grid beyond the memory there is is refused first.
+
+    A journal under a moment is free to tilt, and starts parallel to the bushing.
+    """
     check_memory(case)
+    if case.operation.moment is not None:
+        return build_tilting(case)
     return discretised(case, build_wall(case), np.array(case.operation.eccentricity))
+
+
+def build_tilting(case: Case) -> CoupledProblem:
+    """Discretise the whole length of `case` under a journal that is free to tilt, at the slopes of the case."""
+    whole = case.replace(**{"model.symmetry": False, "operation.tilt": None})
+    slopes = lever_of(case) * np.array(case.operation.tilt or (0.0, 0.0))
+    wall = tilting(build_wall(whole), lever_of(case))
+    return discretised(whole, wall, np.append(case.operation.eccentricity, slopes))
+
+
+def lever_of(case: Case) -> float:
+    """Lever of the slopes of a journal that tilts about the bearing's centre, half the length [m]."""
+    return 0.5 * case.bearing.length
 
 
 def build_pair(case: Case) -> CoupledProblem:

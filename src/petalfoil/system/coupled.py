@@ -117,6 +117,18 @@ class CoupledProblem:
         force: Array = self.border.gap_derivative.T @ lam
         return force
 
+    def journal_moment(self, x: Array, lam: Array) -> Array:
+        """Moment of film and contacts on the journal about the bearing's centre (J7) over the unit of force, (2,) [m].
+
+        Raises
+        ------
+        ValueError
+            Half of the length is solved.
+        """
+        border = self.layout.moment_border
+        moment: Array = border.row_derivative @ (x[self.positive] - 1.0) + border.gap_derivative.T @ lam
+        return moment
+
     def admits(self, x: Array) -> bool:
         """The film is open everywhere."""
         return bool(np.min(self.film(x)) > 0.0)

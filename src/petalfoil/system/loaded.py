@@ -17,6 +17,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.case import Case
+from petalfoil.system.bearing_layout import BearingLayout
+from petalfoil.system.build import lever_of
 from petalfoil.system.coupled import CoupledProblem, Linearization
 from petalfoil.system.unknowns import POSITION, Unknowns
 
@@ -24,6 +27,17 @@ Array = NDArray[np.float64]
 
 LEAST_LOAD = 1e-3
 """An unbalanced force is compared with the load; where that is less than this over the unit of force, with this."""
+
+
+def load_of(case: Case, load: tuple[float, float], layout: BearingLayout) -> Array:
+    """A load [N] as one bearing of `case` carries it over the unit of force, (n_position,) [1].
+
+    Two bearings carry half of it each. Where the case gives a moment, that over the lever follows.
+    """
+    force = np.array(load) / case.bearings
+    if case.operation.moment is not None:
+        force = np.append(force, np.array(case.operation.moment) / lever_of(case))
+    return np.asarray(force / layout.scales.force)
 
 
 def load_scale(load: Array) -> float:

@@ -50,6 +50,8 @@ class Wall:
     slip, reaction_share : (k, n), (k, m) sparse
         Slip where surfaces slide on each other, from the deflections, and the share of each gap's reaction that
         presses there (D1) [1].
+    n_bearings : int
+        Bearings on the shaft; strips, unknowns and gaps of each kind are those of the first, then the second.
     """
 
     film: FilmMesh
@@ -64,6 +66,7 @@ class Wall:
     support: sp.csr_array
     slip: sp.csr_array
     reaction_share: sp.csr_array
+    n_bearings: int = 1
 
     @property
     def n_unknown(self) -> int:
@@ -72,13 +75,8 @@ class Wall:
 
     @property
     def n_position(self) -> int:
-        """Coordinates of the journal's position: 2, or 4 where the shaft tilts in two bearings."""
+        """Coordinates of the journal's position: 2, or 4 where the shaft is free to tilt."""
         return int(self.contacts.by_e.shape[1])
-
-    @property
-    def n_bearings(self) -> int:
-        """Bearings on the shaft; strips, unknowns and gaps of each kind are those of the first, then the second."""
-        return self.n_position // ALIGNED
 
     def film_thickness(self, W: Array, e: Array) -> Array:
         """Film over deflections `W` (n,) and journal position `e` (n_position,), shape of the film mesh [m]."""
@@ -109,7 +107,7 @@ class WallState:
 
 def axial_grid(case: Case) -> AxialGrid:
     """One station for a 2-D model; else half the length, or the whole where symmetry is not used."""
-    length, model = case.bearing.length, case.model
-    if model.kind is ModelKind.TWO_D:
+    length = case.bearing.length
+    if case.model.kind is ModelKind.TWO_D:
         return axis_2d(length)
-    return axis_3d(length, case.axial_cells, half=model.symmetry, grading=case.axial_grading)
+    return axis_3d(length, case.axial_cells, half=case.symmetric, grading=case.axial_grading)

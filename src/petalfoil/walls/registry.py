@@ -8,6 +8,7 @@ from petalfoil.walls.base import Wall
 from petalfoil.walls.kind import Capability, WallKind
 from petalfoil.walls.petals import PetalWall
 from petalfoil.walls.rigid import RigidWall
+from petalfoil.walls.tilting import misaligned
 
 _KINDS: dict[type[WallTable] | None, WallKind] = {kind.table: kind for kind in (RigidWall(), PetalWall())}
 
@@ -45,8 +46,9 @@ def wall_kind(case: Case) -> WallKind:
 
 
 def build_wall(case: Case) -> Wall:
-    """Discretise the wall of `case` on the grid it asks for."""
-    return wall_kind(case).build(case)
+    """Discretise the wall of `case` on the grid it asks for, under the slopes that the journal's axis is held at."""
+    wall, tilt = wall_kind(case).build(case), case.operation.tilt
+    return wall if tilt is None else misaligned(wall, tilt)
 
 
 def required(case: Case, capability: Capability, question: str) -> WallKind:

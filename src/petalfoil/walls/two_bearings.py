@@ -54,6 +54,7 @@ def paired(wall: Wall, span: float) -> Wall:
         support=twice(wall.support),
         slip=twice(wall.slip),
         reaction_share=sp.csr_array(twice(wall.reaction_share)[:, order]),
+        n_bearings=2,
     )
 
 

@@ -1,0 +1,67 @@
+"""One equilibrium whose journal is free to tilt or held at its slopes: the same unknowns, more coordinates or less."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from petalfoil.case import Case
+from petalfoil.equilibrium.cold_start import nothing_found
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.solution import Solution, from_contacts
+from petalfoil.solvers.contact_newton import solve_contacts
+from petalfoil.system.build import build_problem, build_tilting, lever_of
+from petalfoil.system.coupled import CoupledProblem
+
+
+def whole_length(case: Case) -> Case:
+    """The case on the grid of its whole length, without which nothing tilts."""
+    return case.replace(**{"model.symmetry": False})
+
+
+def free_to_tilt(case: Case, answer: Solution) -> Solution:
+    """The equilibrium of a journal that is free to tilt, from the one found on the whole length.
+
+    Raises
+    ------
+    ConvergenceError
+        The equations are not solved there.
+    """
+    if answer.problem.layout.n_position > len(case.operation.eccentricity):
+        return answer
+    problem = build_tilting(case)
+    e = problem.displacement.copy()
+    e[:2] = answer.problem.displacement
+    return at_same_state(problem.at(displacement=e), answer)
+
+
+def held(case: Case, answer: Solution) -> Solution:
+    """The equilibrium of a journal that is held at the slopes that `answer` has.
+
+    Raises
+    ------
+    ConvergenceError
+        The equations are not solved there.
+    """
+    if answer.problem.layout.n_position == len(case.operation.eccentricity):
+        return answer
+    e = answer.problem.displacement * answer.problem.layout.scales.length
+    slopes = tuple(map(float, e[2:] / lever_of(case)))
+    problem = build_problem(case.replace(**{"operation.tilt": slopes, "operation.moment": None}))
+    return at_same_state(problem.at(displacement=answer.problem.displacement[:2]), answer)
+
+
+def at_same_state(problem: CoupledProblem, answer: Solution) -> Solution:
+    """The solution of `problem` with the unknowns and active contacts of `answer`, at its speed."""
+    run, problem = current_run(), problem.at(bearing_number=answer.problem.bearing_number)
+    contacts, outcome = solve_contacts(problem, (answer.x, answer.active), run.film_solver)
+    run.note("contacts", outcome=outcome.value)
+    found = from_contacts(problem, contacts, answer.solution_path)
+    if found is None:
+        raise nothing_found()
+    load = answer.load
+    if load is None:
+        return found
+    more = max(problem.layout.n_position - len(load), 0)  # the moments that hold the journal are not told
+    return replace(found, load=np.append(load, np.zeros(more))[: problem.layout.n_position])
