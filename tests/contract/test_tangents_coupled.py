@@ -216,7 +216,7 @@ def test_a_damped_wall_resists_motion_and_its_gas_stores_nothing(name: str) -> N
 @pytest.mark.parametrize("name", PETALS)
 def test_a_damped_balance_resists_motion_of_wall_and_journal(name: str) -> None:
     problem, rng = build_problem(bearing(name)), np.random.default_rng(18)
-    load, n_wall = np.array([0.3, -2.0]), problem.layout.n_wall
+    load, n_wall = np.resize([0.3, -2.0], problem.layout.n_position), problem.layout.n_wall
     z, shift = np.append(open_state(problem, rng), problem.displacement), random_shift(problem, rng)
     plain, damped = LoadedProblem(problem, load), DampedBalance.of(problem, load, 0.3)
     before, after = plain.linearize(z, shift), damped.linearize(z, shift)

@@ -173,8 +173,7 @@ def test_coefficients_under_a_moment_are_those_of_the_slopes_that_it_makes() -> 
 def test_every_verb_knows_the_tilt() -> None:
     placed = TILTED.replace(**{"operation.load": None})
     alone = solve.record(placed).scalars
-    for ds in (curve(placed, [1e-4]), curve(placed, [0.0, 1e-4]).isel(point=[1])):
-        assert_allclose(ds["moment_x"].values[-1], alone["moment_x"], rtol=1e-6)
+    assert_allclose(curve(placed, [0.5e-4, 1e-4])["moment_x"].values[-1], alone["moment_x"], rtol=1e-6)
     assert_allclose(static(placed, [1e-4])["moment_x"].values[0], alone["moment_x"], rtol=0.5)
     way = runup(TILTED.replace(**{"operation.eccentricity": (0.0, 0.0)}), to=500.0, points=3)
     assert_allclose(way["tilt_x"], 5e-4, rtol=1e-12)

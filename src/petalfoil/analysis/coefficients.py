@@ -78,13 +78,10 @@ class Contact:
     contact_fraction: float
 
 
-TILT_BLOCKS = {
-    "force_tilt": (slice(0, 2), slice(2, 4), ("N rad-1", "N s rad-1"), "on the force, of the slopes of the axis"),
-    "moment_displacement": (slice(2, 4), slice(0, 2), ("N", "N s"), "on the moment, of the displacement"),
-    "moment_tilt": (slice(2, 4), slice(2, 4), ("N m rad-1", "N m s rad-1"), "on the moment, of the slopes of the axis"),
-}
-"""Blocks of the stiffness and damping of a journal that tilts beside those of force and displacement: their name, rows
-and columns, units, and what they are."""
+FORCE, MOMENT = slice(0, 2), slice(2, 4)
+"""Rows of force and moment, columns of displacement and slopes."""
+TILT_BLOCKS = {"force_tilt": (FORCE, MOMENT), "moment_displacement": (MOMENT, FORCE), "moment_tilt": (MOMENT, MOMENT)}
+"""Rows and columns of the blocks of a journal that tilts, beside those of force and displacement."""
 
 
 def blocks(case: Case, pairs: list[tuple[Array, Array]]) -> dict[str, Array]:
@@ -96,7 +93,7 @@ def blocks(case: Case, pairs: list[tuple[Array, Array]]) -> dict[str, Array]:
     lever = np.array([1.0, 1.0, lever_of(case), lever_of(case)])  # of slopes, and of moments
     for name, matrix in both.items():
         scaled = matrix * lever[:, None] * lever
-        fields |= {f"{name}_{block}": scaled[:, row, col] for block, (row, col, _, _) in TILT_BLOCKS.items()}
+        fields |= {f"{name}_{block}": scaled[:, row, col] for block, (row, col) in TILT_BLOCKS.items()}
     return fields
 
 
@@ -135,10 +132,14 @@ TABLE = ArrayTable(
 LISTS = ("whirl_frequency", *MATRICES)
 _ENTRIES = ("whirl_frequency", "row", "column")
 TILTING = {
-    f"{name}_{block}": Variable(_ENTRIES, unit[number], f"{name} {words}", f"{letter}_{symbol}")
-    for number, (name, letter) in enumerate((("stiffness", "K"), ("damping", "C")))
-    for (block, (_, _, unit, words)), symbol in zip(TILT_BLOCKS.items(), ("Fa", "Me", "Ma"), strict=True)
+    "stiffness_force_tilt": Variable(_ENTRIES, "N rad-1", "stiffness, force by slope of the journal's axis", "K_Fa"),
+    "stiffness_moment_displacement": Variable(_ENTRIES, "N", "stiffness, moment by displacement", "K_Me"),
+    "stiffness_moment_tilt": Variable(_ENTRIES, "N m rad-1", "stiffness, moment by slope of the axis", "K_Ma"),
+    "damping_force_tilt": Variable(_ENTRIES, "N s rad-1", "damping, force by slope of the journal's axis", "C_Fa"),
+    "damping_moment_displacement": Variable(_ENTRIES, "N s", "damping, moment by displacement", "C_Me"),
+    "damping_moment_tilt": Variable(_ENTRIES, "N m s rad-1", "damping, moment by slope of the axis", "C_Ma"),
 }
+"""Stiffness and damping of a journal that tilts."""
 ERROR_BARS = {
     "stiffness_error": Variable(_ENTRIES, "N m-1", "error bar of the stiffness, from a grid study", "dK"),
     "damping_error": Variable(_ENTRIES, "N s m-1", "error bar of the damping, from a grid study", "dC"),
