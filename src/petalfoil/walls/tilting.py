@@ -1,8 +1,8 @@
 """A journal whose axis is not parallel to the bushing's: held at given slopes, or free to tilt about the centre.
 
-The axis is at `(x, y) + (z - L/2) (a_x, a_y)` (G6). Slopes that are given change the film at rest; a shaft that is free to
-tilt has a position of four coordinates, `q = (x, y, l a_x, l a_y)` with the lever `l = L/2`. The forces that belong to
-them are the force on the journal and its moments about the bearing's centre over `l`.
+The axis is at `(x, y) + (z - L/2) (a_x, a_y)` (G6). Slopes that are given change the film at rest; a shaft that is free
+to tilt has a position of four coordinates, `q = (x, y, l a_x, l a_y)` with the lever `l = L/2`. The forces that belong
+to them are the force on the journal and its moments about the bearing's centre over `l`.
 """
 
 from __future__ import annotations
