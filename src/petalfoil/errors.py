@@ -41,13 +41,24 @@ class DefinitionError(PetalfoilError):
         What was found there.
     allowed : str, optional
         What is allowed there.
+    problems : sequence of (str, str), optional
+        Dotted path and text of every problem found; by default the only one is that of `key`.
     """
 
-    def __init__(self, message: str, *, key: str = "", given: object = None, allowed: str = "") -> None:
+    def __init__(
+        self,
+        message: str,
+        *,
+        key: str = "",
+        given: object = None,
+        allowed: str = "",
+        problems: Sequence[tuple[str, str]] = (),
+    ) -> None:
         super().__init__(message)
         self.key = key
         self.given = given
         self.allowed = allowed
+        self.problems = tuple(problems) or ((key, message.removeprefix(f"{key}: ")),)
 
 
 class UnitError(DefinitionError):

@@ -16,7 +16,7 @@ from petalfoil.case.gas import Gas
 from petalfoil.case.growth import Bushing, Growth, Shaft, growth_problems
 from petalfoil.case.package import Package, bearing_problems, package_of, package_problems
 from petalfoil.case.petal_table import Petals
-from petalfoil.case.problems import Problem, joined
+from petalfoil.case.problems import Problem, refusal
 from petalfoil.case.rotor import Rotor
 from petalfoil.case.sections import Bearing, Method, Model, ModelKind, Operation, Surface
 from petalfoil.case.wall_tables import WallTable, with_table
@@ -73,7 +73,8 @@ class Case(Definition):
             return cls(**_from_folder(toml.parse(toml.read_file(path)), Path(path).parent))
         except DefinitionError as error:
             message = f"{for_terminal(str(path))}: {error}"
-            raise type(error)(message, key=error.key, given=error.given, allowed=error.allowed) from None
+            given, allowed, problems = error.given, error.allowed, error.problems
+            raise type(error)(message, key=error.key, given=given, allowed=allowed, problems=problems) from None
 
     @classmethod
     def from_toml(cls, text: str) -> Self:
@@ -191,8 +192,7 @@ class Case(Definition):
         if not problems:
             problems, kind = [*self._grid_problems(), *self._tilt_problems()], DefinitionError
         if problems:
-            first = problems[0]
-            raise kind(joined(problems), key=first.key, given=first.given, allowed=first.allowed)
+            raise refusal(kind, problems)
         return self
 
     def _geometry_problems(self) -> Iterator[Problem]:

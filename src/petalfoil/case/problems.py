@@ -47,8 +47,13 @@ def definition_error(error: ValidationError, root: type[BaseModel], section: str
     details = error.errors(include_url=False)
     problems = [_problem(detail, root, section) for detail in details]
     kind = UnitError if all(detail["type"] == UNIT_PROBLEM for detail in details) else DefinitionError
-    first = problems[0]
-    return kind(joined(problems), key=first.key, given=first.given, allowed=first.allowed)
+    return refusal(kind, problems)
+
+
+def refusal(kind: type[DefinitionError], problems: Sequence[Problem]) -> DefinitionError:
+    """The error that tells all problems, and what was given and is allowed at the first."""
+    first, all_of_them = problems[0], [(problem.key, problem.text) for problem in problems]
+    return kind(joined(problems), key=first.key, given=first.given, allowed=first.allowed, problems=all_of_them)
 
 
 def _problem(detail: ErrorDetails, root: type[BaseModel], section: str) -> Problem:

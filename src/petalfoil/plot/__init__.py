@@ -8,6 +8,7 @@ In the order data flows:
 - ``canvas``       the figure as a notebook shows it; figures to files (`save`)
 - ``style``        colours, sizes, axes and titles of figures
 - ``film_fields``  pressure and film: around (`pressure_and_film`), of one petal (`petal_profiles`), as `maps`
+- ``stretch``      the radial map of a section
 - ``section``      the section of the loaded bearing (`cross_section`), with its film (`operating_point`)
 - ``assembly``     the foil pack as it is assembled (`package`)
 - ``characteristics`` against displacement: `curve`, `load_characteristic`, `static`, `hysteresis`

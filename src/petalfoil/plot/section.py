@@ -21,6 +21,7 @@ from matplotlib.patches import FancyArrowPatch, Wedge
 from petalfoil.errors import UsageError
 from petalfoil.plot import labels, style
 from petalfoil.plot.film_fields import draw_film, draw_film_map, draw_pressure, draw_pressure_map
+from petalfoil.plot.stretch import Stretch, petal_outline, round_scale
 from petalfoil.plot.views import (
     Floats,
     array,
@@ -34,8 +35,6 @@ from petalfoil.plot.views import (
     touching,
 )
 
-_CLEARANCE_SHARE = 0.5
-"""Largest share of the bore's radius that the default scale gives to the radial clearance."""
 _LEAST_JOURNAL = 0.1
 """Least share of the bore's radius that is left to the journal at any scale."""
 _RING = 0.06
@@ -45,31 +44,6 @@ _BAND = 0.34
 _LEGEND = 0.32
 """Space below the section for its legend, over the bushing's radius."""
 _CIRCLE = np.linspace(0.0, 2.0 * np.pi, 361)
-
-
-@dataclass(frozen=True)
-class Stretch:
-    """The radial map of the drawing.
-
-    Parameters
-    ----------
-    bore : float
-        Radius of the bushing [m].
-    scale : float
-        How many times too large the radial clearance is drawn.
-    """
-
-    bore: float
-    scale: float
-
-    def radius(self, r: Floats) -> Floats:
-        """Drawn radius of a radius about the bushing's axis [m]."""
-        return self.bore - self.scale * (self.bore - r)
-
-    def points(self, r: Floats, theta: Floats) -> Floats:
-        """Drawn places, one a row, of radii and bushing angles [m]."""
-        drawn = self.radius(r)
-        return np.stack([drawn * np.cos(theta), drawn * np.sin(theta)], axis=-1)
 
 
 def cross_section(ds: xr.Dataset, *, scale: float | None = None) -> Figure:
@@ -156,10 +130,7 @@ def draw_section(ax: Axes, ds: xr.Dataset, scale: float | None = None) -> None:
 
 def default_scale(ds: xr.Dataset) -> float:
     """The largest of 1, 2, 5, 10, ... that keeps the radial clearance within its share of the drawing."""
-    bore = number(ds, "bushing_radius")
-    most = max(_CLEARANCE_SHARE * bore / (bore - number(ds, "journal_radius")), 1.0)
-    decade = 10.0 ** math.floor(math.log10(most))
-    return max(step * decade for step in (1.0, 2.0, 5.0) if step * decade <= most)
+    return round_scale(number(ds, "bushing_radius"), number(ds, "journal_radius"))
 
 
 def _checked_scale(ds: xr.Dataset, scale: float | None) -> float:
@@ -200,12 +171,6 @@ def draw_petals(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
         ax.fill(*outline.T, **look)
     roots = stretch.points(np.full(ds.sizes["petal"], stretch.bore), array(ds, "root_angle"))
     ax.plot(*roots.T, "s", color=style.INK, markersize=5, label="root of a petal", gid="roots", zorder=4)
-
-
-def petal_outline(radius: Floats, theta: Floats, half: float, stretch: Stretch) -> Floats:
-    """Outline of a petal: its inner face, and back along its outer one."""
-    inner, outer = stretch.points(radius - half, theta), stretch.points(radius + half, theta)
-    return np.concatenate([inner, outer[::-1]])
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ In the order data flows:
 - ``layout``   what an analysis returns: a point, a series; the answer in its layout, as JSON and as labelled data
 - ``grid``     the same over load and speed
 - ``study``    the same of a grid study, with its estimates
+- ``tables``   an answer as tables of text
 - ``dataset``  records to ``xarray.Dataset``: one point, or a curve of points
 - ``motion``   what the histories of a motion tell: positions once per revolution, spectra of the whirl
 - ``export``   coefficients for other programs: CSV

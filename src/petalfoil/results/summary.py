@@ -182,7 +182,7 @@ def cell(name: str, value: Scalar) -> Row:
     Row
         Label, value and unit.
     """
-    shown = _shown(name)
+    shown = shown_as(name)
     if isinstance(value, bool):
         return Row(shown.label, "yes" if value else "no", shown.unit)
     if isinstance(value, str) or SCALARS[name].kind is DataType.INT:
@@ -214,7 +214,7 @@ def with_bar(name: str, values: Sequence[float], error: float) -> tuple[list[str
     tuple of (list of str, str)
         Values and bar, in the unit of `cell`.
     """
-    factor = _shown(name).factor
+    factor = shown_as(name).factor
     bar, size = abs(error * factor), max((abs(v * factor) for v in values if math.isfinite(v)), default=0.0)
     if bar == 0.0 or not math.isfinite(bar) or bar < size * FINEST_SHARE:
         return [cell(name, value).value for value in values], number(bar)
@@ -232,7 +232,7 @@ def _beside(bar: float, value: float) -> str:
     return "0" if abs(value) < 0.05 * bar else f"{value:.2e}"
 
 
-def _shown(name: str) -> Shown:
+def shown_as(name: str) -> Shown:
     """How a scalar is shown: as the table says, as its analysis declares, or plainly in SI units."""
     plain = Shown(name.replace("_", " "), SCALARS[name].units.removeprefix("1"))
     return _SHOWN.get(name) or SCALARS[name].shown or plain

@@ -1,0 +1,63 @@
+"""The radial map of a cross-section: what lies between bushing and journal is drawn larger than it is.
+
+Every radius `r` about the bushing's axis is drawn at `R_B − s (R_B − r)`. Needs NumPy alone: figures on paper and in a
+browser share it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+Floats: TypeAlias = npt.NDArray[np.float64]
+
+CLEARANCE_SHARE = 0.5
+"""Largest share of the bore's radius that the default scale gives to the radial clearance."""
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """The radial map of the drawing.
+
+    Parameters
+    ----------
+    bore : float
+        Radius of the bushing [m].
+    scale : float
+        How many times too large the radial clearance is drawn.
+    """
+
+    bore: float
+    scale: float
+
+    def radius(self, r: Floats) -> Floats:
+        """Drawn radius of a radius about the bushing's axis [m]."""
+        return self.bore - self.scale * (self.bore - r)
+
+    def points(self, r: Floats, theta: Floats) -> Floats:
+        """Drawn places, one a row, of radii and bushing angles [m]."""
+        drawn = self.radius(r)
+        return np.stack([drawn * np.cos(theta), drawn * np.sin(theta)], axis=-1)
+
+
+def petal_outline(radius: Floats, theta: Floats, half: float, stretch: Stretch) -> Floats:
+    """Outline of a petal: its inner face, and back along its outer one."""
+    inner, outer = stretch.points(radius - half, theta), stretch.points(radius + half, theta)
+    return np.concatenate([inner, outer[::-1]])
+
+
+def round_scale(bore: float, journal: float) -> float:
+    """The largest of 1, 2, 5, 10, ... that keeps the radial clearance within its share of the drawing.
+
+    Parameters
+    ----------
+    bore, journal : float
+        Radii of bushing and journal [m].
+    """
+    most = max(CLEARANCE_SHARE * bore / (bore - journal), 1.0)
+    decade = 10.0 ** math.floor(math.log10(most))
+    return max(step * decade for step in (1.0, 2.0, 5.0) if step * decade <= most)

@@ -1,0 +1,161 @@
+"""An answer as tables of text, in the units an engineer reads: for the terminal, a page, a file."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+from petalfoil.results.estimate import Estimate
+from petalfoil.results.grid import Grid
+from petalfoil.results.layout import Answer, Cell, Layout, Point, Series
+from petalfoil.results.record import Record, Scalar
+from petalfoil.results.study import GridStudy, grid_text
+from petalfoil.results.summary import ABSENT, cell, in_order, number, rows, with_bar, without_rounding
+
+
+@dataclass(frozen=True)
+class TextColumn:
+    """A column: heading, unit, and whether it holds numbers."""
+
+    heading: str
+    unit: str = ""
+    of_numbers: bool = True
+
+    @property
+    def words(self) -> str:
+        """Heading and unit in one line."""
+        heading = " ".join(self.heading.split())
+        return f"{heading} [{self.unit}]" if self.unit else heading
+
+
+@dataclass
+class TextTable:
+    """Cells of text line by line.
+
+    Attributes
+    ----------
+    columns : tuple of TextColumn
+        Headed columns; none where lines explain themselves: label, value and unit, or label, value, error bar and unit.
+    lines : list of tuple of str
+        Cells of each line.
+    title : str
+        What stands above it.
+    """
+
+    columns: tuple[TextColumn, ...] = ()
+    lines: list[tuple[str, ...]] = field(default_factory=list)
+    title: str = ""
+
+
+def tables_of(answer: Answer) -> Iterator[TextTable]:
+    """The tables of an answer, in order.
+
+    Parameters
+    ----------
+    answer : Answer
+        Answer of any analysis.
+
+    Yields
+    ------
+    TextTable
+        A point gives lines of label, value and unit; a series a line for each point; a grid a table for each result.
+    """
+    layout, records = answer.layout, answer.records
+    if isinstance(layout, Grid):
+        yield from _grids(layout, records)
+    elif isinstance(layout, GridStudy):
+        yield _study(records, answer.estimates)
+    elif isinstance(layout, Series) and layout.table is None:
+        yield _series(layout, records)
+    if isinstance(layout, Point):
+        lines = layout.rows(records[-1]) if layout.rows else _with_bars(records[-1])
+        yield TextTable(lines=[tuple(line) for line in lines])
+    if layout.table is not None and any(list(layout.table.lines(record)) for record in records):
+        yield _arrays(layout, records)
+
+
+def _with_bars(record: Record) -> Iterator[tuple[str, ...]]:
+    reported, errors = without_rounding(record), record.errors or {}
+    if not errors:
+        yield from rows(record)
+        return
+    for name in in_order(reported):
+        row, bar = cell(name, reported[name]), ""
+        is_rounding = reported[name] == 0.0 != record.scalars[name]
+        if name in errors and not is_rounding:
+            (value,), bar = with_bar(name, [float(reported[name])], errors[name])
+            row = row._replace(value=value)
+        yield row.label, row.value, bar and f"± {bar}", row.unit
+
+
+def _study(records: Sequence[Record], found: Sequence[Estimate]) -> TextTable:
+    estimates = {estimate.name: estimate for estimate in found}
+    words = [TextColumn("cells", of_numbers=False), TextColumn("", of_numbers=False)]
+    grids = [TextColumn(grid_text(record)) for record in records]
+    trust = [*map(TextColumn, ("order", "limit", "error")), TextColumn("trust", of_numbers=False)]
+    table = TextTable((*words, *grids, *trust))
+    for name in in_order(estimates):
+        estimate, row = estimates[name], cell(name, 0.0)
+        (*values, limit), bar = with_bar(name, [*estimate.values, estimate.limit], estimate.error)
+        order = ABSENT if math.isnan(estimate.order) else f"{estimate.order:.2f}"
+        table.lines.append((row.label.strip(), row.unit, *values, order, limit, f"± {bar}", estimate.trust))
+    return table
+
+
+def _series(layout: Series, records: Sequence[Record]) -> TextTable:
+    points = [without_rounding(record) for record in records]
+    headings = layout.columns or {name: cell(name, 0.0).label for name in in_order(set().union(*points))}
+    names = [name for name in headings if any(name in point for point in points)]
+    columns = [TextColumn(headings[name], cell(name, 0.0).unit) for name in names]
+    table = TextTable((TextColumn("point"), *columns, TextColumn("", of_numbers=False)))
+    for position, (point, record) in enumerate(zip(points, records, strict=True), start=1):
+        values = [_with_bar(name, point.get(name, math.nan), record) for name in names]
+        table.lines.append((str(position), *values, _remark(record)))
+    return table
+
+
+def _with_bar(name: str, value: Scalar, record: Record) -> str:
+    """A result of a point, and its error bar where it has one."""
+    if name not in (record.errors or {}):
+        return cell(name, value).value
+    (shown,), bar = with_bar(name, [float(value)], (record.errors or {})[name])
+    return f"{shown} ± {bar}"
+
+
+def _remark(record: Record) -> str:
+    """What is to be said of a point that its results do not tell."""
+    if not record.converged:
+        return "failed"
+    return str(record.scalars.get("status", "")).removeprefix("converged").removeprefix("; ")
+
+
+def _grids(layout: Grid, records: Sequence[Record]) -> Iterator[TextTable]:
+    """One table for each result: a row for each load, a column for each speed."""
+    speeds = [TextColumn(cell("speed", speed).value, "rpm") for speed in layout.speeds(records)]
+    for name, title in layout.tables.items():
+        table = TextTable((TextColumn("load", "N"), *speeds), title=title)
+        for load, line in zip(layout.loads(records), layout.over(records, name), strict=True):
+            values = (number(math.nan if value is None else float(value)) for value in line)
+            table.lines.append((number(load), *values))
+        yield table
+
+
+def _arrays(layout: Layout, records: Sequence[Record]) -> TextTable:
+    """A line for each entry of the arrays of each record; columns that no record fills are left out."""
+    if layout.table is None:
+        raise ValueError("this layout has no table of arrays")
+    lines = [line for record in records for line in layout.table.lines(record)]
+    kept = [k for k in range(len(layout.table.columns)) if any(line[k] != ABSENT for line in lines)]
+    headings = [heading.partition("\n") for heading in layout.table.columns]
+    columns = (TextColumn(headings[k][0], headings[k][2]) for k in kept)
+    table = TextTable((*columns, TextColumn("", of_numbers=False)))
+    for position, record in enumerate(records, start=1):
+        table.lines += ((*(_text(line[k]) for k in kept), "") for line in layout.table.lines(record))
+        if not record.converged:
+            table.lines.append((*[""] * len(kept), f"{layout.place(position, record)} failed"))
+    return table
+
+
+def _text(value: Cell) -> str:
+    return value if isinstance(value, str) else number(value)

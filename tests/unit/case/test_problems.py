@@ -1,0 +1,41 @@
+"""A refused case tells every problem by its key, for whoever shows each beside its field."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from petalfoil.case import Case
+from petalfoil.errors import DefinitionError, UnitError
+from tests.cases import EXAMPLES, case, put, tables
+
+
+def test_every_problem_is_told_by_key() -> None:
+    data = put(put(tables(), "petals.thickness", "1 N"), "gas.viscosty", 1.0)
+    with pytest.raises(DefinitionError) as caught:
+        Case(**data)
+    problems = dict(caught.value.problems)
+    assert set(problems) == {"petals.thickness", "gas.viscosty"}
+    assert all(text in str(caught.value) for text in problems.values())
+
+
+def test_one_problem_is_that_of_the_message() -> None:
+    with pytest.raises(UnitError) as caught:
+        case(**{"petals.thickness": "1 N"})
+    ((key, text),) = caught.value.problems
+    assert key == caught.value.key == "petals.thickness"
+    assert str(caught.value) == f"{key}: {text}"
+
+
+def test_the_problems_of_a_file_are_those_of_its_case(tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text((EXAMPLES / "paper_n8.toml").read_text().replace("count = 8", "count = 1"))
+    with pytest.raises(DefinitionError) as caught:
+        Case.load(path)
+    assert [key for key, _ in caught.value.problems] == ["petals.count"]
+    assert str(path) in str(caught.value)
+
+
+def test_an_error_without_a_list_has_one_problem() -> None:
+    assert DefinitionError("petals: no overlap", key="petals").problems == (("petals", "no overlap"),)
