@@ -14,6 +14,7 @@ In the order a call runs through them:
 - ``exports``    options of files for other programs
 - ``show``       a stored result once more
 - ``reproduce``  the paper's figures and claims: a page and data
+- ``studio``     the page on which a bearing is changed and answers
 
 Conventions: standard output carries the answer and nothing else; all that is said about the run goes to standard
 error. Exit codes: 0 done, 1 a fault of petalfoil, 2 bad case or bad usage, 3 no converged answer, 130 interrupted,

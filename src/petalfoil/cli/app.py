@@ -12,6 +12,7 @@ from petalfoil.analysis import known_verbs
 from petalfoil.cli.failures import handled
 from petalfoil.cli.reproduce import reproduce
 from petalfoil.cli.streams import accept_any_text, emit
+from petalfoil.cli.studio import studio
 
 if TYPE_CHECKING:
     Context = Any
@@ -60,6 +61,7 @@ app = typer.Typer(
     rich_markup_mode="rich",
 )
 app.command()(reproduce)
+app.command()(studio)
 
 
 def _print_version(wanted: bool) -> None:

@@ -1,0 +1,33 @@
+"""The studio: a local web page on which a bearing is changed and answers.
+
+What is asked and computed, without widgets:
+
+- ``design``        tables of a case as they were typed
+- ``form``          the fields of a case, read from its definitions
+- ``session``       one tab: its design, its answers, what was tried
+- ``protocol``      what server and workers say to each other
+- ``engine``        the workers and their queue
+- ``worker_process`` the server's end of a worker
+- ``worker``        the process that computes
+- ``tasks``         what it computes: an answer, a file
+- ``arrays``        what of an answer the browser draws
+- ``one_page``      an answer as a report
+
+The page:
+
+- ``server``        address, sessions, start and end
+- ``guard``         who may speak to the server, and how much
+- ``page``          the whole page
+- ``case_panel``    the case: fields and sliders
+- ``results_panel`` results beside those of the pinned design
+- ``questions``     the analyses as tabs
+- ``downloads``     what leaves the page as a file
+- ``charts``        charts of film, series, motions, and the 3-D view
+- ``section_chart`` the cross-section
+- ``themes``        colours of charts
+- ``look``          style sheet
+
+Conventions: nothing but `petalfoil studio` imports this folder. What comes from a browser is text or a number until
+a `Case` or an argument has read it; no path from a browser reaches the file system, and no text of a case is put into a
+page as HTML.
+"""

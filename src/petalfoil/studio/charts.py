@@ -1,0 +1,280 @@
+"""Charts of the browser other than the cross-section: film over angle, the 3-D view, series, motions.
+
+Each is a plain mapping in the form of Plotly, made from the arrays of a result. Only the 3-D view uses WebGL.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from petalfoil.results.schema import SCALARS, VARIABLES, Shown
+from petalfoil.results.summary import shown_as
+from petalfoil.studio.protocol import Found
+from petalfoil.studio.section_chart import VIRIDIS, Chart, Floats, State, Trace
+from petalfoil.studio.themes import Theme
+
+FRAMES = 90
+"""Places of the journal that the animation of a motion shows: the last turns in a few seconds."""
+
+
+def empty(theme: Theme, words: str) -> Chart:
+    """A chart that says what is missing."""
+    note = {"xref": "paper", "yref": "paper", "x": 0.5, "y": 0.5, "showarrow": False, "text": words}
+    hidden = {"visible": False}
+    layout = theme.layout(xaxis=hidden, yaxis=hidden, annotations=[note | {"font": {"size": 14, "color": theme.faint}}])
+    return {"data": [], "layout": layout, "config": theme.config("empty")}
+
+
+# ---------------------------------------------------------------------------------------------- film over angle
+
+
+def film_chart(found: Found, pinned: Found | None, theme: Theme) -> Chart:
+    """Pressure and film thickness over the bushing angle, the pinned design behind them."""
+    traces: list[Trace] = []
+    if pinned is not None:
+        look = {"line": {"color": theme.ghost, "width": 1.5, "dash": "dot"}, "name": "A"}
+        traces += _over_angle(State.of(pinned), (look, look))
+    now = ({"line": {"color": theme.accent, "width": 2}}, {"line": {"color": theme.second, "width": 2}})
+    traces += _over_angle(State.of(found), ({**now[0], "name": "now"}, {**now[1], "name": "now"}))
+    angle = theme.axis("bushing angle [°]", range=[0, 360], dtick=45, anchor="y2")
+    layout = theme.layout(
+        xaxis=angle,
+        yaxis=theme.axis("p/p<sub>a</sub>", domain=[0.55, 1.0]),
+        yaxis2=theme.axis("film thickness [µm]", domain=[0.0, 0.45], rangemode="tozero", anchor="x"),
+        showlegend=False,
+        uirevision="film",
+    )
+    return {"data": traces, "layout": layout, "config": theme.config("film")}
+
+
+def _over_angle(state: State, looks: tuple[dict[str, Any], dict[str, Any]]) -> list[Trace]:
+    degrees, order = _round_the_circle(state.theta)
+    lines = ((state.pressure_ratio, "y", looks[0]), (1e6 * state.array("film_thickness"), "y2", looks[1]))
+    return [
+        {
+            "type": "scatter", "mode": "lines", "x": degrees, "y": _gapped(values, order, 5), "yaxis": axis,
+            "hovertemplate": "%{x:.1f}°: %{y:.4g}", **look,
+        }
+        for values, axis, look in lines
+    ]  # fmt: skip
+
+
+Order = list[tuple[int, int] | None]
+
+
+def _round_the_circle(theta: Floats) -> tuple[list[float | None], Order]:
+    """Angles of all strips in 0 to 360 degrees with a gap after each strip and at a full turn, and their nodes."""
+    degrees: list[float | None] = []
+    order: Order = []
+    for petal, strip in enumerate(np.degrees(theta)):
+        turns = np.floor(strip / 360.0 + 1e-12)
+        for node, angle in enumerate(strip):
+            if node and turns[node] != turns[node - 1]:
+                degrees.append(None)
+                order.append(None)
+            degrees.append(round(float(angle - 360.0 * turns[node]), 3))
+            order.append((petal, node))
+        degrees.append(None)
+        order.append(None)
+    return degrees, order
+
+
+def _gapped(values: Floats, order: Order, digits: int) -> list[float | None]:
+    return [None if place is None else float(f"{values[place]:.{digits}g}") for place in order]
+
+
+# ---------------------------------------------------------------------------------------------- in 3-D
+
+
+def space_chart(found: Found, theme: Theme) -> Chart:
+    """The strips of the petals in 3-D, coloured by the pressure of the film on them."""
+    state = State.of(found)
+    if "space_pressure" in found.arrays:
+        theta = state.array("root_angle")[:, None] + state.array("space_phi")
+        z, pressure, film = state.array("z"), state.array("space_pressure"), state.array("space_film_thickness")
+    else:  # a 2-D film is the same over the length
+        theta, z = state.theta, np.array([0.0, state.scalar("length")])
+        pressure, film = (np.repeat(state.array(name)[..., None], 2, axis=2) for name in ("pressure", "film_thickness"))
+    ratio = pressure / state.scalar("ambient_pressure")
+    radius = state.stretch.radius(state.journal(theta)[..., None] + film)
+    colours = {"cmin": min(float(ratio.min()), 1.0), "cmax": max(float(ratio.max()), 1.001), "colorscale": _scale()}
+    traces = []
+    for strip, angle in enumerate(theta):
+        places = [radius[strip] * np.cos(angle)[:, None], radius[strip] * np.sin(angle)[:, None]]
+        x, y, along = (_short(1e3 * values) for values in (*places, np.broadcast_to(z, radius[strip].shape)))
+        bar = {"title": {"text": "p/p<sub>a</sub>"}, "thickness": 12, "len": 0.6}
+        surface = {"type": "surface", "x": along, "y": x, "z": y, "surfacecolor": _short(ratio[strip]), **colours}
+        traces.append({**surface, "showscale": strip == 0, "colorbar": bar, "hoverinfo": "skip"})
+    quiet = {"showbackground": False, "color": theme.ink, "gridcolor": theme.grid}
+    axes = {
+        f"{name}axis": {"title": {"text": text}, **quiet}
+        for name, text in zip("xyz", ("z [mm]", "x", "y"), strict=True)
+    }
+    scene = axes | {"aspectmode": "data", "camera": {"eye": {"x": 1.6, "y": 1.1, "z": 0.9}}}
+    layout = theme.layout(scene=scene, uirevision="space", margin={"l": 0, "r": 0, "t": 0, "b": 0})
+    return {"data": traces, "layout": layout, "config": theme.config("space")}
+
+
+def _scale() -> list[list[float | str]]:
+    return [[step / (len(VIRIDIS) - 1), colour] for step, colour in enumerate(VIRIDIS)]
+
+
+def _short(values: Floats) -> list[list[float]]:
+    """Values with as many digits as a picture shows."""
+    return [[float(f"{value:.5g}") for value in row] for row in values]
+
+
+# ---------------------------------------------------------------------------------------------- series
+
+
+def label_of(name: str) -> Shown:
+    """Label, unit and factor of a result or an array of the schema."""
+    if name in SCALARS:
+        return shown_as(name)
+    variable = VARIABLES[name]
+    lengths = {"m": ("µm", 1e6), "s": ("ms", 1e3), "rad s-1": ("rpm", 30.0 / math.pi)}
+    unit, factor = lengths.get(variable.units, (variable.units.removeprefix("1"), 1.0))
+    return Shown(name.replace("_", " "), unit, factor)
+
+
+def titled(name: str) -> str:
+    """A label with its unit."""
+    shown = label_of(name)
+    return f"{shown.label.strip()} [{shown.unit}]" if shown.unit else shown.label.strip()
+
+
+def axes_of(found: Found) -> list[str]:
+    """Arrays of a result that can be drawn against each other."""
+    if not found.is_series:
+        return []
+    return [name for name in found.arrays if name != "leg"]
+
+
+def line_chart(found: Found, names: tuple[str, str], theme: Theme) -> Chart:
+    """One result of a series against another; each leg is a line of its own."""
+    x, y = names
+    across, along = label_of(x), label_of(y)
+    legs = found.arrays.get("leg", np.full(len(found.arrays[x]), ""))
+    traces = []
+    for number, leg in enumerate(dict.fromkeys(legs.tolist())):
+        chosen = legs == leg
+        colour = (theme.accent, theme.second, theme.ghost)[number % 3]
+        line = {"type": "scatter", "mode": "lines+markers", "name": leg or along.label, "line": {"color": colour}}
+        values = ((found.arrays[x][chosen] * across.factor), (found.arrays[y][chosen] * along.factor))
+        traces.append({**line, "x": _or_gap(values[0]), "y": _or_gap(values[1])})
+    layout = theme.layout(
+        xaxis=theme.axis(titled(x)), yaxis=theme.axis(titled(y)), showlegend=len(traces) > 1, uirevision=f"{x},{y}"
+    )
+    return {"data": traces, "layout": layout, "config": theme.config(f"{found.verb}-{y}")}
+
+
+def _or_gap(values: Iterable[Any]) -> list[float | None]:
+    """Numbers; a gap where a point has none."""
+    return [float(value) if math.isfinite(value) else None for value in values]
+
+
+def coefficients_chart(found: Found, name: str, theme: Theme) -> Chart:
+    """Stiffness or damping over whirl frequency: direct and cross terms."""
+    frequency = np.asarray(found.arrays["whirl_frequency"], dtype=np.float64) / (2.0 * math.pi)
+    values, letter = np.asarray(found.arrays[name], dtype=np.float64), {"stiffness": "K", "damping": "C"}[name]
+    unit = {"stiffness": "N/µm", "damping": "N·s/mm"}[name]
+    factor = {"stiffness": 1e-6, "damping": 1e-3}[name]
+    colours = (theme.accent, theme.second, theme.ghost, theme.ink)
+    traces = [
+        {
+            "type": "scatter", "mode": "lines+markers", "name": f"{letter}<sub>{'xy'[i]}{'xy'[j]}</sub>",
+            "x": _or_gap(frequency), "y": _or_gap(factor * values[:, i, j]), "line": {"color": colours[2 * i + j]},
+        }
+        for i, j in np.ndindex(2, 2)
+    ]  # fmt: skip
+    layout = theme.layout(
+        xaxis=theme.axis("whirl frequency [Hz]"), yaxis=theme.axis(f"{name} [{unit}]"), uirevision=name
+    )
+    return {"data": traces, "layout": layout, "config": theme.config(name)}
+
+
+# ---------------------------------------------------------------------------------------------- motions
+
+
+def motion_chart(found: Found, theme: Theme) -> Chart:
+    """The path of the journal with its animation, and film thickness and contact over time beside it."""
+    arrays = {name: np.asarray(values, dtype=np.float64) for name, values in found.arrays.items()}
+    x, y, time = 1e6 * arrays["x"], 1e6 * arrays["y"], 1e3 * arrays["time"]
+    shown = np.unique(np.linspace(0.5 * len(time), len(time) - 1, FRAMES).astype(int))
+    path = {
+        "type": "scatter",
+        "mode": "lines",
+        "x": _or_gap(x),
+        "y": _or_gap(y),
+        "line": {"color": theme.accent, "width": 1},
+    }
+    spot = {"type": "scatter", "mode": "markers", "marker": {"size": 11, "color": theme.second}}
+    films = 1e6 * arrays["min_film_thickness"], 100.0 * arrays["contact_fraction"]
+    over_time = [
+        {"type": "scatter", "mode": "lines", "x": _or_gap(time), "y": _or_gap(values), "xaxis": "x2", "yaxis": axis,
+         "line": {"color": colour, "width": 1.5}}
+        for values, axis, colour in zip(films, ("y2", "y3"), (theme.accent, theme.second), strict=True)
+    ]  # fmt: skip
+    frames = [{"name": str(k), "data": [{"x": [float(x[k])], "y": [float(y[k])]}], "traces": [1]} for k in shown]
+    layout = theme.layout(
+        xaxis=theme.axis("x [µm]", domain=[0.0, 0.42]),
+        yaxis=theme.axis("y [µm]", scaleanchor="x"),
+        xaxis2=theme.axis("time [ms]", domain=[0.55, 1.0], anchor="y3"),
+        yaxis2=theme.axis("min. film thickness [µm]", domain=[0.55, 1.0], anchor="x2", rangemode="tozero"),
+        yaxis3=theme.axis("contact fraction [%]", domain=[0.0, 0.45], anchor="x2", rangemode="tozero"),
+        showlegend=False,
+        updatemenus=[_play_button(theme)],
+        uirevision="motion",
+    )
+    data = [path, spot | {"x": [float(x[-1])], "y": [float(y[-1])]}, *over_time]
+    return {"data": data, "layout": layout, "frames": frames, "config": theme.config("orbit")}
+
+
+def _play_button(theme: Theme) -> dict[str, Any]:
+    """A button that moves the journal along the last half of its path."""
+    timing = {"frame": {"duration": 50, "redraw": False}, "transition": {"duration": 0}, "fromcurrent": True}
+    play = {"label": "▶ animate", "method": "animate", "args": [None, timing]}
+    stop = {"label": "■ stop", "method": "animate", "args": [[None], timing | {"mode": "immediate"}]}
+    place = {"type": "buttons", "direction": "right", "x": 0.0, "y": 1.0, "xanchor": "left", "yanchor": "bottom"}
+    return place | {
+        "buttons": [play, stop],
+        "showactive": False,
+        "font": {"color": theme.ink},
+        "bgcolor": theme.bushing,
+    }
+
+
+def chart_of(found: Found, axes: Sequence[str], theme: Theme) -> Chart:
+    """The chart that suits a result.
+
+    Parameters
+    ----------
+    found : Found
+        Result of any analysis.
+    axes : sequence of str
+        Results that a series is drawn over and of, or which coefficients are drawn; empty for a choice of its own.
+    theme : Theme
+        Colours.
+    """
+    if "time" in found.arrays and "x" in found.arrays:
+        return motion_chart(found, theme)
+    if "whirl_frequency" in found.arrays and "stiffness" in found.arrays:
+        return coefficients_chart(found, next(iter(axes), "stiffness"), theme)
+    names = axes_of(found)
+    if len(names) > 1:
+        x, y = axes if len(axes) == 2 and set(axes) <= set(names) else usual_axes(names)
+        return line_chart(found, (x, y), theme)
+    return empty(theme, "this result is a table")
+
+
+def usual_axes(names: Sequence[str]) -> tuple[str, str]:
+    """What a series is drawn over and of: what was varied, and the result that is asked about most."""
+    varied = ("eccentricity_y", "eccentricity_x", "speed", "load_y", "load_x")
+    asked = ("liftoff_speed", "threshold_speed", "critical_mass", "bearing_force", "min_film_thickness")
+    x = next((name for name in varied if name in names), names[0])
+    y = next((name for name in asked if name in names and name != x), next(name for name in names if name != x))
+    return x, y

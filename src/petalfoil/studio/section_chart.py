@@ -1,0 +1,259 @@
+"""The cross-section as a chart of the browser: bushing, petals, film in the colour of its pressure, journal, forces.
+
+The chart is a plain mapping in the form of Plotly, drawn as SVG. Cells of a strip whose pressures share a colour are
+one polygon, so that a thousand cells become some dozens of shapes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from petalfoil.plot.stretch import Stretch, petal_outline, round_scale
+from petalfoil.studio.protocol import Found
+from petalfoil.studio.themes import Theme
+
+Floats: TypeAlias = npt.NDArray[np.float64]
+Chart: TypeAlias = dict[str, Any]
+Trace: TypeAlias = dict[str, Any]
+
+VIRIDIS = (
+    "#440154", "#481b6d", "#46327e", "#3f4788", "#365c8d", "#2e6e8e", "#277f8e", "#21918c",
+    "#1fa187", "#2db27d", "#4ac16d", "#73d056", "#a0da39", "#d0e11c", "#fde725",
+)  # fmt: skip
+"""The colour map viridis in fifteen steps: grows evenly in brightness, with any colour vision."""
+RING = 0.05
+"""Thickness of the bushing's ring over its radius."""
+BAND = 0.34
+"""Height of the largest excess pressure over the drawn radius of the journal."""
+TOUCHING = 1e-6
+"""Contact pressure over ambient pressure below which a reaction is rounding and not a contact."""
+CONTACTS = {
+    "journal_contact_pressure": ("journal in contact", "#D55E00"),
+    "petal_contact_pressure": ("petal on petal", "#CC79A7"),
+    "bushing_contact_pressure": ("petal on bushing", "#E69F00"),
+}
+CIRCLE = np.linspace(0.0, 2.0 * np.pi, 181)
+
+
+@dataclass(frozen=True)
+class State:
+    """A state as a chart needs it.
+
+    Attributes
+    ----------
+    found : Found
+        What the analysis found.
+    stretch : Stretch
+        The radial map.
+    """
+
+    found: Found
+    stretch: Stretch
+
+    @classmethod
+    def of(cls, found: Found) -> State:
+        """A state with the default stretch."""
+        bore, journal = (float(found.scalars[f"{name}_radius"]) for name in ("bushing", "journal"))
+        return cls(found, Stretch(bore, round_scale(bore, journal)))
+
+    def scalar(self, name: str) -> float:
+        """A result; NaN where there is none."""
+        return float(self.found.scalars.get(name, math.nan))
+
+    def array(self, name: str) -> Floats:
+        """An array."""
+        return np.asarray(self.found.arrays[name], dtype=np.float64)
+
+    @property
+    def theta(self) -> Floats:
+        """Bushing angles of the film's nodes, (petal, node) [rad]."""
+        return self.array("root_angle")[:, None] + self.array("phi_exposed")
+
+    def journal(self, theta: Floats) -> Floats:
+        """Radius of the displaced journal's surface about the bushing's axis [m]."""
+        e_x, e_y = self.scalar("eccentricity_x"), self.scalar("eccentricity_y")
+        surface: Floats = self.scalar("journal_radius") + e_x * np.cos(theta) + e_y * np.sin(theta)
+        return surface
+
+    @property
+    def pressure_ratio(self) -> Floats:
+        """Film pressure over ambient pressure, (petal, node) [1]."""
+        ratio: Floats = self.array("pressure") / self.scalar("ambient_pressure")
+        return ratio
+
+
+def has_section(found: Found | None) -> bool:
+    """Whether a result holds what a cross-section shows."""
+    return found is not None and "pressure" in found.arrays and "bushing_radius" in found.scalars
+
+
+def section_chart(found: Found, theme: Theme) -> Chart:
+    """The cross-section of a state.
+
+    Parameters
+    ----------
+    found : Found
+        A converged state with pressure and film thickness.
+    theme : Theme
+        Colours.
+    """
+    state = State.of(found)
+    traces = [*_solids(state, theme), *_petals(state, theme), *_film(state), *_contacts(state)]
+    bore, reach = state.stretch.bore, 1.2 * state.stretch.bore
+    axis = {"visible": False, "range": [-reach, reach], "fixedrange": False}
+    note = f"radial clearance drawn ×{state.stretch.scale:g}"
+    layout = theme.layout(
+        xaxis=axis,
+        yaxis=axis | {"scaleanchor": "x"},
+        annotations=[*_arrows(state, theme), *_angles(bore, theme), _note(note, theme)],
+        legend={"orientation": "h", "y": -0.02, "x": 0.5, "xanchor": "center", "yanchor": "top"},
+        margin={"l": 8, "r": 8, "t": 8, "b": 44},
+        uirevision="section",
+    )
+    return {"data": traces, "layout": layout, "config": theme.config("cross-section")}
+
+
+def _polygon(points: Floats, **look: Any) -> Trace:
+    """A closed shape without an outline of its own."""
+    x, y = np.round(points.T * 1e6).astype(int)  # micrometres: finer than a pixel, and short to send
+    shape = {"type": "scatter", "mode": "lines", "fill": "toself", "hoverinfo": "skip", "showlegend": False}
+    return {**shape, "line": {"width": 0}, **look, "x": (x * 1e-6).tolist(), "y": (y * 1e-6).tolist()}
+
+
+def _solids(state: State, theme: Theme) -> Iterator[Trace]:
+    bore = state.stretch.bore
+    rim = np.stack([np.cos(CIRCLE), np.sin(CIRCLE)], axis=-1)
+    ring = np.concatenate([bore * rim, (1.0 + RING) * bore * rim[::-1]])
+    yield _polygon(ring, fillcolor=theme.bushing, name="bushing")
+    journal = state.stretch.points(state.journal(CIRCLE), CIRCLE)
+    yield _polygon(journal, fillcolor=theme.journal, line={"width": 1, "color": theme.ink}, name="journal")
+
+
+def _petals(state: State, theme: Theme) -> Iterator[Trace]:
+    if "radius" not in state.found.arrays or "petal_thickness" not in state.found.scalars:
+        return
+    half, phi, radius = 0.5 * state.scalar("petal_thickness"), state.array("phi"), state.array("radius")
+    for side in (0, 1):
+        roots = list(enumerate(state.array("root_angle")))[side::2]
+        outlines = [petal_outline(radius[petal], root + phi, half, state.stretch) for petal, root in roots]
+        if outlines:
+            yield _joined(
+                outlines, fillcolor=theme.petals[side], line={"width": 0.6, "color": theme.ink}, name="petals"
+            )
+
+
+def _joined(shapes: list[Floats], **look: Any) -> Trace:
+    """Several shapes as one trace."""
+    trace = _polygon(shapes[0], **look)
+    trace["x"], trace["y"] = [], []
+    for number, shape in enumerate(shapes):
+        one = _polygon(np.concatenate([shape, shape[:1]]))
+        trace["x"] += ([None] if number else []) + one["x"]
+        trace["y"] += ([None] if number else []) + one["y"]
+    return trace
+
+
+def _film(state: State) -> Iterator[Trace]:
+    """The film, and the excess pressure as a band inside the journal, in the colours of the pressure."""
+    ratio, theta = state.pressure_ratio, state.theta
+    low, high = min(float(ratio.min()), 1.0), max(float(ratio.max()), 1.001)
+    surface = state.journal(theta)
+    points = state.stretch.points
+    film = points(surface, theta), points(surface + state.array("film_thickness"), theta)
+    band = _band(state, ratio, theta)
+    middles = 0.5 * (ratio[:, 1:] + ratio[:, :-1])
+    colours = np.clip(((middles - low) / (high - low) * len(VIRIDIS)).astype(int), 0, len(VIRIDIS) - 1)
+    shapes: dict[int, list[Floats]] = {}
+    for strip, colour, start, stop in _runs(colours):
+        for inner, outer in (film, band):
+            piece = slice(start, stop + 2)
+            shapes.setdefault(colour, []).append(np.concatenate([inner[strip, piece], outer[strip, piece][::-1]]))
+    for colour, pieces in sorted(shapes.items()):
+        yield _joined(pieces, fillcolor=VIRIDIS[colour], line={"width": 0.4, "color": VIRIDIS[colour]}, name="film")
+    yield _colour_bar(low, high)
+
+
+def _runs(colours: npt.NDArray[np.int_]) -> Iterator[tuple[int, int, int, int]]:
+    """Strip, colour, first and last cell of each run of cells of one colour."""
+    for strip, row in enumerate(colours):
+        edges = np.flatnonzero(np.diff(row)) + 1
+        for start, stop in zip([0, *edges], [*edges, len(row)], strict=True):
+            yield strip, int(row[start]), int(start), int(stop) - 1
+
+
+def _band(state: State, ratio: Floats, theta: Floats) -> tuple[Floats, Floats]:
+    """Base line (ambient pressure) and top of the band; suction goes outside the base line."""
+    excess = ratio - 1.0
+    drawn = state.stretch.radius(state.journal(theta))
+    height = BAND * float(state.stretch.radius(np.array(state.scalar("journal_radius"))))
+    height /= max(float(np.abs(excess).max()), 1e-12)
+    base = drawn - height * max(-float(excess.min()), 0.0)
+    direction = np.stack([np.cos(theta), np.sin(theta)], axis=-1)
+    return base[..., None] * direction, (base - height * excess)[..., None] * direction
+
+
+def _colour_bar(low: float, high: float) -> Trace:
+    scale = [[step / (len(VIRIDIS) - 1), colour] for step, colour in enumerate(VIRIDIS)]
+    bar = {"title": {"text": "p/p<sub>a</sub>"}, "thickness": 12, "len": 0.6, "x": 1.0, "tickformat": ".3~g"}
+    marker = {"colorscale": scale, "cmin": low, "cmax": high, "color": [low], "showscale": True, "size": 0}
+    hidden = {"type": "scatter", "mode": "markers", "x": [None], "y": [None], "hoverinfo": "skip", "showlegend": False}
+    return hidden | {"marker": marker | {"colorbar": bar}}
+
+
+def _contacts(state: State) -> Iterator[Trace]:
+    for name, (label, colour) in CONTACTS.items():
+        if name not in state.found.arrays:
+            continue
+        touched = state.array(name) > TOUCHING * state.scalar("ambient_pressure")
+        if not touched.any():
+            continue
+        at_journal = name == "journal_contact_pressure"
+        angle = state.array("phi_exposed" if at_journal else "phi")
+        theta = (state.array("root_angle")[:, None] + angle)[touched]
+        outer = None if at_journal else state.array("radius")[touched] + 0.5 * state.scalar("petal_thickness")
+        x, y = state.stretch.points(state.journal(theta) if outer is None else outer, theta).T
+        marker = {"size": 6, "color": colour, "line": {"width": 0.5, "color": "#ffffff"}}
+        yield {
+            "type": "scatter", "mode": "markers", "name": label, "marker": marker, "hoverinfo": "name",
+            "x": x.tolist(), "y": y.tolist(),
+        }  # fmt: skip
+
+
+def _arrows(state: State, theme: Theme) -> Iterator[Mapping[str, Any]]:
+    """Displacement (to the scale of the drawing) and force on the journal, at its centre; the direction of rotation."""
+    e = state.stretch.scale * np.array([state.scalar("eccentricity_x"), state.scalar("eccentricity_y")])
+    force = np.array([state.scalar("force_x"), state.scalar("force_y")])
+    size = float(np.hypot(*force))
+    if np.hypot(*e) > 0.01 * state.stretch.bore:
+        yield _arrow(np.zeros(2), e, theme.ink)
+    if math.isfinite(size) and size > 0.0:
+        drawn = float(state.stretch.radius(np.array(state.scalar("journal_radius"))))
+        along = 0.42 * drawn * force / size
+        yield _arrow(e, e + along, theme.accent)
+    if state.scalar("speed") > 0.0:
+        spot = {"xref": "x", "yref": "y", "showarrow": False, "font": {"size": 20, "color": theme.ink}}
+        yield {"x": float(e[0]), "y": float(e[1] - 0.14 * state.stretch.bore), "text": "↺ ω", **spot}
+
+
+def _arrow(tail: Floats, tip: Floats, colour: str) -> dict[str, Any]:
+    base = {"xref": "x", "yref": "y", "axref": "x", "ayref": "y", "showarrow": True, "arrowhead": 2, "arrowsize": 1.2}
+    places = {"x": float(tip[0]), "y": float(tip[1]), "ax": float(tail[0]), "ay": float(tail[1])}
+    return base | places | {"arrowcolor": colour, "arrowwidth": 2, "text": ""}
+
+
+def _angles(bore: float, theme: Theme) -> Iterator[dict[str, Any]]:
+    for degrees in (0, 90, 180, 270):
+        angle, rim = math.radians(degrees), 1.13 * bore
+        place = {"x": rim * math.cos(angle), "y": rim * math.sin(angle), "text": f"{degrees}°"}
+        yield place | {"showarrow": False, "font": {"size": 11, "color": theme.faint}}
+
+
+def _note(text: str, theme: Theme) -> dict[str, Any]:
+    place = {"xref": "paper", "yref": "paper", "x": 0.0, "y": 0.0, "xanchor": "left", "yanchor": "bottom"}
+    return place | {"text": text, "showarrow": False, "font": {"size": 11, "color": theme.faint}}

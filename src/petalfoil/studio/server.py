@@ -1,0 +1,228 @@
+"""The server: guard, page, workers and the sessions of the tabs that are open."""
+
+from __future__ import annotations
+
+import contextlib
+import ipaddress
+import secrets
+import socket
+import webbrowser
+from collections import OrderedDict
+from collections.abc import AsyncIterator, Callable
+from dataclasses import dataclass
+from typing import Any
+
+import uvicorn
+from fastapi import FastAPI
+from nicegui import app as nicegui_app
+from nicegui import ui
+
+from petalfoil.errors import UsageError
+from petalfoil.studio.design import Design
+from petalfoil.studio.engine import Engine, default_size
+from petalfoil.studio.guard import Guard
+from petalfoil.studio.page import Page
+from petalfoil.studio.session import Session
+
+LOOPBACK = "127.0.0.1"
+MOST_SESSIONS = 64
+"""Tabs whose state is kept; beyond, the one that was left longest ago is forgotten."""
+CONNECT = 20.0
+"""Time that a browser has to open its web socket after it asked for the page [s]."""
+LARGEST_MESSAGE = 256 * 1024
+"""Largest message of a browser on the web socket [bytes]: a long text in a field."""
+WIDE = 900
+"""Width of a window above which the case stands beside the pictures [px]."""
+LOOK = "[matchMedia('(prefers-color-scheme: dark)').matches, innerWidth]"
+"""What the browser is asked for: whether its user prefers a dark page, and the width of its window."""
+KEY = "petalfoil_session"
+"""Name under which a tab keeps the key of its session."""
+
+
+@dataclass(frozen=True)
+class Address:
+    """Where the server is.
+
+    Attributes
+    ----------
+    host : str
+        Address that it listens to.
+    port : int
+        Its port.
+    token : str
+        What the first request must know.
+    """
+
+    host: str
+    port: int
+    token: str
+
+    @property
+    def url(self) -> str:
+        """What is opened in a browser."""
+        host = LOOPBACK if self.host == "0.0.0.0" else self.host
+        return f"http://{host}:{self.port}/?token={self.token}"
+
+    def names(self) -> list[str]:
+        """Names that a browser may know the server by."""
+        if not ipaddress.ip_address(self.host).is_unspecified:
+            return ["localhost", LOOPBACK, self.host] if self.host == LOOPBACK else [self.host]
+        import psutil
+
+        found = [address.address for addresses in psutil.net_if_addrs().values() for address in addresses]
+        return ["localhost", socket.gethostname().lower(), *found]
+
+
+class Sessions:
+    """The sessions by key; a tab that is reloaded finds its own again.
+
+    Parameters
+    ----------
+    engine : Engine
+        Who computes.
+    design : Design
+        What a new session begins with.
+    """
+
+    def __init__(self, engine: Engine, design: Design) -> None:
+        self._engine, self._design = engine, design
+        self._sessions: OrderedDict[str, Session] = OrderedDict()
+
+    def open(self, key: str | None) -> Session | None:
+        """The session of a key that no other page shows, or a new one; None where too many pages are open."""
+        known = self._sessions.get(key or "")
+        if known is not None and known.listener is None:
+            self._sessions.move_to_end(known.key)
+            return known
+        if len(self._sessions) >= MOST_SESSIONS and not self._forget_one():
+            return None
+        session = Session(self._engine, self._design if known is None else known.design)
+        self._sessions[session.key] = session
+        return session
+
+    def leave(self, session: Session, page: Page) -> None:
+        """A page is gone: nothing is computed for it any more, but its state is kept for a while."""
+        if session.listener == page.changed:
+            session.listener = None
+            self._engine.leave(session.key)
+
+    def _forget_one(self) -> bool:
+        left = next((session for session in self._sessions.values() if session.listener is None), None)
+        if left is not None:
+            del self._sessions[left.key]
+        return left is not None
+
+
+def serve(
+    design: Design, address: Address, listening: socket.socket, told: Callable[[str], None], *, browse: bool
+) -> None:
+    """Serve the page until Ctrl-C.
+
+    Parameters
+    ----------
+    design : Design
+        The case that a new page begins with.
+    address : Address
+        Where the server is.
+    listening : socket
+        Socket that listens there.
+    told : callable
+        Called with the address when the server answers.
+    browse : bool
+        Whether to open a browser.
+    """
+    engine = Engine(default_size())
+    sessions = Sessions(engine, design)
+
+    @contextlib.asynccontextmanager
+    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        await engine.start()
+        told(address.url)
+        if browse:
+            webbrowser.open(address.url)
+        yield
+        await engine.stop()
+
+    guarded = Guard(_application(lifespan, sessions), address.token, address.port, address.names())
+    config = uvicorn.Config(
+        guarded,
+        log_level="warning",
+        access_log=False,
+        server_header=False,
+        lifespan="on",
+        ws_max_size=LARGEST_MESSAGE,
+        timeout_graceful_shutdown=2,
+    )
+    uvicorn.Server(config).run(sockets=[listening])
+
+
+def _application(lifespan: Any, sessions: Sessions) -> FastAPI:
+    """The application behind the guard."""
+    application = FastAPI(lifespan=lifespan, docs_url=None, redoc_url=None, openapi_url=None)
+
+    @ui.page("/", title="petalfoil studio")
+    async def index() -> None:
+        await show(sessions)
+
+    ui.run_with(
+        application,
+        title="petalfoil studio",
+        favicon="🌸",
+        dark=None,
+        tailwind=False,
+        show_welcome_message=False,
+        reconnect_timeout=5.0,
+        binding_refresh_interval=None,
+    )
+    return application
+
+
+async def show(sessions: Sessions) -> None:
+    """Build the page in a browser that has just connected."""
+    client = ui.context.client
+    await client.connected(timeout=CONNECT)
+    tab = nicegui_app.storage.tab
+    session = sessions.open(tab.get(KEY))
+    if session is None:
+        ui.label(f"{MOST_SESSIONS} pages are open: close one of them, and load this one again")
+        return
+    is_dark, width = await ui.run_javascript(LOOK, timeout=CONNECT)
+    if session.key != tab.get(KEY):
+        tab[KEY] = session.key
+        session.is_dark = bool(is_dark)
+    page = Page(session, is_wide=width > WIDE)
+    session.listener = page.changed
+    client.on_delete(lambda: sessions.leave(session, page))
+    session.refresh()
+
+
+def address_of(host: str, port: int, *, to_network: bool) -> tuple[Address, socket.socket]:
+    """Where the server will be, and a socket that listens there; port 0 takes a free one.
+
+    Raises
+    ------
+    UsageError
+        The host is not this machine alone and `to_network` is not set; the port is taken.
+    """
+    try:
+        is_loopback = ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        raise UsageError(
+            f"--host: {host!r} is no IP address; allowed: {LOOPBACK}, or an address of this machine"
+        ) from None
+    if not is_loopback and not to_network:
+        raise UsageError(
+            f"--host: {host} can be reached by other machines, which then compute on this one, unencrypted: anyone on "
+            "the way can read the token. Say --allow-network if that is meant, or forward a port by ssh instead"
+        )
+    listening = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listening.bind((host, port))
+    except OSError as error:
+        listening.close()
+        raise UsageError(
+            f"--port: {host}:{port} cannot be used: {error.strerror}; --port 0 takes a free one"
+        ) from error
+    listening.listen(128)
+    return Address(host, listening.getsockname()[1], secrets.token_urlsafe(24)), listening

@@ -1,0 +1,131 @@
+"""Charts show the numbers of the result, as plain JSON, and only the view in space needs WebGL."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from petalfoil.analysis import known_verbs
+from petalfoil.case import Case, ModelKind
+from petalfoil.case import toml as case_toml
+from petalfoil.errors import DefinitionError, UsageError
+from petalfoil.studio.charts import chart_of, film_chart, space_chart, usual_axes
+from petalfoil.studio.downloads import csv_of
+from petalfoil.studio.protocol import Found, Task, Work
+from petalfoil.studio.results_panel import rows_of
+from petalfoil.studio.section_chart import has_section, section_chart
+from petalfoil.studio.tasks import MOST_UNKNOWNS, coarse, found_analysis, perform, stored_answer
+from petalfoil.studio.themes import DARK, LIGHT
+from tests.cases import case, tables
+
+
+def task(verb: str = "balance", arguments: dict[str, Any] | None = None, **changes: Any) -> Task:
+    """A task on a small grid of the paper's eight petals under 15 N."""
+    data = tables("paper_n8")
+    data["operation"] = {"speed": "8000 rad/s", "load": "15 N"}
+    data["model"] |= {"cells_per_pitch": 16}
+    for path, value in changes.pop("keys", {}).items():
+        section, _, key = path.partition(".")
+        data[section][key] = value
+    text = case_toml.write(data)
+    return Task(number=1, work=Work.ANSWER, verb=verb, case_toml=text, arguments=arguments or {}, **changes)
+
+
+def found(*given: Any, **named: Any) -> Found:
+    answer = perform(task(*given, **named), lambda part, text: None)
+    assert isinstance(answer, Found)
+    return answer
+
+
+@pytest.fixture(scope="module")
+def state() -> Found:
+    return found()
+
+
+def test_an_answer_agrees_with_the_analysis_itself(state: Found) -> None:
+    balance = known_verbs.find("balance")
+    assert balance is not None
+    record = balance.record(Case.from_toml(task().case_toml))
+    assert_allclose(state.scalars["min_film_thickness"], record.scalars["min_film_thickness"], rtol=1e-12)
+    assert state.records[0].scalars["peak_pressure"] == record.scalars["peak_pressure"]
+
+
+@pytest.mark.parametrize("theme", [LIGHT, DARK])
+def test_the_section_is_plain_json_without_webgl(state: Found, theme: Any) -> None:
+    assert has_section(state)
+    chart = section_chart(state, theme)
+    assert len(json.dumps(chart, allow_nan=False)) < 250_000
+    assert {trace["type"] for trace in chart["data"]} == {"scatter"}
+    reach = max(abs(x) for trace in chart["data"] for x in trace["x"] if x is not None)
+    assert_allclose(reach, 1.05 * state.scalars["bushing_radius"], rtol=1e-3)
+
+
+def test_the_film_chart_shows_peak_pressure_and_minimum_film_thickness(state: Found) -> None:
+    pressure, film = film_chart(state, None, LIGHT)["data"]
+    ambient = state.scalars["ambient_pressure"]
+    highest = max(value for value in pressure["y"] if value is not None)
+    assert_allclose(highest, state.arrays["pressure"].max() / ambient, rtol=1e-4)
+    assert_allclose(min(v for v in film["y"] if v is not None), 1e6 * state.arrays["film_thickness"].min(), rtol=1e-4)
+    assert all(0.0 <= angle < 360.0 for angle in pressure["x"] if angle is not None)
+    assert len(film_chart(state, state, LIGHT)["data"]) == 4
+
+
+def test_the_view_in_space_of_a_flat_film_has_its_length(state: Found) -> None:
+    surfaces = space_chart(state, LIGHT)["data"]
+    assert len(surfaces) == 8
+    assert_allclose(np.max(surfaces[0]["x"]), 1e3 * state.scalars["length"])
+
+
+def test_a_coarse_answer_is_flat_on_few_cells_and_keeps_no_records() -> None:
+    case_3d = case("paper_n8_spatial")
+    assert coarse(case_3d).model.kind is ModelKind.TWO_D
+    assert coarse(case_3d).cells_per_pitch <= 32
+    assert found(coarse=True).records == ()
+
+
+def test_a_series_is_drawn_over_what_was_varied() -> None:
+    curve = found("curve", {"eccentricities": "0 um : -100 um : 3"})
+    assert curve.is_series
+    x, y = usual_axes([name for name in curve.arrays if name != "leg"])
+    chart = chart_of(curve, [x, y], LIGHT)
+    assert len(chart["data"][0]["x"]) == 3
+    assert csv_of(curve).count("\n") == 4
+
+
+@pytest.mark.slow
+def test_files_are_made_of_the_records(state: Found) -> None:
+    made = Task(number=2, work=Work.REPORT, verb="balance", case_toml="title = '<script>'", records=state.records)
+    page = perform(made, lambda part, text: None)
+    assert isinstance(page, bytes)
+    assert b"<script>" not in page
+    assert b"minimum film thickness" in page
+    answer = stored_answer(state.records, found_analysis("balance"))
+    assert answer.records == state.records
+
+
+def test_the_difference_from_a_pinned_design_is_in_percent(state: Found) -> None:
+    scalars = dict(state.scalars) | {"min_film_thickness": 0.5 * float(state.scalars["min_film_thickness"])}
+    pinned = Found(verb="balance", tables=(), scalars=scalars)
+    (row,) = (row for row in rows_of(state, pinned) if row["name"] == "min_film_thickness")
+    assert row["difference"] == "+100 %"
+    assert rows_of(state, None)[0]["pinned"] == ""
+
+
+def test_warnings_colour_their_rows() -> None:
+    warned = Found(verb="solve", tables=(), scalars={"max_bending_stress": 3e9}, warnings=("max_bending_stress: high",))
+    assert rows_of(warned, None)[0]["level"] == "warned"
+    failed = Found(verb="solve", tables=(), scalars={"status": "not converged: why"})
+    assert rows_of(failed, None)[0]["level"] == "failed"
+
+
+def test_a_huge_grid_a_file_and_an_unknown_question_are_refused() -> None:
+    with pytest.raises(DefinitionError, match=f"{MOST_UNKNOWNS:,}"):
+        found(keys={"model.kind": "3d", "model.cells_per_pitch": 4096, "model.axial_cells": 512})
+    with pytest.raises(UsageError, match="reads no files"):
+        found("orbit", {"restart": "/etc/passwd"})
+    with pytest.raises(UsageError, match="known: balance"):
+        found("explode")
