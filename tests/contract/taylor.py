@@ -47,6 +47,9 @@ BEARINGS: dict[str, tuple[str, str, str, bool]] = {
     "stepped petals, whole": ("paper_n8", "3d", "continuous", False),
     "tilted petals, whole": ("paper_n8", "3d", "ambient", True),
     "tilting petals, whole": ("paper_n8", "3d", "continuous", True),
+    "bump foil, 2d": ("bump_foil", "2d", "ambient", True),
+    "bump foil, half": ("bump_foil", "3d", "ambient", True),
+    "bending bump foil, whole": ("bump_foil", "3d", "ambient", False),
     "slipping plain, 2d": ("plain_journal", "2d", "ambient", True),
     "slipping plain, half": ("plain_journal", "3d", "ambient", True),
     "slipping petals, half": ("paper_n8", "3d", "ambient", True),
@@ -61,6 +64,12 @@ THIN = {"model.slip": True, "gas.ambient_pressure": 2e3}
 TILTED = {"operation.tilt": (3e-4, -2e-4)}
 TILTING = {"operation.moment": (0.0, 0.0)}
 """A journal that is held at slopes, and one that is free to tilt."""
+BENDING = {
+    "bump_foil.top_foil_thickness": "0.2 mm",
+    "bump_foil.youngs_modulus": "213 GPa",
+    "bump_foil.poisson_ratio": 0.29,
+}
+"""A top foil that bends over springs."""
 
 
 def bearing(name: str) -> Case:
@@ -72,6 +81,7 @@ def bearing(name: str) -> Case:
         "model.symmetry": symmetry,
         "model.cells_per_pitch": 6 if example.startswith("paper") else 16,
         "model.axial_cells": 4,
+        **(BENDING if name.startswith("bending") else {}),
         **(THIN if name.startswith("slipping") else {}),
         **(TILTED if name.startswith("tilted") else {}),
         **(TILTING if name.startswith("tilting") else {}),

@@ -21,9 +21,10 @@ from tests.cases import case
 
 PETALS = case("paper_n6", **{"model.cells_per_pitch": 8})
 PLAIN = case("plain_journal", **{"model.cells_per_pitch": 16, "model.axial_cells": 4})
+BUMPS = case("bump_foil", **{"model.cells_per_pitch": 16, "model.axial_cells": 4})
 SPATIAL = {"model.kind": "3d", "model.cells_per_pitch": 16, "model.axial_cells": 4}
 
-WALLS = ("petal", "rigid", "elastic foundation")
+WALLS = ("petal", "rigid", "bump foil", "elastic foundation")
 
 VERBS: dict[str, Callable[[Case], xr.Dataset]] = {
     "solve": petalfoil.solve,
@@ -41,14 +42,14 @@ VERBS: dict[str, Callable[[Case], xr.Dataset]] = {
     "check": petalfoil.check,
 }
 
-NEEDS = {"static": Capability.PACK, "runup": Capability.PACK, "liftoff": Capability.LIFT_OFF}
+NEEDS = {"static": Capability.PACK, "runup": Capability.LIFT_OFF, "liftoff": Capability.LIFT_OFF}
 """What a verb needs beyond a wall that bounds a film."""
 
 
 @pytest.fixture(scope="module")
 def bearings(foundation: Case) -> dict[str, Case]:
     """A small bearing on each kind of wall, by its name."""
-    return {wall_kind(of).name: of for of in (PETALS, PLAIN, foundation.replace(**SPATIAL))}
+    return {wall_kind(of).name: of for of in (PETALS, PLAIN, BUMPS, foundation.replace(**SPATIAL))}
 
 
 def test_no_wall_and_no_verb_is_left_out(bearings: dict[str, Case]) -> None:
@@ -101,8 +102,9 @@ def test_rubbing_is_refused_by_what_the_wall_lacks(foundation: Case) -> None:
 
 
 def test_results_hold_what_the_wall_declares_and_nothing_else(bearings: dict[str, Case]) -> None:
-    petal, rigid, foundation = (petalfoil.solve(bearings[wall]) for wall in WALLS)
+    petal, rigid, bumps, foundation = (petalfoil.solve(bearings[wall]) for wall in WALLS)
     assert {"deflection", "radius", "bending_stress", "max_bending_stress", "petal_thickness"} <= set(petal.variables)
     assert not {"deflection", "max_bending_stress", "petal_thickness"} & set(rigid.variables)
-    assert "deflection" in foundation
-    assert not {"radius", "max_bending_stress", "petal_thickness"} & set(foundation.variables)
+    for springs in (bumps, foundation):
+        assert "deflection" in springs
+        assert not {"radius", "max_bending_stress", "petal_thickness"} & set(springs.variables)

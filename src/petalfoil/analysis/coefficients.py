@@ -29,7 +29,7 @@ from petalfoil.results.ross import LEAST_POINTS, ross_frequencies
 from petalfoil.results.schema import Variable
 from petalfoil.results.summary import ABSENT, cell, number
 from petalfoil.system.build import lever_of
-from petalfoil.walls import Capability, required
+from petalfoil.walls import Capability, required, wall_kind
 
 Frequencies = Annotated[
     Sequence[float] | None,
@@ -247,7 +247,8 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
     Raises
     ------
     UsageError
-        A shaft at zero speed has no film that could respond; a frequency is zero with an amplitude; nothing rubs.
+        A shaft at zero speed has no film that could respond; a frequency is zero with an amplitude or a loss factor;
+        nothing rubs.
     ConvergenceError
         The operating point was not found, or the pack is bottomed out.
     """
@@ -257,6 +258,7 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
         raise UsageError("coefficients need a turning shaft: give speeds above zero")
     asked = Asked(np.array(turn if frequencies is None else frequencies, dtype=float), amplitude, tilt)
     check_amplitude(case, asked)
+    check_loss(case, asked)
     cases = [at(case, omega) for omega in turn]
     if speeds is None:
         with running(progress, "coefficients"):
@@ -281,6 +283,21 @@ def check_amplitude(case: Case, asked: Asked) -> None:
         raise UsageError(
             "with an amplitude, whirl frequencies must be above zero: what friction takes in a cycle does not vanish "
             "with the frequency, so its equivalent damping has no bound"
+        )
+
+
+def check_loss(case: Case, asked: Asked) -> None:
+    """Refuse a frequency of zero where the wall loses energy whatever the frequency.
+
+    Raises
+    ------
+    UsageError
+        The equivalent damping has no bound.
+    """
+    if wall_kind(case).loses_energy(case) and np.any(asked.frequencies == 0.0):
+        raise UsageError(
+            "with a loss factor, whirl frequencies must be above zero: what the foil loses in a cycle does not vanish "
+            "with the frequency, so its equivalent damping has no bound; a loss_factor of 0 gives the static stiffness"
         )
 
 

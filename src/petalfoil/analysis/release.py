@@ -22,6 +22,7 @@ from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.friction import FrictionState, friction_of
 from petalfoil.system.time_step import StepProblem
+from petalfoil.system.unknowns import DEFLECTION
 
 Array = NDArray[np.float64]
 
@@ -154,6 +155,16 @@ def released(
     film = FilmState(problem.layout.film_rows, problem.pressure(x), problem.film(x), problem.bearing_number)
     force = problem.journal_force(x, lam) + rotor.outside(tau) - rotor.gyroscopic(tau) @ v
     speeding = np.asarray(np.linalg.solve(rotor.inertia, force), dtype=np.float64)
-    change = TimeState(-film.residual, v, speeding)
+    change = TimeState(storing(problem, film, (x, lam)), v, speeding)
     friction = None if system.friction is None else FrictionState.fresh(system.friction, x, lam)
     return Instant(tau, x, lam, closed, TimeState(problem.stored(x), e, v), change, friction)
+
+
+def storing(problem: StepProblem, film: FilmState, state: tuple[Array, Array]) -> Array:
+    """Rates of what is stored: of the gas; of a wall that loses energy, what it is out of balance by; (n_stored,)."""
+    (x, lam), layout = state, problem.layout
+    if layout.loss is None:
+        return -film.residual
+    left = CoupledProblem(layout, problem.bearing_number, problem.displacement).linearize(x).residual
+    wall = left - problem.G.T @ lam
+    return np.concatenate([-film.residual, -wall[layout.unknowns[DEFLECTION]]])

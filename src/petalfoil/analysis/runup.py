@@ -62,9 +62,9 @@ def runup(case: Case, load: Load = None, *, to: Top, points: Count = 25, progres
     Raises
     ------
     UsageError
-        The wall has no pack at zero speed, or there is no load.
+        The wall does not rest on the journal at zero speed, or there is no load.
     """
-    required(case, Capability.PACK, "a run-up")
+    required(case, Capability.LIFT_OFF, "a run-up")
     speeds = to * np.linspace(0.0, 1.0, points) ** 2  # close together where the film takes over from contact
     way = [("up", float(v)) for v in speeds] + [("down", float(v)) for v in speeds[-2::-1]]
     return Points(partial(_points, case, applied_load(case, load), way, progress), len(way))

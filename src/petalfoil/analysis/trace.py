@@ -156,7 +156,7 @@ class Trace:
             "force_y": float(pushed[1]),
             "friction_torque": viscous + rubbing,
             "rubbing_torque": rubbing,
-            "gas": film.rows.total(instant.moving.mass),
+            "gas": film.rows.total(instant.moving.stored[: mesh.n_unknown]),
             "outflow": film.rows.total(film.residual) * self._units[3],
         }
 
@@ -175,6 +175,9 @@ class Trace:
         unit, friction, worn = force * length, system.friction, 0.0
         if friction is not None and before.friction is not None and instant.friction is not None:
             worn = energy_lost(friction.in_step(before.lam), before.friction, instant.friction)
+        if layout.loss is not None:
+            rates = before.change.stored + instant.change.stored
+            worn += 0.5 * float(rates[layout.wall.film.n_unknown :] @ bent)
         done = float(by_film @ moved + pushed @ bent)
         touching = float(np.sum((before.lam + instant.lam)[layout.wall.contacts.journal]))
         grown = 0.5 * touching * (self._problem(instant).closing - self._problem(before).closing)

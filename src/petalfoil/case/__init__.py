@@ -9,6 +9,7 @@ In the order data flows:
 - `gas_properties`: a gas by its name.
 - `sections`: the tables of bearing, surface, operation and model.
 - `petal_table`: the table of the petals.
+- `bump_foil_table`: the table of a bump foil.
 - `gas`: the table of the gas.
 - `rotor`: the table of the rotor.
 - `growth`: the tables of shaft and bushing, and how they grow.
@@ -25,6 +26,7 @@ In the order data flows:
 All numbers are floats in SI units; texts such as ``"25 um"`` are read when a definition is made.
 """
 
+from petalfoil.case.bump_foil_table import BumpFoil, Feet
 from petalfoil.case.definitions import Case
 from petalfoil.case.free_shape import arc_radius, chordal_tilt
 from petalfoil.case.gas import Gas
@@ -39,9 +41,11 @@ from petalfoil.case.wall_tables import WallTable, register_table, unregister_tab
 
 __all__ = [
     "Bearing",
+    "BumpFoil",
     "Bushing",
     "Case",
     "Edges",
+    "Feet",
     "Gas",
     "Growth",
     "Method",

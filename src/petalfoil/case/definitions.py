@@ -11,6 +11,7 @@ from typing import Any, Self
 from pydantic import Field, model_validator
 
 from petalfoil.case import toml
+from petalfoil.case.bump_foil_table import BumpFoil
 from petalfoil.case.definition import Definition
 from petalfoil.case.gas import Gas
 from petalfoil.case.growth import Bushing, Growth, Shaft, growth_problems
@@ -30,6 +31,7 @@ DEFAULT_CELLS = {ModelKind.TWO_D: 128, ModelKind.THREE_D: 64}  # along a pitch
 DEFAULT_AXIAL_CELLS = 24
 DEFAULT_PLAIN_CELLS = 128  # a plain bearing's pitch is the whole circle
 DEFAULT_PLAIN_AXIAL_CELLS = 32
+DEFAULT_BUMP_AXIAL_CELLS = 64  # over a foil the pressure stays high up to its ends
 DEFAULT_PLAIN_GRADING = 0.6
 """The pressure in a plain bearing is steepest at its ends; petals bend as much elsewhere (docs/decisions/014)."""
 
@@ -54,6 +56,7 @@ class Case(Definition):
     shaft: Shaft | None = None
     bushing: Bushing | None = None
     petals: Petals | None = None
+    bump_foil: BumpFoil | None = None
     gas: Gas
     surface: Surface = Field(default_factory=Surface)
     operation: Operation
@@ -140,6 +143,11 @@ class Case(Definition):
         return self.model.symmetry and self.operation.tilt is None and self.operation.moment is None
 
     @property
+    def travel(self) -> float:
+        """How far the surface of the wall can be pressed beyond the bushing radius; 0 of petals and bores [m]."""
+        return 0.0 if self.wall is None else self.wall.travel
+
+    @property
     def solid_height(self) -> float | None:
         """Height over the bushing of the wall that has bottomed out: 0 of a plain bearing, None if unknown [m]."""
         if (package := self.package) is not None:
@@ -149,7 +157,7 @@ class Case(Definition):
     @property
     def pack_clearance(self) -> float:
         """Clearance above the solid wall and the contact film thickness, never negative [m]."""
-        return self.radial_clearance - (self.solid_height or 0.0) - self.surface.contact_film_thickness
+        return self.radial_clearance + self.travel - (self.solid_height or 0.0) - self.surface.contact_film_thickness
 
     @property
     def bearings(self) -> int:
@@ -173,6 +181,8 @@ class Case(Definition):
         """Cells over the whole length, the default filled in; of no effect in a 2-D model."""
         if self.model.axial_cells is not None:
             return self.model.axial_cells
+        if self.bump_foil is not None:
+            return DEFAULT_BUMP_AXIAL_CELLS
         return DEFAULT_PLAIN_AXIAL_CELLS if self.petals is None else DEFAULT_AXIAL_CELLS
 
     @property
@@ -199,9 +209,10 @@ class Case(Definition):
         if len(self.walls) > 1:
             names = " and ".join(f"[{wall.section}]" for wall in self.walls)
             yield Problem("", f"{names} both describe the wall; allowed: one of them", names, "one of them")
-        found = list(growth_problems(self.bearing, self.shaft))
+        found = [problem for wall in self.walls for problem in wall.problems()]
+        found += growth_problems(self.bearing, self.shaft)
         if not found:
-            found = list(bearing_problems(self.bearing, self.surface, self.operation))
+            found = list(bearing_problems(self.bearing, self.surface, self.operation, self.travel))
         if not found and self.petals is not None:
             found = list(package_problems(self.bearing, self.petals, self.surface, self.operation))
         yield from found or self._problems_as_grown()
@@ -211,7 +222,7 @@ class Case(Definition):
         closing, grown = self.growth.closing(self.operation.speed), self.grown_bearing
         if closing == 0.0:
             return
-        found = list(bearing_problems(grown, self.surface, self.operation))
+        found = list(bearing_problems(grown, self.surface, self.operation, self.travel))
         if not found and self.petals is not None:
             found = list(package_problems(grown, self.petals, self.surface, self.operation))
         for problem in found:

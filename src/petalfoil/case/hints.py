@@ -63,7 +63,7 @@ _EXPLAINED = (
         r"tilt|misalign|slope",
         "Misalignment is not modelled: journal and bushing are parallel; a rotor with a rotor.span tilts.",
     ),
-    (r"bump|compliant|foundation", "Bump foils are not modelled: [petals] or a plain rigid bushing bound the film."),
+    (r"bump|compliant|foundation", "Bump foils stand in the table [bump_foil], in place of [petals]."),
     (
         r"feed|supply|orifice|inlet|recess|porous",
         "External pressurisation is not modelled: the film is self-acting, fed from gas.ambient_pressure.",

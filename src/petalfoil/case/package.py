@@ -115,8 +115,10 @@ def _tilt(petals: Petals, metric_radius: float, petal_angle: float) -> float:
     return chordal_tilt(metric_radius, bend_radius, petal_angle)
 
 
-def bearing_problems(bearing: Bearing, surface: Surface, operation: Operation) -> Iterator[Problem]:
-    """Yield what keeps a journal from fitting into a plain bushing where it is asked to sit."""
+def bearing_problems(
+    bearing: Bearing, surface: Surface, operation: Operation, travel: float = 0.0
+) -> Iterator[Problem]:
+    """Yield what keeps a journal from fitting where it is asked to sit; the wall deflects by up to `travel`."""
     if bearing.clearance <= 0.0:
         yield Problem(
             "bearing.journal_radius",
@@ -127,7 +129,7 @@ def bearing_problems(bearing: Bearing, surface: Surface, operation: Operation) -
         )
         return
     eccentricity = operation.farthest(bearing.length)
-    farthest = bearing.clearance - surface.contact_film_thickness
+    farthest = bearing.clearance + travel - surface.contact_film_thickness
     if eccentricity >= farthest:
         yield Problem(
             "operation.eccentricity",

@@ -9,6 +9,7 @@ from typing import ClassVar, TypeVar
 from pydantic import create_model
 
 from petalfoil.case.definition import Definition
+from petalfoil.case.problems import Problem
 
 
 class WallTable(Definition):
@@ -16,6 +17,15 @@ class WallTable(Definition):
 
     solid_height: ClassVar[float | None] = None
     """Height over the bushing of a wall that has bottomed out [m]; None where it never does."""
+
+    @property
+    def travel(self) -> float:
+        """How far the surface of the wall can be pressed beyond the bushing radius [m]."""
+        return 0.0
+
+    def problems(self) -> Iterable[Problem]:
+        """What keeps the wall from being built that no single key shows."""
+        return ()
 
 
 AnyCase = TypeVar("AnyCase", bound=Definition)

@@ -124,6 +124,8 @@ def polished(impedance: Impedance, rotor: tuple[Inertia, float], s: complex) -> 
         k = int(np.argmin(np.abs(steps)))
         s = complex(s - steps[k])
         if abs(steps[k]) <= PRECISION * abs(s):
+            if s.imag < 0.0 and impedance.motion.loss is not None:
+                return None  # a wall that loses energy is described for frequencies above zero
             y, v = left[:, k].conj(), right[:, k]
             share = abs(2.0 * (y @ (s * M + G) @ v) / (y @ slope @ v))
             return Mode(upper(s), float(share), orbit(v if s.imag >= 0.0 else v.conj()), tilt_of(v))

@@ -19,28 +19,28 @@ class TimeState:
 
     Attributes
     ----------
-    mass : (n_film,) array
-        Gas in the cell of each pressure unknown [1].
+    stored : (n_stored,) array
+        Gas in the cell of each pressure unknown, then what a wall that loses energy stores (`StepProblem.stored`) [1].
     e, v : (d,) array
         Displacement over the reference length and its change per unit of time [1].
     """
 
-    mass: Array
+    stored: Array
     e: Array
     v: Array
 
     def plus(self, step: float, *rates: tuple[float, TimeState]) -> TimeState:
         """The state plus `step` times the weighted `rates`."""
-        mass, e, v = self.mass, self.e, self.v
+        stored, e, v = self.stored, self.e, self.v
         for weight, rate in rates:
-            mass = mass + step * weight * rate.mass
+            stored = stored + step * weight * rate.stored
             e = e + step * weight * rate.e
             v = v + step * weight * rate.v
-        return TimeState(mass, e, v)
+        return TimeState(stored, e, v)
 
     def minus(self, base: TimeState, rate: float) -> TimeState:
         """Rate of change since `base`: the difference times `rate`."""
-        return TimeState(rate * (self.mass - base.mass), rate * (self.e - base.e), rate * (self.v - base.v))
+        return TimeState(rate * (self.stored - base.stored), rate * (self.e - base.e), rate * (self.v - base.v))
 
 
 @dataclass(frozen=True)

@@ -54,7 +54,7 @@ class RotorBearing:
             base.e,
             self.problem.time_number,
             1.0 / (IMPLICIT * step),
-            base.mass,
+            base.stored,
         )
         return Stage(problem, base, rotor.inertia, rotor.gyroscopic(tau), rotor.outside(tau), options, friction)
 
@@ -139,13 +139,12 @@ def estimate(
     The difference to the formula of third order, passed through the tangent, so that stiff parts are not overestimated.
     """
     still = np.zeros_like(instants[0].e)
-    nothing = TimeState(np.zeros_like(instants[0].moving.mass), still, still)
+    nothing = TimeState(np.zeros_like(instants[0].moving.stored), still, still)
     wrong = nothing.plus(step, *zip(ERROR, (instant.change for instant in instants), strict=True))
-    base = TimeState(wrong.mass, -wrong.e, -wrong.v)
+    base = TimeState(wrong.stored, -wrong.e, -wrong.v)
     stage = replace(bearing.stage(base, instants[2].tau, step, instants[0], StageOptions()), outside=still)
     unknowns = bearing.problem.layout.unknowns
-    residual, ambient = unknowns.zeros(), np.ones(unknowns.n)
-    residual[unknowns[PRESSURE]] = stage.rate * wrong.mass
+    residual, ambient = stage.rate * stage.problem.rows_of(wrong.stored), np.ones(unknowns.n)
     settled, de, _ = border_change(stage, residual, (ambient, still), tangent)
     pressures = (settled + tangent.units @ de)[unknowns[PRESSURE]]
     spread = float(np.sqrt(np.mean(pressures**2))) if len(pressures) else 0.0

@@ -6,7 +6,8 @@ Contacts that carry load stay active, and the wall follows the journal where the
     (J + i nu S) dX = -(F_e + i nu S_e) de,     dF = F_P dP + n_e^T dlam        (E4)
 
 Isolated contacts are points between nodes, whose travel adds to `J`, `F_e` and `dF` (E12), (E13). A motion that grows
-or dies out has a complex `s` in place of `i nu`. Petals that stick to each other add to `J`.
+or dies out has a complex `s` in place of `i nu`. Petals that stick to each other add to `J`. A wall that loses energy
+adds `i` times its loss to `J` (B5), for frequencies above zero.
 """
 
 from __future__ import annotations
@@ -74,6 +75,17 @@ class SmallMotion:
         return travelling if self.sticking is None else sp.csc_array(travelling + self.sticking)
 
     @cached_property
+    def loss(self) -> sp.csc_array | None:
+        """What a wall that loses energy adds to `J`, over `i` (B5), (n, n); None of others."""
+        layout = self.problem.layout
+        return None if layout.loss is None else layout.among_all(layout.loss)
+
+    @cached_property
+    def whirling(self) -> sp.csc_array:
+        """`J` of a motion whose frequency is above zero: complex where the wall loses energy."""
+        return self.steady if self.loss is None else sp.csc_array(self.steady + 1j * self.loss)
+
+    @cached_property
     def stored(self) -> sp.csc_array:
         """`S`, the derivative of the stored mass."""
         return self.linearized.stored
@@ -107,9 +119,11 @@ class SmallMotion:
     def moved_system(self, solver: LinearSolver) -> MovedSystem:
         """The same for a reduced model, in the free unknowns `y`: `dX = basis dy + N de`; one factorisation.
 
+        For frequencies above zero.
+
         `N` makes the unknowns follow the journal where it touches; the reactions' force on it is `-N^T` times the rows.
         """
-        constraints, J, S = self.contacts.constraints, self.steady, self.stored
+        constraints, J, S = self.contacts.constraints, self.whirling, self.stored
         N = np.column_stack([constraints.close(column) for column in self.contacts.gap_by_e.T])
         steady, stored = J @ N + self.steady_forcing, S @ N + self.stored_forcing
         rows = self.border.row_derivative
@@ -127,7 +141,8 @@ class SmallMotion:
 
     def growing(self, s: complex, solver: LinearSolver) -> LinearResponse:
         """The response to a motion in `exp(s tau)`; one factorisation."""
-        matrix = sp.csc_array(self.steady + s * self.stored) if s else self.steady
+        turning = self.whirling if s.imag >= 0.0 else sp.csc_array(self.whirling.conj())
+        matrix = sp.csc_array(turning + s * self.stored) if s else self.steady
         forcing = self.steady_forcing + s * self.stored_forcing if s else self.steady_forcing
         constraints = self.contacts.constraints
         tangent = Tangent(matrix, constraints, constraints.factor(matrix, solver, self.elimination_key))

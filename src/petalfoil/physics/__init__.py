@@ -8,6 +8,7 @@
 `contact.py`         gaps of the solid contacts (18)-(22), linear in the deflections
 `contact_points.py`  contact at isolated points between nodes (K5)-(K9)
 `dry_friction.py`    Coulomb friction between petals and on the bushing (D1)-(D3)
+`bump_strip.py`      stiffness of one bump of a bump foil (B1)-(B3)
 `forces.py`          force and friction torque on the journal (62)-(64)
 ===================  ========================================================================================
 

@@ -9,6 +9,7 @@ In the order data flows:
 - ``style``        colours, sizes, axes and titles of figures
 - ``film_fields``  pressure and film: around (`pressure_and_film`), of one petal (`petal_profiles`), as `maps`
 - ``stretch``      the radial map of a section
+- ``section_walls`` petals, bumps and bushing in a section
 - ``section``      the section of the loaded bearing (`cross_section`), with its film (`operating_point`)
 - ``assembly``     the foil pack as it is assembled (`package`)
 - ``characteristics`` against displacement: `curve`, `load_characteristic`, `static`, `hysteresis`

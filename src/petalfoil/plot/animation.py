@@ -28,7 +28,8 @@ from petalfoil.plot import labels, style
 from petalfoil.plot.journal_orbit import draw_path
 from petalfoil.plot.labels import MICRO
 from petalfoil.plot.orbit_views import motion_facts, path_of
-from petalfoil.plot.section import Shades, default_scale, draw_film_pressure, draw_petals, draw_solids
+from petalfoil.plot.section import Shades, default_scale, draw_film_pressure
+from petalfoil.plot.section_walls import draw_petals, draw_solids
 from petalfoil.plot.stretch import Stretch
 from petalfoil.plot.views import array, journal_surface, mid_plane, number
 from petalfoil.results.atomic import replacing

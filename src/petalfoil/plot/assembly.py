@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 
 from petalfoil.plot import labels, style
 from petalfoil.plot.labels import MICRO
-from petalfoil.plot.section import default_scale, draw_petals, draw_solids, frame_section
+from petalfoil.plot.section import default_scale, frame_section
+from petalfoil.plot.section_walls import draw_petals, draw_solids
 from petalfoil.plot.stretch import Stretch
 from petalfoil.plot.views import Floats, array, journal_surface, mid_plane, number, one_point
 

@@ -16,12 +16,13 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
-from matplotlib.patches import FancyArrowPatch, Wedge
+from matplotlib.patches import FancyArrowPatch
 
 from petalfoil.errors import UsageError
 from petalfoil.plot import labels, style
 from petalfoil.plot.film_fields import draw_film, draw_film_map, draw_pressure, draw_pressure_map
-from petalfoil.plot.stretch import Stretch, petal_outline, round_scale
+from petalfoil.plot.section_walls import draw_foil, draw_petals, draw_solids, foil_room
+from petalfoil.plot.stretch import Stretch, round_scale
 from petalfoil.plot.views import (
     Floats,
     array,
@@ -37,8 +38,6 @@ from petalfoil.plot.views import (
 
 _LEAST_JOURNAL = 0.1
 """Least share of the bore's radius that is left to the journal at any scale."""
-_RING = 0.06
-"""Thickness of the bushing's ring over its radius."""
 _BAND = 0.34
 """Height of the largest excess pressure over the drawn radius of the journal."""
 _LEGEND = 0.32
@@ -111,7 +110,8 @@ def operating_point(ds: xr.Dataset) -> Figure:
 def draw_section(ax: Axes, ds: xr.Dataset, scale: float | None = None) -> None:
     """Draw the section of one state into axes."""
     plane = mid_plane(ds)
-    stretch = Stretch(number(ds, "bushing_radius"), _checked_scale(plane, scale))
+    factor = _checked_scale(plane, scale)
+    stretch = Stretch(number(ds, "bushing_radius"), factor, foil_room(ds, factor))
     draw_solids(ax, plane, stretch)
     draw_petals(ax, plane, stretch)
     if "pressure" in ds:
@@ -121,6 +121,7 @@ def draw_section(ax: Axes, ds: xr.Dataset, scale: float | None = None) -> None:
         draw_film_pressure(ax, plane, stretch, shades)
         bar = ax.figure.colorbar(ax.collections[-1], ax=ax, shrink=0.6, pad=0.02, aspect=24)
         bar.set_label("p / p$_a$", fontsize=style.LABEL)
+    draw_foil(ax, plane, stretch)
     surface = stretch.points(journal_surface(plane, _CIRCLE), _CIRCLE)
     ax.plot(*surface.T, color=style.INK, linewidth=1.0, gid="journal surface")
     _draw_contacts(ax, plane, stretch)
@@ -143,34 +144,6 @@ def _checked_scale(ds: xr.Dataset, scale: float | None) -> float:
             f"the scale of a cross-section must be between 1 and {most:.3g} for this bearing, got {scale:g}"
         )
     return scale
-
-
-def draw_solids(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
-    """Draw bushing and journal."""
-    ring = Wedge((0.0, 0.0), (1.0 + _RING) * stretch.bore, 0.0, 360.0, width=_RING * stretch.bore)
-    ring.set(facecolor=style.PALE, edgecolor=style.GREY, hatch="////", linewidth=0.8, gid="bushing")
-    ax.add_patch(ring)
-    surface = stretch.points(journal_surface(ds, _CIRCLE), _CIRCLE)
-    ax.fill(*surface.T, facecolor=style.STEEL, edgecolor="none", gid="journal")
-
-
-def draw_petals(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
-    """Draw the petals of a result that has them, and their roots."""
-    if "radius" not in ds:
-        return
-    half, phi = number(ds, "petal_thickness") / 2, array(ds, "phi")
-    radius = array(ds, "radius")
-    for petal, root in enumerate(array(ds, "root_angle")):
-        outline = petal_outline(radius[petal], root + phi, half, stretch)
-        look: style.Look = {
-            "facecolor": style.PETALS[petal % 2],
-            "edgecolor": style.INK,
-            "linewidth": 0.5,
-            "gid": f"petal {petal}",
-        }
-        ax.fill(*outline.T, **look)
-    roots = stretch.points(np.full(ds.sizes["petal"], stretch.bore), array(ds, "root_angle"))
-    ax.plot(*roots.T, "s", color=style.INK, markersize=5, label="root of a petal", gid="roots", zorder=4)
 
 
 @dataclass(frozen=True)
@@ -301,14 +274,16 @@ def frame_section(ax: Axes, stretch: Stretch) -> None:
     """Mark the bushing angles around a section, and state below it how far it is stretched."""
     ax.set_aspect("equal")
     ax.set_axis_off()
-    rim = 1.13 * stretch.bore
+    rim = 1.13 * stretch.bushing
     for degrees in (0, 90, 180, 270):
         angle = math.radians(degrees)
         place = (rim * math.cos(angle), rim * math.sin(angle))
         ax.text(*place, f"{degrees}°", ha="center", va="center", fontsize=style.TICK, color=style.GREY)
-    ax.set_xlim(-1.18 * stretch.bore, 1.18 * stretch.bore)
-    ax.set_ylim(-(1.18 + _LEGEND) * stretch.bore, 1.18 * stretch.bore)
-    note = f"radial clearance drawn ×{labels.grouped(stretch.scale)}: petals, film and displacement alike"
-    ax.text(0.0, -1.24 * stretch.bore, note, ha="center", va="center", fontsize=style.TICK, color=style.INK)
-    below = {"bbox_to_anchor": (0.0, -1.27 * stretch.bore), "bbox_transform": ax.transData, "borderaxespad": 0.0}
+    size = stretch.bushing
+    ax.set_xlim(-1.18 * size, 1.18 * size)
+    ax.set_ylim(-(1.18 + _LEGEND) * size, 1.18 * size)
+    wall = "foil" if stretch.foil else "petals"
+    note = f"radial clearance drawn ×{labels.grouped(stretch.scale)}: {wall}, film and displacement alike"
+    ax.text(0.0, -1.24 * size, note, ha="center", va="center", fontsize=style.TICK, color=style.INK)
+    below = {"bbox_to_anchor": (0.0, -1.27 * size), "bbox_transform": ax.transData, "borderaxespad": 0.0}
     style.legend(ax, loc="upper center", ncols=3, frameon=False, **below)

@@ -29,10 +29,18 @@ class Stretch:
         Radius of the bushing [m].
     scale : float
         How many times too large the radial clearance is drawn.
+    foil : float
+        Drawn height of a foil behind the bore [m].
     """
 
     bore: float
     scale: float
+    foil: float = 0.0
+
+    @property
+    def bushing(self) -> float:
+        """Drawn inner radius of the bushing [m]."""
+        return self.bore + self.foil
 
     def radius(self, r: Floats) -> Floats:
         """Drawn radius of a radius about the bushing's axis [m]."""

@@ -176,7 +176,9 @@ HISTORIES: dict[str, Variable] = {
     "film_work": Variable(_TIME, "J", "work of the film on rotor and petals", "W_film"),
     "shaft_work": Variable(_TIME, "J", "work of the shaft against film and dry friction", "W_shaft"),
     "rubbing_work": Variable(_TIME, "J", "work of the shaft against dry friction alone", "W_rub"),
-    "petal_friction_work": Variable(_TIME, "J", "energy lost where petals slide on each other and the bushing", "W_p"),
+    "petal_friction_work": Variable(
+        _TIME, "J", "energy lost where petals slide on each other and the bushing, or by the loss of a foil", "W_p"
+    ),
     "frame_pressure": Variable(("frame", *_FILM), "Pa", "absolute pressure of the film", "p"),
     "frame_film_thickness": Variable(("frame", *_FILM), "m", "film thickness between journal and petal", "h"),
     "frame_radius": Variable(("frame", *_PETAL), "m", "radius of the deformed mid-surface of the petal", "r"),
@@ -237,6 +239,7 @@ SCALARS: dict[str, Variable] = {
     "starting_torque": _answer("N m", "torque of dry friction at rest", "M_0"),
     "power_loss": _answer("W", "friction torque times angular velocity", "M omega"),
     "side_leakage": _answer("kg s-1", "mass flow of gas that leaves at both ends", "m_dot"),
+    "max_deflection": _answer("m", "largest deflection of a bump foil", "max W"),
     "max_bending_stress": _answer("Pa", "maximum magnitude of the bending stress of the petals", "sigma_max"),
     "critical_mass": _answer("kg", "critical mass of a rigid rotor: it whirls above", "m_c"),
     "whirl_ratio": _answer("1", "whirl frequency over speed at the critical mass", "gamma"),
@@ -313,6 +316,7 @@ SCALARS: dict[str, Variable] = {
     "compressibility_number": _geometry("1", "compressibility number on the radial clearance", "Lambda"),
     "viscosity": _geometry("Pa s", "dynamic viscosity of the gas", "mu"),
     "mean_free_path": _geometry("m", "mean free path of the gas at ambient pressure", "lambda_a"),
+    "foundation_stiffness": _geometry("Pa m-1", "pressure over deflection of a bump foil", "k_b"),
     "bending_stiffness": _geometry("N m", "bending stiffness of a petal per length", "D"),
     "root_tilt": _geometry("rad", "turn of the free petal at its root, inward from the bore's tangent", "psi"),
     "first_contact_angle": _geometry(

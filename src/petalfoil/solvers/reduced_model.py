@@ -8,13 +8,15 @@ With `K = J^-1 S`, `y` lies in the block Krylov space of `J^-1 f0` and `J^-1 f1`
 
     y = V c ,     (I + s H) c = -V^T J^-1 (f0 + s f1) e ,     H = V^T K V                               (E15)
 
-which costs one factorisation of `J`, a solve for each basis vector, and dense algebra of that size for every `s`.
+which costs one factorisation of `J`, a solve for each basis vector, and dense algebra of that size for every `s`. Where
+`J` is complex, so is `V`, and `V^T` stands for its conjugate transpose.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.linalg as la
@@ -22,6 +24,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Values = NDArray[np.inexact[Any]]
+"""Real, or complex where `J` is."""
 Complex = NDArray[np.complex128]
 
 MOST = 160
@@ -52,11 +56,11 @@ class MovedSystem:
         `d0`, `d1`.
     """
 
-    solve: Callable[[Array], Array]
+    solve: Callable[[Values], Values]
     S: sp.csc_array
-    forcing: tuple[Array, Array]
-    force: tuple[Array, Array]
-    direct: tuple[Array, Array]
+    forcing: tuple[Values, Values]
+    force: tuple[Values, Values]
+    direct: tuple[Values, Values]
 
 
 @dataclass(frozen=True)
@@ -75,10 +79,10 @@ class ReducedModel:
         `d0`, `d1`.
     """
 
-    H: Array
-    forcing: tuple[Array, Array]
-    force: tuple[Array, Array]
-    direct: tuple[Array, Array]
+    H: Values
+    forcing: tuple[Values, Values]
+    force: tuple[Values, Values]
+    direct: tuple[Values, Values]
 
     @property
     def size(self) -> int:
@@ -105,12 +109,12 @@ class ReducedModel:
         """
         q, d = self.size, len(self.direct[0])
         one, none = np.eye(d), np.zeros((d, d))
-        steady = [
+        steady: list[list[Values]] = [
             [np.eye(q), self.forcing[0], np.zeros((q, d))],
             [-self.force[0], -self.direct[0], gyroscopic],
             [np.zeros((d, q)), none, -one],
         ]
-        rates = [
+        rates: list[list[Values]] = [
             [self.H, self.forcing[1], np.zeros((q, d))],
             [-self.force[1], -self.direct[1], mass],
             [np.zeros((d, q)), one, none],
@@ -126,14 +130,14 @@ class ReducedModel:
         return np.asarray(np.linalg.solve(np.eye(self.size) + s * self.H, right), dtype=np.complex128)
 
 
-def _at(pair: tuple[Array, Array], s: complex) -> Complex:
+def _at(pair: tuple[Values, Values], s: complex) -> Complex:
     return np.asarray(pair[0] + s * pair[1], dtype=np.complex128)
 
 
 def reduce_system(system: MovedSystem, points: Sequence[complex]) -> ReducedModel:
     """The smallest block Krylov model whose force has settled at `points` (`MOST` vectors at most)."""
     start = system.solve(np.hstack(system.forcing))
-    block, space = start.shape[1], KrylovSpace(len(start))
+    block, space = start.shape[1], KrylovSpace(len(start), start.dtype)
     space.extend(start.T)
     last: Complex | None = None
     while True:
@@ -149,10 +153,10 @@ def reduce_system(system: MovedSystem, points: Sequence[complex]) -> ReducedMode
         last = now
 
 
-def projected(system: MovedSystem, space: KrylovSpace, start: Array) -> ReducedModel:
+def projected(system: MovedSystem, space: KrylovSpace, start: Values) -> ReducedModel:
     """The model in the vectors of `space` that `K` has been applied to; `start` is `J^-1` of the forcing (n, 2 d)."""
     V, d = space.vectors[: space.applied].T, len(system.direct[0])
-    steady, rate = V.T @ start[:, :d], V.T @ start[:, d:]
+    steady, rate = V.conj().T @ start[:, :d], V.conj().T @ start[:, d:]
     return ReducedModel(
         space.H[: space.applied, : space.applied],
         (steady, rate),
@@ -174,21 +178,21 @@ class KrylovSpace:
         Vectors that `K` has been applied to.
     """
 
-    def __init__(self, n: int) -> None:
+    def __init__(self, n: int, dtype: np.dtype[Any]) -> None:
         self.most = min(MOST, n)
-        self._vectors, self._H = np.zeros((self.most, n)), np.zeros((self.most, self.most))
+        self._vectors, self._H = np.zeros((self.most, n), dtype), np.zeros((self.most, self.most), dtype)
         self.count = self.applied = 0
 
     @property
-    def vectors(self) -> Array:
+    def vectors(self) -> Values:
         """The basis, (count, n)."""
-        basis: Array = self._vectors[: self.count]
+        basis: Values = self._vectors[: self.count]
         return basis
 
     @property
-    def H(self) -> Array:
+    def H(self) -> Values:
         """Products of the basis with `K` times it, (count, count)."""
-        products: Array = self._H[: self.count, : self.count]
+        products: Values = self._H[: self.count, : self.count]
         return products
 
     @property
@@ -196,18 +200,18 @@ class KrylovSpace:
         """`K` has been applied to all vectors: they span all that can be reached, or all that may be kept."""
         return self.applied == self.count
 
-    def next(self) -> Array:
+    def next(self) -> Values:
         """The first vector that `K` has not been applied to; its image is the next to extend the space."""
         self.applied += 1
-        vector: Array = self.vectors[self.applied - 1]
+        vector: Values = self.vectors[self.applied - 1]
         return vector
 
-    def extend(self, images: Sequence[Array] | Array) -> None:
+    def extend(self, images: Sequence[Values] | Values) -> None:
         """Add what vectors (n,) have outside the space."""
         for image in images:
             rest, whole = image, float(np.linalg.norm(image))
             for _ in range(2):  # Gram-Schmidt, again for what rounding left
-                inside = self.vectors @ rest
+                inside = self.vectors.conj() @ rest
                 rest = rest - self.vectors.T @ inside
                 if self.applied:
                     self._H[: self.count, self.applied - 1] += inside

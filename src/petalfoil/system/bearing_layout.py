@@ -99,6 +99,17 @@ class BearingLayout:
         return sp.csr_array(abs(self.stiffness))
 
     @cached_property
+    def loss(self) -> sp.csr_array | None:
+        """Structural loss of the wall in the units of the problem (B5), (n_wall, n_wall) [1]; None without any."""
+        loss = self.wall.loss
+        return None if loss is None else sp.csr_array(loss * (self.scales.length / self.scales.force))
+
+    def among_all(self, wall: sp.csr_array) -> sp.csc_array:
+        """A matrix of the deflections (n_wall, n_wall) among all unknowns, (n, n)."""
+        held = wall.tocoo()
+        return sp.coo_array((held.data, (held.row, held.col)), shape=(self.n, self.n)).tocsc()
+
+    @cached_property
     def push(self) -> sp.csr_array:
         """`A`: nodal forces on the wall from the pressure unknowns, (n_wall, n_film) [1]."""
         wall, unknown = self.wall.film_unknown.ravel(), self.wall.film.unknown.ravel()

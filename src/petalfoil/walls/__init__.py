@@ -5,6 +5,7 @@
 `base.py`            a discretised wall: unknowns, film over the wall, contacts
 `elasticity.py`      elastic forces from deflections
 `petals.py`          a leaf pack
+`bump_foil.py`       a bump foil under a smooth top foil
 `rigid.py`           a rigid bore: plain gas journal bearing
 `two_bearings.py`    a wall twice, on one shaft that tilts
 `tilting.py`         a wall under a journal whose axis is not parallel to it

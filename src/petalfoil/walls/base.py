@@ -52,6 +52,9 @@ class Wall:
         presses there (D1) [1].
     n_bearings : int
         Bearings on the shaft; strips, unknowns and gaps of each kind are those of the first, then the second.
+    loss : (n, n) sparse or None
+        Nodal forces that are a quarter of a cycle ahead of the deflections, whatever the frequency: structural loss
+        factor times stiffness (B5) [N/m]; None of a wall that loses no energy.
     """
 
     film: FilmMesh
@@ -67,6 +70,7 @@ class Wall:
     slip: sp.csr_array
     reaction_share: sp.csr_array
     n_bearings: int = 1
+    loss: sp.csr_array | None = None
 
     @property
     def n_unknown(self) -> int:

@@ -58,6 +58,10 @@ class WallKind(ABC):
             fields["journal_contact_pressure"] = whole(touching.reshape(wall.film.shape))
         return fields
 
+    def loses_energy(self, case: Case) -> bool:
+        """Whether its stiffness has an imaginary part, whatever the frequency (B5)."""
+        return False
+
     def coordinates(self, case: Case, wall: Wall) -> Fields:
         """Coordinates of these fields beside the film's: `phi` [rad] if the wall moves."""
         return {"phi": wall.film.phi} if wall.n_unknown else {}

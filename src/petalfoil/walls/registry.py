@@ -5,12 +5,15 @@ from __future__ import annotations
 from petalfoil.case import Case, WallTable, register_table, unregister_table
 from petalfoil.errors import UsageError
 from petalfoil.walls.base import Wall
+from petalfoil.walls.bump_foil import BumpFoilWall
 from petalfoil.walls.kind import Capability, WallKind
 from petalfoil.walls.petals import PetalWall
 from petalfoil.walls.rigid import RigidWall
 from petalfoil.walls.tilting import misaligned
 
-_KINDS: dict[type[WallTable] | None, WallKind] = {kind.table: kind for kind in (RigidWall(), PetalWall())}
+_KINDS: dict[type[WallTable] | None, WallKind] = {
+    kind.table: kind for kind in (RigidWall(), PetalWall(), BumpFoilWall())
+}
 
 
 def register(kind: WallKind) -> None:

@@ -55,6 +55,7 @@ def paired(wall: Wall, span: float) -> Wall:
         slip=twice(wall.slip),
         reaction_share=sp.csr_array(twice(wall.reaction_share)[:, order]),
         n_bearings=2,
+        loss=None if wall.loss is None else twice(wall.loss),
     )
 
 

@@ -54,7 +54,7 @@ def test_the_equations_of_a_stage_hold_at_its_end(name: str) -> None:
     state, moving = found.state, found.moving
     problem = stage.problem.at(displacement=state.b)
     assert state.residual < (1e-6 if "friction" in name else 1e-8)
-    assert_allclose(moving.mass, problem.stored(state.x), rtol=1e-12)
+    assert_allclose(moving.stored, problem.stored(state.x), rtol=1e-12)
     change = moving.minus(stage.base, stage.rate)
     assert_allclose(change.e, moving.v, rtol=1e-9, atol=1e-12)
     force = problem.journal_force(state.x, state.lam) + stage.outside - stage.gyroscopic @ moving.v
