@@ -37,6 +37,7 @@ if TYPE_CHECKING:
         UsageError,
     )
     from petalfoil.report.reproduce import reproduce
+    from petalfoil.studies.sweep import sweep
 
 __version__ = "0.1.0"
 
@@ -62,9 +63,10 @@ __all__ = [
     "solve",
     "stability",
     "static",
+    "sweep",
 ]
 
-_HOMES = {"Case": "petalfoil.case", "reproduce": "petalfoil.report.reproduce"}
+_HOMES = {"Case": "petalfoil.case", "reproduce": "petalfoil.report.reproduce", "sweep": "petalfoil.studies.sweep"}
 
 
 def __getattr__(name: str) -> object:

@@ -21,6 +21,13 @@ if TYPE_CHECKING:
 SHOW = "Show a result file once more, without running anything: table, figure, files for other programs."
 
 
+STUDIES = {
+    "sweep": "Ask an analysis of many cases: over a grid of parameters, or a sample of them.",
+    "study": "Show, resume or export the study in a folder.",
+}
+"""Commands of studies and the first lines of their help texts."""
+
+
 class Verbs(TyperGroup):
     """The analyses, read from their declarations, and the commands that are none.
 
@@ -29,14 +36,14 @@ class Verbs(TyperGroup):
 
     def list_commands(self, ctx: Context) -> list[str]:
         """Names of all verbs."""
-        return [*known_verbs.summaries(), "show", *super().list_commands(ctx)]
+        return [*known_verbs.summaries(), "show", *STUDIES, *super().list_commands(ctx)]
 
     def get_command(self, ctx: Context, cmd_name: str) -> Any:
         """The command of a verb as the list of commands shows it."""
         if cmd_name in known_verbs.summaries():
             return TyperCommand(cmd_name, help=known_verbs.summaries()[cmd_name])
-        if cmd_name == "show":
-            return TyperCommand(cmd_name, help=SHOW)
+        if cmd_name == "show" or cmd_name in STUDIES:
+            return TyperCommand(cmd_name, help={"show": SHOW, **STUDIES}[cmd_name])
         return super().get_command(ctx, cmd_name)
 
     def resolve_command(self, ctx: Context, args: list[str]) -> Any:
@@ -50,6 +57,10 @@ class Verbs(TyperGroup):
             from petalfoil.cli.show import show_command
 
             command = show_command()
+        elif name in STUDIES:
+            from petalfoil.cli.studies import study_command
+
+            command = study_command(str(name), rest)
         return name, command, rest
 
 

@@ -43,7 +43,7 @@ def command_of(verb: str) -> Any:
     def ask(**given: Any) -> None:
         call(analysis, given)
 
-    options = [inspect.Parameter("case", KEYWORD, annotation=CASE_FILE), *_options(analysis)]
+    options = [inspect.Parameter("case", KEYWORD, annotation=CASE_FILE), *argument_options(analysis)]
     if analysis.is_series:
         options.append(inspect.Parameter("resume", KEYWORD, annotation=RESUME_FILE, default=None))
     for name, (annotation, default) in OUTPUTS.items():
@@ -90,7 +90,7 @@ def option_of(name: str, argument: Argument) -> str:
     return f"--{argument.option or name.replace('_', '-')}"
 
 
-def _options(analysis: Analysis) -> list[inspect.Parameter]:
+def argument_options(analysis: Analysis) -> list[inspect.Parameter]:
     """The options of the arguments, in their order: texts and flags, absent where nothing is given."""
     options = []
     taken = {option_of(name, argument) for name, argument in analysis.arguments.items()}

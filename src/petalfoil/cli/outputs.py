@@ -86,11 +86,11 @@ class Outputs:
             A file has a suffix that is not known, or cannot be written.
         """
         if out is not None:
-            _check(out, "--out", DATA_SUFFIXES)
+            check_file(out, "--out", DATA_SUFFIXES)
         if plot is not None:
-            _check(plot, "--plot", FIGURE_SUFFIXES)
+            check_file(plot, "--plot", FIGURE_SUFFIXES)
         for export in exports:
-            _check(export.path, export.option, export.suffixes)
+            check_file(export.path, export.option, export.suffixes)
         return cls(as_json=as_json, out=out, plot=plot, exports=exports)
 
     def deliver(self, answer: Answer, dataset: xr.Dataset | None = None, *, stopped: int = 0) -> None:
@@ -157,7 +157,8 @@ class Outputs:
             emit(render(answer))
 
 
-def _check(path: Path, option: str, suffixes: tuple[str, ...]) -> None:
+def check_file(path: Path, option: str, suffixes: tuple[str, ...]) -> None:
+    """Make sure that a file of one of these suffixes can be written."""
     if path.suffix.lower() not in suffixes:
         raise UsageError(f"{option}: {path} has the suffix '{path.suffix}'; known: {', '.join(suffixes)}")
     if path.is_dir():

@@ -21,6 +21,9 @@ In the order data flows:
 - ``journal_orbit`` path of the journal's centre (`orbit_path`), a motion in one figure (`orbit`)
 - ``animation``    the section in motion, as a page or a GIF (`animate`)
 - ``grid_convergence`` quantities against the grid (`convergence`)
+- ``study_views``  what figures take from a study
+- ``study_sweeps`` a study over its parameters (`sweep`, `parallel_coordinates`, `scatter_matrix`)
+- ``studies``      the figures of a study by name (`study`, `study_figures`)
 - ``generic``      any other result (`quantities`)
 - ``figure_registry`` the figure of each analysis (`summary`), and new ones (`register`)
 
@@ -50,6 +53,8 @@ if TYPE_CHECKING:
     from petalfoil.plot.spectra import orbit_spectrum, orbit_waterfall
     from petalfoil.plot.speed_sweeps import liftoff, runup
     from petalfoil.plot.stability_maps import stability
+    from petalfoil.plot.studies import study, study_figures
+    from petalfoil.plot.study_sweeps import parallel_coordinates, scatter_matrix, sweep
 
 _MODULES = {
     "animation": ("animate",),
@@ -67,6 +72,8 @@ _MODULES = {
     "spectra": ("orbit_spectrum", "orbit_waterfall"),
     "speed_sweeps": ("liftoff", "runup"),
     "stability_maps": ("stability",),
+    "studies": ("study", "study_figures"),
+    "study_sweeps": ("parallel_coordinates", "scatter_matrix", "sweep"),
 }
 _HOME = {name: module for module, names in _MODULES.items() for name in names}
 
@@ -88,15 +95,20 @@ __all__ = [
     "orbit_spectrum",
     "orbit_waterfall",
     "package",
+    "parallel_coordinates",
     "petal_profiles",
     "pressure_and_film",
     "quantities",
     "register",
     "runup",
     "save",
+    "scatter_matrix",
     "stability",
     "static",
+    "study",
+    "study_figures",
     "summary",
+    "sweep",
 ]
 
 

@@ -24,6 +24,7 @@ FIGURES: dict[str, Draw | str] = {
     "coefficients": "dynamic_coefficients:coefficients",
     "stability": "stability_maps:stability",
     "orbit": "journal_orbit:orbit",
+    "sweep": "study_sweeps:sweep",
 }
 """Function that draws the result of an analysis, or where it stands: module of this package, colon, function."""
 

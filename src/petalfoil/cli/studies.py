@@ -1,0 +1,219 @@
+"""The commands of studies: their own options beside those of the analysis that they ask."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from petalfoil.analysis.declaration import Analysis
+from petalfoil.case import Case
+from petalfoil.cli.commands import CASE_FILE, JSON, KEYWORD, argument_options, command, option_of
+from petalfoil.cli.failures import handled
+from petalfoil.cli.progress import bar
+from petalfoil.cli.signals import exit_code_of
+from petalfoil.cli.streams import say
+from petalfoil.cli.study_outputs import deliver
+from petalfoil.errors import UnitError, UsageError
+from petalfoil.studies.definition import Study
+from petalfoil.studies.question import Question, analysis_of
+from petalfoil.units import parse_quantity
+from petalfoil.units.reading import shown
+
+if TYPE_CHECKING:
+    from petalfoil.studies.run import Execution
+
+ASK = "--ask"
+DEFAULT_VERB = "solve"
+VARY_HELP = 'What varies, as often as needed: petals.thickness="0.1 mm : 0.2 mm : 11", petals.count=6,8,10.'
+Vary = Annotated[list[str], typer.Option("--vary", metavar="PATH=VALUES", help=VARY_HELP)]
+Ask = Annotated[
+    str, typer.Option(ASK, metavar="VERB", help="Analysis that is asked; its own options are listed here too.")
+]
+Out = Annotated[
+    Path, typer.Option("--out", metavar="FOLDER", help="Folder of the study; one that was stopped goes on.")
+]
+Workers = Annotated[
+    int | None,
+    typer.Option(
+        "--workers", metavar="N", help="Worker processes, by default one a processor; 0: this one alone.", min=0
+    ),
+]
+Scheduler = Annotated[
+    str, typer.Option("--scheduler", metavar="ADDRESS", help="Dask scheduler that runs already: tcp://10.0.0.1:8786.")
+]
+Memory = Annotated[
+    str | None,
+    typer.Option("--memory", metavar="SIZE", help='Memory of each worker: "2 GB"; by default an equal part.'),
+]
+Fields = Annotated[bool, typer.Option("--fields", help="Write film and petals of each case too, one file a case.")]
+Anew = Annotated[bool, typer.Option("--anew", help="Replace another study in the folder.")]
+Sample = Annotated[
+    str,
+    typer.Option("--sample", metavar="SAMPLE", help='A sample instead of all combinations: "lhs 200", "sobol 256".'),
+]
+RUNNING = {
+    "out": (Out, Path("study")),
+    "workers": (Workers, None),
+    "scheduler": (Scheduler, ""),
+    "memory": (Memory, None),
+    "fields": (Fields, False),
+    "anew": (Anew, False),
+    "as_json": (JSON, False),
+}
+"""Options of every study, with their defaults."""
+
+
+@dataclass(frozen=True)
+class StudyCommand:
+    """A command that begins a study.
+
+    Attributes
+    ----------
+    help : str
+        Its help text.
+    options : dict
+        Its own options with their defaults.
+    define : callable
+        Makes the study from case, question and own options.
+    default : str
+        Analysis that is asked unless another is given.
+    """
+
+    help: str
+    options: dict[str, tuple[Any, Any]]
+    define: Callable[[Case, Question, dict[str, Any]], Study]
+    default: str = DEFAULT_VERB
+    hidden: tuple[str, ...] = field(default=("error", "restart"))
+
+
+def define_sweep(case: Case, question: Question, own: dict[str, Any]) -> Study:
+    """The study of ``petalfoil sweep``."""
+    from petalfoil.studies.sweep import sweep_study
+
+    return sweep_study(case, assignments("--vary", own["vary"]), question, own["sample"])
+
+
+COMMANDS = {
+    "sweep": StudyCommand(
+        help="""Ask an analysis of many cases: over a grid of parameters, or a sample of them.
+
+A parameter is any number of the case by its path. The folder holds the study
+while it runs and afterwards: study.nc, table.csv, figures and a page. A case
+without an answer is part of the result, with its reason.
+
+Example: petalfoil sweep case.toml --vary petals.thickness="0.1 mm : 0.2 mm : 11" --ask balance --load "20 N"
+""",
+        options={"vary": (Vary, inspect.Parameter.empty), "sample": (Sample, "")},
+        define=define_sweep,
+    ),
+}
+"""Commands that begin a study, by name."""
+
+
+def study_command(name: str, words: list[str]) -> Any:
+    """The command of a name, with the options of the analysis that the call asks."""
+    if name == "study":
+        from petalfoil.cli.study_folder import study_commands
+
+        return study_commands()
+    declared = COMMANDS[name]
+    with handled():
+        analysis = analysis_of(asked_verb(words, declared.default))
+    own = {**declared.options, "ask": (Ask, declared.default), **RUNNING}
+    known = {names for annotation, _ in own.values() for names in annotation.__metadata__[0].param_decls or ()}
+    options = [inspect.Parameter("case", KEYWORD, annotation=CASE_FILE)]
+    options += [inspect.Parameter(key, KEYWORD, annotation=a, default=d) for key, (a, d) in own.items()]
+    for option in argument_options(analysis):
+        taken = option_of(option.name, analysis.arguments[option.name]) in known or option.name in own
+        if not taken and option.name not in declared.hidden:
+            options.append(option)
+
+    def ask(**given: Any) -> None:
+        call(declared, analysis, given)
+
+    return command(name, ask, options, declared.help)
+
+
+def asked_verb(words: list[str], default: str) -> str:
+    """The analysis that a call asks, read before its options are known."""
+    for word, following in zip(words, [*words[1:], ""], strict=True):
+        if word == ASK:
+            return following
+        if word.startswith(f"{ASK}="):
+            return word.removeprefix(f"{ASK}=")
+    return default
+
+
+def call(declared: StudyCommand, analysis: Analysis, given: dict[str, Any]) -> None:
+    """Run a study with the options of a call, and tell what came of it."""
+    out, as_json = given["out"], given["as_json"]
+    with handled(as_json):
+        arguments = {name: given[name] for name in analysis.arguments if name in given and name not in declared.options}
+        known_as = {name: option_of(name, argument) for name, argument in analysis.arguments.items()}
+        required = [n for n in known_as if analysis.default(n) is inspect.Parameter.empty and arguments.get(n) is None]
+        if required:
+            raise UsageError(f"{known_as[required[0]]} is missing: {analysis.verb} needs it")
+        question = Question.read(analysis.verb, {k: v for k, v in arguments.items() if v is not None}, known_as)
+        study = declared.define(Case.load(given["case"]), question, given)
+        run_and_tell(study, out, given)
+
+
+def run_and_tell(study: Study, out: Path, given: dict[str, Any]) -> None:
+    """Run a study in its folder with a progress bar; what is finished stays when it is interrupted."""
+    from petalfoil.studies.run import run_with_effort
+
+    with executing(study.kind, given) as execution:
+        try:
+            ds, effort = run_with_effort(study, out, execution)
+        except KeyboardInterrupt as interrupt:
+            say(f"interrupted: what is finished is kept in {out}; 'petalfoil study resume {out}' goes on")
+            raise typer.Exit(exit_code_of(interrupt)) from interrupt
+    deliver(ds, out, as_json=given["as_json"], effort=effort)
+
+
+@contextmanager
+def executing(title: str, given: dict[str, Any]) -> Iterator[Execution]:
+    """How the study is run, with its progress on the terminal."""
+    from petalfoil.studies.run import Execution
+
+    memory = None if given["memory"] is None else memory_of(given["memory"])
+    with bar(title) as report:
+        yield Execution(given["workers"], given["scheduler"], memory, given["fields"], given["anew"], report)
+
+
+def memory_of(text: str) -> float:
+    """A size of memory [byte]."""
+    try:
+        size = parse_quantity(text, "byte")
+    except UnitError as error:
+        raise UsageError(f"--memory: {error}") from error
+    if not size >= 2**28:
+        raise UsageError(f"--memory: {shown(text)} is too little for a worker; allowed: at least 256 MiB")
+    return size
+
+
+def assignments(option: str, given: list[str]) -> dict[str, str]:
+    """Paths and texts of ``PATH=VALUES``.
+
+    Raises
+    ------
+    UsageError
+        A text has no ``=``, or a path comes twice.
+    """
+    found: dict[str, str] = {}
+    for text in given:
+        path, sign, values = (part.strip() for part in text.partition("="))
+        if not sign or not path or not values:
+            raise UsageError(
+                f"{option}: {shown(text)} is no PATH=VALUES, such as petals.thickness='0.1 mm : 0.2 mm : 5'"
+            )
+        if path in found:
+            raise UsageError(f"{option}: {path} is given twice")
+        found[path] = values
+    return found

@@ -1,0 +1,70 @@
+"""A study on standard output: its counts and ranges as a table or as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from petalfoil.cli.failures import NOT_CONVERGED
+from petalfoil.cli.streams import emit, say
+from petalfoil.cli.tables import PIPE_WIDTH
+from petalfoil.studies import summary
+from petalfoil.text import for_terminal
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from petalfoil.studies.engine import Effort
+
+MOST_REASONS = 5
+
+
+def deliver(ds: xr.Dataset, folder: Path, *, as_json: bool, effort: Effort | None = None) -> None:
+    """Print a study, and say on standard error why cases have no answer.
+
+    Raises
+    ------
+    typer.Exit
+        No case has an answer.
+    """
+    if as_json:
+        emit(json.dumps({**summary.to_json(ds), "folder": str(folder)}, allow_nan=False) + "\n")
+    else:
+        emit(text_of(ds) + f"\nFolder: {for_terminal(str(folder))}\n")
+    for reason, count in Counter(summary.reasons(ds)).most_common(MOST_REASONS):
+        say(f"{count} without an answer: {reason}")
+    if effort is not None and effort.solver > 0.0:
+        say(
+            f"processor time: {effort.solver:.1f} s for the cases, {effort.workers:.1f} s of the workers in all, "
+            f"{effort.driver:.1f} s to hand them out"
+        )
+    if not bool(ds["converged"].values.any()):
+        raise typer.Exit(NOT_CONVERGED)
+
+
+def text_of(ds: xr.Dataset) -> str:
+    """Headline, tables, what was asked."""
+    console = Console(width=PIPE_WIDTH, markup=False, highlight=False, emoji=False)
+    with console.capture() as capture:
+        console.print(for_terminal(summary.headline(ds)), style="bold")
+        for line in summary.asked(ds):
+            console.print(for_terminal(line))
+        for heads, lines in summary.tables(ds):
+            console.print(_table(heads, lines))
+    return "\n".join(line.rstrip() for line in capture.get().rstrip().splitlines()) + "\n"
+
+
+def _table(heads: tuple[str, ...], lines: Any) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for number, head in enumerate(heads):
+        table.add_column(head, justify="left" if number in (0, len(heads) - 1) else "right")
+    for line in lines:
+        table.add_row(*map(for_terminal, line))
+    return table

@@ -1,0 +1,54 @@
+"""The figures of a study, by their names: what its folder and its page show."""
+
+from __future__ import annotations
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from petalfoil.errors import UsageError
+from petalfoil.plot.study_sweeps import parallel_coordinates, scatter_matrix, sweep
+
+
+def study(ds: xr.Dataset, names: tuple[str, ...] = ()) -> Figure:
+    """Draw the main figure of a study.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of a study.
+    names : tuple of str
+        Results to show; by default those that the study is about.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Lines, contours or parallel coordinates of a sweep.
+    """
+    return sweep(ds, names)
+
+
+def study_figures(ds: xr.Dataset) -> dict[str, Figure]:
+    """Draw all figures of a study.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of a sweep, a sensitivity or tolerance study, or an optimisation.
+
+    Returns
+    -------
+    dict of matplotlib.figure.Figure
+        Figures by name; none where no result varies.
+    """
+    drawn = {"sweep": _sweep}
+    try:
+        return drawn.get(str(ds.attrs["analysis"]), _sweep)(ds)
+    except UsageError:  # no case has a result that varies: the page tells why each failed
+        return {}
+
+
+def _sweep(ds: xr.Dataset) -> dict[str, Figure]:
+    figures = {"results": sweep(ds)}
+    if ds["converged"].dims == ("case",) or ds["converged"].ndim > 2:
+        figures = {"parallel_coordinates": parallel_coordinates(ds), "scatter_matrix": scatter_matrix(ds)}
+    return figures

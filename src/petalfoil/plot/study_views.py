@@ -1,0 +1,109 @@
+"""What figures take from a study: its parameters and results in readable units, and which cases have no answer."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from petalfoil.errors import UsageError
+from petalfoil.plot.labels import QUANTITIES, RPM, Quantity, quantity
+from petalfoil.results.schema import SCALARS, DataType, Role
+from petalfoil.text import for_figure
+
+Floats = NDArray[np.float64]
+
+_LENGTHS = ((1e-3, "µm", 1e6), (1.0, "mm", 1e3))
+_PRESSURES = ((1e4, "Pa", 1.0), (1e6, "kPa", 1e-3), (1e9, "MPa", 1e-6), (np.inf, "GPa", 1e-9))
+_FEW = 4
+"""Results that a figure shows unless it is told which."""
+
+
+def parameters(ds: xr.Dataset) -> list[str]:
+    """Names of what varies."""
+    return [str(name) for name in ds.coords if "path" in ds[name].attrs]
+
+
+def parameter(ds: xr.Dataset, name: str) -> Quantity:
+    """How a parameter is shown: its meaning, and a unit in which its values are readable."""
+    attributes = ds[name].attrs
+    meaning, units = for_figure(str(attributes.get("long_name", name))), str(attributes.get("units", ""))
+    largest = float(np.max(np.abs(ds[name].values))) if ds[name].size else 0.0
+    if units == "rad s-1":
+        return Quantity(meaning, "rpm", RPM)
+    if units == "rad":
+        return Quantity(meaning, "deg", 180.0 / np.pi)
+    for unit, ladder in (("m", _LENGTHS), ("Pa", _PRESSURES)):
+        if units == unit:
+            return next(
+                (Quantity(meaning, u, factor) for top, u, factor in ladder if largest < top), Quantity(meaning, unit)
+            )
+    return Quantity(meaning, "" if units == "1" else for_figure(units))
+
+
+def result(ds: xr.Dataset, name: str) -> Quantity:
+    """How a result is shown; a long name without its symbol."""
+    return replace(quantity(ds, name), symbol="")
+
+
+def shown_results(ds: xr.Dataset, names: Sequence[str] = ()) -> list[str]:
+    """Results that a figure shows: those of `names`, else the first few that vary.
+
+    Raises
+    ------
+    UsageError
+        No result varies, or there is none of a name.
+    """
+    for name in names:
+        if name not in ds.data_vars:
+            raise UsageError(f"the study has no result {name!r}; it has {', '.join(_varying(ds)) or 'none'}")
+    found = list(names) or sorted(_varying(ds), key=_rank)[:_FEW]
+    if not found:
+        raise UsageError("no case of this study has a result that varies: there is nothing to draw")
+    return found
+
+
+def of_cases(ds: xr.Dataset) -> xr.Dataset:
+    """The study with one value a case: of a series of points the last."""
+    return ds.isel(point=-1) if "point" in ds.dims else ds
+
+
+def in_unit(ds: xr.Dataset, name: str, shown: Quantity) -> Floats:
+    """Values of a parameter or a result in the unit of the figure; infinite ones are left out."""
+    values = np.asarray(ds[name].values, dtype=np.float64) * shown.factor
+    return np.where(np.isfinite(values), values, np.nan)
+
+
+def count_fact(ds: xr.Dataset) -> str:
+    """How many cases there are, and how many have no answer."""
+    total, without = ds["converged"].size, int((~ds["converged"].values).sum())
+    return f"{total} cases" + (f", {without} without an answer" if without else "")
+
+
+def _varying(ds: xr.Dataset) -> list[str]:
+    found = []
+    for name in ds.data_vars:
+        variable = SCALARS.get(str(name))
+        if variable is None or variable.kind is not DataType.FLOAT or variable.role is not Role.ANSWER:
+            continue
+        finite = ds[name].values[np.isfinite(ds[name].values)] if ds[name].dims else np.empty(0)
+        if finite.size and float(np.ptp(finite)) > 1e-9 * float(np.abs(finite).max()):
+            found.append(str(name))
+    return found
+
+
+def _rank(name: str) -> tuple[int, str]:
+    order = [
+        "liftoff_speed",
+        "threshold_speed",
+        "min_film_thickness",
+        "bearing_force",
+        "contact_fraction",
+        "friction_torque",
+        "max_bending_stress",
+        *QUANTITIES,
+    ]
+    return (order.index(name) if name in order else len(order)), name

@@ -1,0 +1,224 @@
+"""Where the cases of a study are answered: in this process, or on the workers of a `dask` cluster.
+
+Both engines take tasks one by one, as many as keep the workers busy, and give outcomes as they come. A worker that dies
+loses nothing: its task goes to another one, and after `ATTEMPTS` deaths the case itself is held to be the reason.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass, field
+from itertools import islice
+from typing import Any, Protocol
+
+import psutil
+
+from petalfoil.errors import UsageError
+from petalfoil.studies.question import DIED, Outcome, Task, answered
+
+AHEAD = 3
+"""Tasks for each worker that wait on the cluster: the next one is there when a worker has finished, and no more of the
+study than that is in memory."""
+ATTEMPTS = 3
+"""Workers that may die of one case before it counts as failed."""
+PATIENCE = 10.0
+"""Time to find a scheduler [s]."""
+START = 120.0
+"""Time that workers on this machine have to begin [s]: each loads the package, on a machine that may be busy."""
+RETIRE_AT = 0.95
+"""Part of its memory at which a worker is ended and begun anew, as `distributed` has it by default."""
+EXTRA = "studies on several workers need the package dask: pip install 'petalfoil[studies]', or use --workers 0"
+
+
+@dataclass
+class Effort:
+    """Processor time that a study took [s].
+
+    Attributes
+    ----------
+    solver : float
+        Of the cases themselves.
+    workers : float
+        Of the worker processes altogether, from when they were ready.
+    driver : float
+        Of this process beside the cases.
+    """
+
+    solver: float = 0.0
+    workers: float = 0.0
+    driver: float = 0.0
+
+
+class Engine(Protocol):
+    """What answers cases."""
+
+    effort: Effort
+
+    def outcomes(self, tasks: Iterable[Task]) -> Iterator[Outcome]:
+        """Answer tasks; outcomes come in any order."""
+
+
+@dataclass
+class InThisProcess:
+    """One case after another, in this process."""
+
+    effort: Effort = field(default_factory=Effort)
+
+    def outcomes(self, tasks: Iterable[Task]) -> Iterator[Outcome]:
+        """Answer tasks in order."""
+        for task in tasks:
+            begun = time.process_time()
+            outcome = answered(task)
+            self.effort.workers += time.process_time() - begun
+            self.effort.solver += outcome.seconds
+            yield outcome
+
+
+@dataclass
+class OnCluster:
+    """On the workers of a cluster.
+
+    Attributes
+    ----------
+    client : distributed.Client
+        The connection.
+    workers : int
+        Number of worker threads at the start.
+    """
+
+    client: Any
+    workers: int
+    effort: Effort = field(default_factory=Effort)
+
+    def outcomes(self, tasks: Iterable[Task]) -> Iterator[Outcome]:
+        """Answer tasks; outcomes come as they are ready."""
+        from distributed import as_completed
+
+        waiting, running = iter(tasks), {}
+        completed = as_completed()
+        before, own = self._times(), time.process_time()
+        try:
+            for task in islice(waiting, AHEAD * self.workers):
+                running[task.key] = task
+                completed.add(self._submit(task))
+            while running:
+                future = next(completed)
+                outcome = _outcome(future, running.pop(future.key))
+                future.release()
+                for task in islice(waiting, 1):
+                    running[task.key] = task
+                    completed.add(self._submit(task))
+                self.effort.solver += outcome.seconds
+                yield outcome
+        finally:
+            self.effort.driver += time.process_time() - own
+            self.effort.workers += sum(now - before.get(pid, 0.0) for pid, now in self._times().items())
+
+    def _submit(self, task: Task) -> Any:
+        return self.client.submit(answered, task, key=task.key, pure=False)
+
+    def _times(self) -> dict[tuple[str, int], float]:
+        """Processor time of each worker process so far [s]."""
+        return {(name, pid): spent for name, (pid, spent) in self.client.run(_process_time).items()}
+
+
+def _process_time() -> tuple[int, float]:
+    used = psutil.Process().cpu_times()
+    return os.getpid(), used.user + used.system
+
+
+def _outcome(future: Any, task: Task) -> Outcome:
+    from distributed import KilledWorker
+
+    error = future.exception()
+    if error is None:
+        outcome: Outcome = future.result()
+        return outcome
+    if isinstance(error, KilledWorker):
+        reason = f"{ATTEMPTS + 1} workers died while they answered it: too little memory for its grid?"
+        return Outcome(task.key, dict(task.values), DIED, reason)
+    raise error
+
+
+def engine(
+    workers: int | None = None, scheduler: str = "", memory: float | None = None
+) -> AbstractContextManager[Engine]:
+    """The engine that answers a study.
+
+    Parameters
+    ----------
+    workers : int, optional
+        Worker processes of a cluster on this machine, by default one for each processor; 0 for this process alone.
+    scheduler : str
+        Address of a scheduler that runs already, such as ``"tcp://10.0.0.1:8786"``.
+    memory : float, optional
+        Memory of each worker [byte], by default an equal part of the machine's.
+
+    Raises
+    ------
+    UsageError
+        The package `dask` is not installed, or there is no scheduler.
+    """
+    if workers == 0 and not scheduler:
+        return _alone()
+    try:
+        import distributed  # noqa: F401
+    except ImportError:
+        raise UsageError(EXTRA) from None
+    if scheduler:
+        return _remote(scheduler)
+    return _local(workers or len(os.sched_getaffinity(0)), memory)
+
+
+@contextmanager
+def _alone() -> Iterator[Engine]:
+    yield InThisProcess()
+
+
+@contextmanager
+def _local(workers: int, memory: float | None) -> Iterator[Engine]:
+    """A cluster on this machine: one thread a worker, reachable from this machine alone and with a certificate."""
+    import dask
+    from distributed import Client, LocalCluster
+
+    settings = {
+        "distributed.worker.profile.enabled": False,  # a look at every thread each 10 ms
+        "distributed.scheduler.allowed-failures": ATTEMPTS,
+        "distributed.worker.memory.terminate": RETIRE_AT,
+        "distributed.admin.system-monitor.interval": "2s",
+    }
+    limit = "auto" if memory is None else int(memory)
+    with (
+        dask.config.set(settings),
+        LocalCluster(
+            n_workers=workers,
+            threads_per_worker=1,
+            host="127.0.0.1",
+            protocol="tls",
+            security=True,
+            dashboard_address=None,
+            memory_limit=limit,
+            silence_logs=50,
+        ) as cluster,
+        Client(cluster) as client,
+    ):
+        client.wait_for_workers(workers, timeout=START)
+        yield OnCluster(client, workers)
+
+
+@contextmanager
+def _remote(address: str) -> Iterator[Engine]:
+    from distributed import Client
+
+    try:
+        client = Client(address, timeout=PATIENCE)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise UsageError(f"--scheduler: there is no scheduler at {address}: {error}") from error
+    with client:
+        threads = sum(client.nthreads().values())
+        if not threads:
+            raise UsageError(f"--scheduler: {address} has no workers: start some with 'dask worker {address}'")
+        yield OnCluster(client, threads)

@@ -1,0 +1,48 @@
+"""The page of a study: figures, what failed and why, and what was asked, from its labelled data alone."""
+
+from __future__ import annotations
+
+from collections import Counter
+from html import escape
+from pathlib import Path
+
+import xarray as xr
+
+from petalfoil import plot
+from petalfoil.report import html
+from petalfoil.report.page_tables import TextTable
+from petalfoil.results.atomic import replacing
+from petalfoil.studies import summary
+from petalfoil.studies.store import FIGURES, PAGE
+
+MOST_REASONS = 10
+
+
+def write_page(folder: Path, ds: xr.Dataset) -> None:
+    """Write figures and page into the folder of a study."""
+    (folder / FIGURES).mkdir(exist_ok=True)
+    pictures = []
+    for name, fig in plot.study_figures(ds).items():
+        plot.save(fig, folder / FIGURES / f"{name}.png")
+        pictures.append(html.picture(fig, name.replace("_", " ")))
+    body = [
+        f"<h1>{escape(str(ds.attrs['title']) or ds.attrs['analysis'])}</h1>",
+        html.paragraph(summary.headline(ds)),
+        *(html.table(TextTable(heads, lines)) for heads, lines in summary.tables(ds)),
+        *pictures,
+        *_failures(ds),
+        html.section("asked", "What was asked"),
+        html.bullets(summary.asked(ds)),
+        html.section("case", "Base case"),
+        f"<pre>{escape(str(ds.attrs['case']))}</pre>",
+    ]
+    with replacing(folder / PAGE) as temporary:
+        temporary.write_text(html.page(str(ds.attrs["title"]) or "study", body), encoding="utf-8")
+
+
+def _failures(ds: xr.Dataset) -> list[str]:
+    told = Counter(summary.reasons(ds)).most_common(MOST_REASONS)
+    if not told:
+        return []
+    rows = tuple((str(count), text) for text, count in told)
+    return [html.section("failed", "Cases without an answer"), html.table(TextTable(("cases", "reason"), rows))]

@@ -1,0 +1,266 @@
+"""Runs a study: every case that its folder does not hold yet is answered, kept, and at the end laid out.
+
+Each kind of study is one file with a `KIND`: what it asks in which order (`conduct`), and how its outcomes are laid out
+(`assemble`), finished or not.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from importlib import import_module
+from pathlib import Path
+from typing import TypeAlias
+
+import xarray as xr
+
+from petalfoil.errors import UsageError
+from petalfoil.results.store import save
+from petalfoil.studies import store as folders
+from petalfoil.studies.dataset import write_table
+from petalfoil.studies.definition import FILE, Study
+from petalfoil.studies.engine import Effort, Engine, engine
+from petalfoil.studies.plan import Point
+from petalfoil.studies.question import ERROR, Outcome, Task
+from petalfoil.studies.store import Store
+
+Progress: TypeAlias = Callable[[float, str], None]
+
+MODULES = {"sweep": "sweep", "tolerance": "tolerance", "sensitivity": "sobol", "optimize": "optimize"}
+"""File of each kind of study."""
+
+
+@dataclass(frozen=True)
+class Execution:
+    """How a study is run; nothing of it changes an answer.
+
+    Attributes
+    ----------
+    workers : int or None
+        Worker processes; by default one for each processor, 0 for the own process alone.
+    scheduler : str
+        Address of a scheduler that runs already.
+    memory : float or None
+        Memory of each worker [byte].
+    fields : bool
+        Whether all labelled data of each case are written too.
+    anew : bool
+        Whether another study in the folder gives way.
+    progress : callable or None
+        Called with the part done (0 to 1) and a text.
+    """
+
+    workers: int | None = None
+    scheduler: str = ""
+    memory: float | None = None
+    fields: bool = False
+    anew: bool = False
+    progress: Progress | None = None
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of study.
+
+    Attributes
+    ----------
+    conduct : callable
+        Asks its cases through a runner.
+    assemble : callable
+        Lays out what a store holds.
+    """
+
+    conduct: Callable[[Study, Runner], None]
+    assemble: Callable[[Study, Store], xr.Dataset]
+
+
+@dataclass
+class Runner:
+    """Answers cases of one study, each once.
+
+    Attributes
+    ----------
+    study : Study
+        What is asked.
+    store : Store
+        Where outcomes are kept.
+    engine : Engine
+        What answers cases.
+    execution : Execution
+        How it is run.
+    """
+
+    study: Study
+    store: Store
+    engine: Engine
+    execution: Execution = field(default_factory=Execution)
+
+    def __post_init__(self) -> None:
+        self.base = self.study.case.to_toml()
+
+    def answer(self, points: Sequence[Point]) -> None:
+        """Answer those points that the store does not hold, and keep each outcome as soon as it is there."""
+        finished, total = self.store.keys(), len(points)
+        done = total - sum(1 for _ in self._tasks(points, finished))
+        pace, failed = _Pace(total, done), 0
+        for outcome in self.engine.outcomes(self._tasks(points, finished)):
+            self.store.add(outcome)
+            failed += not outcome.converged
+            pace.tell(self.execution.progress, failed)
+
+    def outcomes(self, points: Sequence[Point]) -> list[Outcome]:
+        """Outcomes of points, answered where they are not yet."""
+        self.answer(points)
+        found = (self.store.get(key_of(self.study, self.base, point)) for point in points)
+        return [outcome for outcome in found if outcome is not None]
+
+    def _tasks(self, points: Sequence[Point], finished: set[str]) -> Iterator[Task]:
+        """Tasks of the points that are not finished, each once."""
+        met: set[str] = set()
+        for point in points:
+            key = key_of(self.study, self.base, point)
+            if key in finished or key in met:
+                continue
+            met.add(key)
+            path = str(self.store.fields_of(key).resolve()) if self.execution.fields else ""
+            yield Task(key, self.base, point, self.study.question, path)
+
+
+class _Pace:
+    """How fast a study goes: cases a second and time left."""
+
+    def __init__(self, total: int, done: int) -> None:
+        self.total, self.done, self.new = total, done, 0
+        self.begun = time.monotonic()
+
+    def tell(self, progress: Progress | None, failed: int) -> None:
+        """Report one more case."""
+        self.done, self.new = self.done + 1, self.new + 1
+        if progress is None:
+            return
+        rate = self.new / max(time.monotonic() - self.begun, 1e-9)
+        left = (self.total - self.done) / rate
+        text = f"{self.done} of {self.total} cases, {rate:.3g} a second, {_duration(left)} left"
+        progress(self.done / self.total, text + (f", {failed} without an answer" if failed else ""))
+
+
+def _duration(seconds: float) -> str:
+    minutes, seconds = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes} min" if hours else f"{minutes} min {seconds} s" if minutes else f"{seconds} s"
+
+
+def key_of(study: Study, base: str, point: Point) -> str:
+    """Name of a case of a study in its store."""
+    return study.question.key(base, point)
+
+
+def kind_of(study: Study) -> Kind:
+    """The kind of a study."""
+    kind: Kind = import_module(f"petalfoil.studies.{MODULES[study.kind]}").KIND
+    return kind
+
+
+def run(study: Study, out: str | Path | None = None, execution: Execution | None = None) -> xr.Dataset:
+    """Run a study to its end, from what its folder holds already.
+
+    Parameters
+    ----------
+    study : Study
+        What is asked.
+    out : str or Path, optional
+        Folder of the study; without one nothing is kept but what is returned.
+    execution : Execution, optional
+        How it is run.
+
+    Returns
+    -------
+    xarray.Dataset
+        The study as labelled data.
+
+    Raises
+    ------
+    UsageError
+        The folder holds another study, or another process runs it; or there is no scheduler.
+    StoreError
+        The folder cannot be read or written.
+    """
+    return run_with_effort(study, out, execution)[0]
+
+
+def run_with_effort(
+    study: Study, out: str | Path | None = None, execution: Execution | None = None
+) -> tuple[xr.Dataset, Effort]:
+    """The same, and the processor time that it took in this run."""
+    how = execution or Execution()
+    with _folder(out) as folder, folders.begun(folder, study, anew=how.anew) as store:
+        store.forget(ERROR)  # a mistake of the program may have been put right since
+        with engine(how.workers, how.scheduler, how.memory) as answers:
+            kind_of(study).conduct(study, Runner(study, store, answers, how))
+            effort = answers.effort
+        ds = kind_of(study).assemble(study, store)
+        if out is not None:
+            complete(folder, ds)
+        return ds, effort
+
+
+def resume(folder: str | Path, execution: Execution | None = None) -> xr.Dataset:
+    """Go on with the study in a folder, from its own definition.
+
+    Raises
+    ------
+    StoreError
+        The folder holds no study.
+    UsageError
+        Another version of petalfoil began it, or another process runs it.
+    """
+    study = Study.load(Path(folder))
+    refuse_other_version(study)
+    return run(study, folder, execution)
+
+
+def refuse_other_version(study: Study) -> None:
+    """Refuse to go on with the study of another version, whose answers may differ."""
+    now = Study(kind=study.kind, case=study.case, question=study.question, vary={}).version
+    if study.version != now:
+        raise UsageError(
+            f"petalfoil {study.version} began this study, this is {now}, which may answer otherwise: begin it anew "
+            "with --anew, or go on with that version"
+        )
+
+
+def stored(folder: str | Path) -> xr.Dataset:
+    """The study in a folder as labelled data, finished or not.
+
+    Raises
+    ------
+    StoreError
+        The folder holds no study.
+    """
+    path = Path(folder)
+    study = Study.load(path)
+    with folders.opened(path) as store:
+        return kind_of(study).assemble(study, store)
+
+
+def complete(folder: Path, ds: xr.Dataset) -> None:
+    """Write what a finished study leaves: data, table, figures, page."""
+    from petalfoil.studies.page import write_page
+
+    save(ds, folder / folders.DATA)
+    write_table(folder / folders.TABLE, ds)
+    write_page(folder, ds)
+
+
+@contextmanager
+def _folder(out: str | Path | None) -> Iterator[Path]:
+    if out is not None:
+        if Path(out).is_file():
+            raise UsageError(f"{out} is a file; a study needs a folder, which holds {FILE} and its data")
+        yield Path(out)
+        return
+    with tempfile.TemporaryDirectory(prefix="petalfoil-study-") as name:
+        yield Path(name)

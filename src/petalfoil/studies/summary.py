@@ -1,0 +1,107 @@
+"""A study in words and numbers: how many cases have an answer, what the results range over, why some have none."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from petalfoil.results.schema import SCALARS, DataType, Role
+from petalfoil.results.summary import cell, in_order
+from petalfoil.studies.question import CONVERGED
+
+Lines = tuple[tuple[str, ...], ...]
+SAME = 1e-6
+"""Relative spread below which a result is the same in all cases: each is solved to 1e-8."""
+RANGE_HEADS = ("quantity", "least", "median", "greatest", "unit")
+
+
+def headline(ds: xr.Dataset) -> str:
+    """How many cases there are and how many have an answer."""
+    status = np.ravel(ds["status"].values)
+    counts = Counter(str(text) for text in status)
+    others = ", ".join(f"{count} {text}" for text, count in counts.items() if text != CONVERGED)
+    what = f"{ds.attrs['analysis']} of {ds.attrs['asked']}: {len(status)} cases, {counts[CONVERGED]} converged"
+    return what + (f", {others}" if others else "")
+
+
+def results(ds: xr.Dataset) -> list[str]:
+    """Names of the numeric results that vary over a study, in the order of tables."""
+    found = []
+    for name in in_order([str(name) for name in ds.data_vars if name in SCALARS]):
+        variable = SCALARS[name]
+        values = ds[name].values
+        if ds[name].dims and variable.kind is DataType.FLOAT and variable.role is Role.ANSWER:
+            finite = values[np.isfinite(values)]
+            if finite.size and float(np.ptp(finite)) > SAME * float(np.abs(finite).max()):
+                found.append(name)
+    return found
+
+
+def ranges(ds: xr.Dataset) -> Lines:
+    """Least, median and greatest value of each result, in the units of tables."""
+    lines = []
+    for name in results(ds):
+        values = ds[name].values
+        finite = values[np.isfinite(values)]
+        parts = [cell(name, float(part)) for part in (finite.min(), np.median(finite), finite.max())]
+        lines.append((parts[0].label.strip(), *(part.value for part in parts), parts[0].unit))
+    return tuple(lines)
+
+
+def tables(ds: xr.Dataset) -> list[tuple[tuple[str, ...], Lines]]:
+    """Tables that tell a study: headings and lines."""
+    found: list[tuple[tuple[str, ...], Lines]] = []
+    if lines := ranges(ds):
+        found.append((RANGE_HEADS, lines))
+    return found
+
+
+def reasons(ds: xr.Dataset) -> list[str]:
+    """Status and reason of every case without an answer."""
+    pairs = zip(np.ravel(ds["status"].values), np.ravel(ds["reason"].values), strict=True)
+    return [f"{status}: {reason}" if reason else str(status) for status, reason in pairs if status != CONVERGED]
+
+
+def asked(ds: xr.Dataset) -> list[str]:
+    """What varies and what is asked, line by line."""
+    lines = [f"{path} = {text}" for path, text in json.loads(ds.attrs["vary"]).items()]
+    lines += [f"{name}: {value}" for name, value in json.loads(ds.attrs["settings"]).items()]
+    arguments = ", ".join(f"{name} = {value}" for name, value in json.loads(ds.attrs["arguments"]).items())
+    lines.append(f"ask: {ds.attrs['asked']}" + (f" ({arguments}, SI)" if arguments else ""))
+    return lines
+
+
+def to_json(ds: xr.Dataset) -> dict[str, Any]:
+    """The study as one object: counts, and the range of each result; SI."""
+    status = Counter(str(text) for text in np.ravel(ds["status"].values))
+    found = {}
+    for name in results(ds):
+        values = ds[name].values
+        finite = values[np.isfinite(values)]
+        found[name] = {
+            "least": float(finite.min()),
+            "median": float(np.median(finite)),
+            "greatest": float(finite.max()),
+        }
+    return {"study": ds.attrs["analysis"], "ask": ds.attrs["asked"], "cases": dict(status), "results": found} | extra(
+        ds
+    )
+
+
+def extra(ds: xr.Dataset) -> dict[str, Any]:
+    """What a kind of study tells beside, stored with it as JSON."""
+    return {
+        name: json.loads(ds.attrs[name], parse_constant=lambda text: None)
+        for name in ("tolerance", "sobol", "optimum")
+        if name in ds.attrs
+    }
+
+
+def plain(value: float) -> float | None:
+    """A number for JSON, null where it is none."""
+    return value if math.isfinite(value) else None
