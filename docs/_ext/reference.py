@@ -25,11 +25,15 @@ from sphinx.util.docutils import SphinxDirective
 from petalfoil.analysis import known_verbs
 from petalfoil.analysis.arguments import Argument, Flag, Measured
 from petalfoil.analysis.declaration import Analysis
-from petalfoil.cli.app import app
+from petalfoil.cli.app import STUDIES, app
 from petalfoil.cli.commands import option_of
 from petalfoil.cli.show import show_command
+from petalfoil.cli.studies import study_command
 from petalfoil.results import schema
 from petalfoil.results.schema import Role, Variable
+
+STUDY_FUNCTIONS = ("sweep",)
+"""Functions that ask an analysis of many cases."""
 
 
 class Written(SphinxDirective):
@@ -101,14 +105,18 @@ class Commands(Written):
             assert analysis is not None
             yield from _analysis(analysis)
         group: Any = typer.main.get_command(app)
-        for name, command in {"show": show_command(), **group.commands}.items():
+        studies = {name: study_command(name, []) for name in STUDIES}
+        for name, command in {"show": show_command(), **studies, **group.commands}.items():
             yield from _heading(name, command.help)
             yield from _parameters(command)
+            for inner, part in getattr(command, "commands", {}).items():
+                yield from _heading(f"{name} {inner}", part.help)
+                yield from _parameters(part)
 
 
 def _heading(verb: str, text: str) -> Iterator[str]:
     """The help text, with the example as a command."""
-    yield f"(command-{verb})="
+    yield f"(command-{verb.replace(' ', '-')})="
     yield f"## `petalfoil {verb}`"
     yield ""
     words, _, example = text.partition("Example:")
@@ -214,6 +222,8 @@ class PythonFunctions(Written):
             analysis = known_verbs.find(verb)
             assert analysis is not None
             yield from ("```{eval-rst}", f".. autofunction:: petalfoil.{verb}{_call(analysis)}", "```", "")
+        for study in STUDY_FUNCTIONS:
+            yield from ("```{eval-rst}", f".. autofunction:: petalfoil.{study}", "```", "")
 
 
 def _call(analysis: Analysis) -> str:

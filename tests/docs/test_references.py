@@ -14,13 +14,14 @@ import typer.main
 
 from petalfoil.analysis import known_verbs
 from petalfoil.case import Case
-from petalfoil.cli.app import app
+from petalfoil.cli.app import STUDIES, app
 from petalfoil.cli.commands import command_of
 from petalfoil.cli.show import show_command
+from petalfoil.cli.studies import study_command
 from tests.docs.texts import DOCS, ROOT, SOURCE, labels_in, modules, name_of, pages, text, theory_labels
 
 FILE = re.compile(r"[\w<>.-]*/[\w<>./-]*|[\w<>-]+\.(?:py|md|toml|csv|json)")
-OF_THE_READER = {"case.toml", "index.html", "result.nc"}
+OF_THE_READER = {"case.toml", "index.html", "result.nc", "study.toml", "table.csv", "figures/", "fields/", "build/docs"}
 """Files that a reader makes."""
 
 PLACES = (ROOT, SOURCE, ROOT / "examples", DOCS)
@@ -82,14 +83,16 @@ def commands() -> dict[str, Any]:
     """Commands of the program by name."""
     group: Any = typer.main.get_command(app)
     verbs = {verb: command_of(verb) for verb in known_verbs.summaries()}
-    return {**group.commands, **verbs, "show": show_command()}
+    studies = {name: study_command(name, []) for name in STUDIES}
+    return {**group.commands, **verbs, "show": show_command(), **studies}
 
 
 @cache
 def options() -> set[str]:
     """Options of the program, its commands and the benchmarks."""
     group: Any = typer.main.get_command(app)
-    found = {name for command in (group, *commands().values()) for p in command.params for name in p.opts}
+    inner = [part for command in commands().values() for part in getattr(command, "commands", {}).values()]
+    found = {name for command in (group, *commands().values(), *inner) for p in command.params for name in p.opts}
     return found | {"--help"} | set(re.findall(r'"(--[a-z-]+)"', text(ROOT / "benchmarks" / "run.py")))
 
 

@@ -16,7 +16,7 @@ from petalfoil.case import Case
 from tests.docs.site import GALLERY, extension, listed
 from tests.docs.texts import DOCS, text
 
-NO_FIGURES = {"animate", "register", "save", "summary"}
+NO_FIGURES = {"animate", "register", "save", "study", "study_figures", "summary"}
 """Names of `petalfoil.plot` that draw no figure of their own."""
 
 
@@ -66,6 +66,6 @@ def test_a_script_of_the_gallery_draws_converged_results(path: Path, monkeypatch
     names = runpy.run_path(str(path))
     result = names["result"]
     assert isinstance(result, xr.Dataset)
-    assert path.stem in {f"plot_{result.attrs['analysis']}", "plot_maps"}
+    assert path.stem in {f"plot_{result.attrs['analysis']}", "plot_maps", "plot_samples"}
     assert "converged" not in result or bool(result["converged"].all())
     assert any(isinstance(value, Figure) for value in names.values())

@@ -28,6 +28,7 @@ NAMES = {
     "solve",
     "stability",
     "static",
+    "sweep",
 }
 
 

@@ -13,6 +13,9 @@ In the order a call runs through them:
 - ``failures``   exit codes and what a user reads when something goes wrong
 - ``exports``    options of files for other programs
 - ``show``       a stored result once more
+- ``studies``    the commands of studies, with the options of the analysis that they ask
+- ``study_outputs`` a study on standard output
+- ``study_folder`` ``petalfoil study``: a stored study shown, gone on with, exported
 - ``reproduce``  the paper's figures and claims: a page and data
 - ``studio``     the page on which a bearing is changed and answers
 

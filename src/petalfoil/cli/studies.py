@@ -6,6 +6,7 @@ import inspect
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -142,7 +143,7 @@ def study_command(name: str, words: list[str]) -> Any:
 
 def asked_verb(words: list[str], default: str) -> str:
     """The analysis that a call asks, read before its options are known."""
-    for word, following in zip(words, [*words[1:], ""], strict=True):
+    for word, following in pairwise([*words, ""]):
         if word == ASK:
             return following
         if word.startswith(f"{ASK}="):

@@ -28,7 +28,7 @@ def study(ds: xr.Dataset, names: tuple[str, ...] = ()) -> Figure:
 
 
 def study_figures(ds: xr.Dataset) -> dict[str, Figure]:
-    """Draw all figures of a study.
+    """Draw the pictures of a study.
 
     Parameters
     ----------

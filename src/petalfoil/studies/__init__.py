@@ -13,4 +13,5 @@ In the order data flows:
 - `sweep`: a grid or a sample of parameters.
 - `summary`: a study in words and numbers.
 - `page`: its figures and its page.
+- `export`: its cases as case files.
 """

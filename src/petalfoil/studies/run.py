@@ -48,7 +48,7 @@ class Execution:
     fields : bool
         Whether all labelled data of each case are written too.
     anew : bool
-        Whether another study in the folder gives way.
+        Whether another study in the folder is replaced.
     progress : callable or None
         Called with the part done (0 to 1) and a text.
     """

@@ -109,7 +109,7 @@ def begun(folder: Path, study: Study, *, anew: bool = False) -> Iterator[Store]:
     study : Study
         What is asked.
     anew : bool
-        Whether another study in the folder gives way.
+        Whether another study in the folder is replaced.
 
     Raises
     ------
