@@ -33,8 +33,9 @@ INVALID = "invalid case"
 ERROR = "internal error"
 DIED = "worker died"
 
-OVERRIDES = {"speed": "operation.speed", "load": "operation.load", "loads": "operation.load"} | {
-    name: "operation.eccentricity" for name in ("eccentricity", "eccentricities")
+OVERRIDES = {name: f"operation.{name}" for name in ("speed", "load", "moment", "tilt", "eccentricity")} | {
+    "loads": "operation.load",
+    "eccentricities": "operation.eccentricity",
 }
 """Arguments of analyses that stand in for parameters of the case."""
 

@@ -226,7 +226,7 @@ def test_progress_tells_rate_and_time_left() -> None:
     ("ask", "arguments", "words"),
     [
         ("blance", {}, "Did you mean 'balance'?"),
-        ("balance", {"lod": "3 N"}, "balance has no argument 'lod'; known: load, speed, error. Did you mean 'load'?"),
+        ("balance", {"lod": "3 N"}, "balance has no argument 'lod'; known: load"),
         ("balance", {"load": "3 m"}, "load: '3 m' measures something else"),
         ("solve", {"speed": "3000 rad/s"}, "operation.speed varies, but speed of solve stands in for it"),
         ("orbit", {"restart": "before.nc"}, "restart is the result of one case"),
