@@ -139,3 +139,5 @@ def test_the_summary_of_a_motion_shows_what_the_journals_do() -> None:
     assert_allclose(float(ds["tilt_amplitude"]) * 0.1, 15e-6, rtol=0.1)
     said = render(Answer.stored(ds, orbit.layouts[0]))
     assert "tilt, last turns" in said
+    assert "whirl ratio of the tilt" in said
+    assert_allclose(float(ds["tilt_whirl_ratio"]), float(ds["dominant_whirl_ratio"]), atol=0.01)

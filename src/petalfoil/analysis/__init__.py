@@ -36,6 +36,7 @@ What they share:
 `impedance.py`         small motions of the journal
 `rotor_on_bearings.py` a rigid rotor on its bearing, or in two of them
 `tilted_journal.py`   one equilibrium, its journal free to tilt or held
+`campbell.py`          branches of natural modes over speed
 `threshold.py`         the speed at which a rotor becomes unstable
 `release.py`           where a large motion begins
 `orbit_motion.py`      a large motion, step by step

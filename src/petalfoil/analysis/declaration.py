@@ -229,7 +229,9 @@ class Analysis:
         return run.records()
 
     def _layout(self, run: Run) -> Layout:
-        return next(layout for layout in self.layouts if bool(layout.dimension) is run.is_series)
+        kind = run.layout if isinstance(run, Points) and run.layout is not None else Layout
+        fitting = (layout for layout in self.layouts if bool(layout.dimension) is run.is_series)
+        return next(layout for layout in fitting if isinstance(layout, kind))
 
     def advance(self, run: Run, progress: Progress | None = None) -> Iterator[None]:
         """Compute on, piece by piece."""

@@ -79,13 +79,18 @@ def summary(record: Record) -> Iterator[Row]:
     yield Row("amplitude, last turns", number(1e6 * float(scalars["amplitude"])), "µm")
     if "tilt_amplitude" in scalars:
         yield Row("tilt, last turns", number(1e6 * float(scalars["tilt_amplitude"])), "µrad")
+        yield Row("whirl ratio of the tilt", _ratio(float(scalars["tilt_whirl_ratio"])), "")
     yield cell("min_film_thickness", float(over["min_film_thickness"].min()))
     yield cell("contact_fraction", float(over["contact_fraction"].max()))._replace(label="largest contact fraction")
-    ratio = float(scalars["dominant_whirl_ratio"])  # to the digits that a spectrum of some turns gives
-    yield Row("dominant whirl ratio", ABSENT if math.isnan(ratio) else f"{ratio:.3f}", "")
+    yield Row("dominant whirl ratio", _ratio(float(scalars["dominant_whirl_ratio"])), "")
     for name in ("mass_balance_error", "energy_balance_error"):
         yield Row(name.replace("_balance_", "-balance "), number(float(scalars[name])), "")
     yield Row("time spent", number(float(scalars["wall_time"])), "s")
+
+
+def _ratio(ratio: float) -> str:
+    """A whirl ratio to the digits that a spectrum of some turns gives."""
+    return ABSENT if math.isnan(ratio) else f"{ratio:.3f}"
 
 
 def _speeds(speed: list[float]) -> str:

@@ -21,7 +21,7 @@ from petalfoil.dynamics.adaptive_steps import MarchOptions, march
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.equilibrium.run_context import RunContext, new_run
-from petalfoil.results.motion import figures_of, tilt_amplitude
+from petalfoil.results.motion import figures_of, tilt_figures
 from petalfoil.results.parts import Outcome
 from petalfoil.results.record import Record
 
@@ -50,6 +50,7 @@ class Tilt:
     """What is told of the tilt of a shaft in two bearings."""
 
     tilt_amplitude: float
+    tilt_whirl_ratio: float
     span: float
 
 
@@ -189,7 +190,7 @@ class Orbit:
         """What is told of a shaft that tilts; nothing of another."""
         if self.case.rotor is None or self.case.rotor.span is None:
             return ()
-        return (Tilt(tilt_amplitude=tilt_amplitude(time, over), span=self.case.rotor.span),)
+        return (Tilt(**tilt_figures(time, over), span=self.case.rotor.span),)
 
     def _stepping(self) -> Stepping:
         refused = [row.get("outcome") for row in self.run.history if row["phase"] == "motion"]

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol, TypeAlias
 
+from petalfoil.results.layout import Layout
 from petalfoil.results.record import Record
 
 Source: TypeAlias = Callable[[Sequence[Record]], Iterator[Record]]
@@ -70,6 +71,8 @@ class Points:
         Part of the whole that is done after each point; by default all cost the same.
     asked : str
         What the series is asked for; empty where nothing can go on from it.
+    layout : type of Layout or None
+        Which of the layouts of its analysis it has; by default the first for a series.
     """
 
     source: Iterator[Record] | Source
@@ -79,6 +82,7 @@ class Points:
     parts: Sequence[float] | None = None
     done: list[Record] = field(default_factory=list)
     asked: str = ""
+    layout: type[Layout] | None = None
     is_series: bool = True
 
     def advance(self) -> Iterator[tuple[float, str]]:

@@ -6,10 +6,12 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import ClassVar
 
 import numpy as np
 
 from petalfoil.analysis.arguments import Load, Loads, Mass, Speed, Speeds
+from petalfoil.analysis.campbell import BRANCHES, CRITICAL, Branches
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.coefficients import state_parts
 from petalfoil.analysis.declaration import analysis
@@ -27,9 +29,10 @@ from petalfoil.dynamics.natural_modes import Mode
 from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.grid import Grid
-from petalfoil.results.layout import ArrayTable, Point
+from petalfoil.results.layout import ArrayTable, Point, Series, at_speed
 from petalfoil.results.parts import AppliedLoad, Outcome
 from petalfoil.results.record import Array, Record
+from petalfoil.results.schema import Variable
 from petalfoil.results.summary import ABSENT, cell
 
 MODES = ("natural_frequency", "mode_growth_rate", "damping_ratio", "participation", "whirl_direction")
@@ -51,6 +54,29 @@ MODE_TABLE = ArrayTable(
         ),
     },
 )
+CAMPBELL_TABLE = ArrayTable(
+    dim="mode",
+    columns={
+        "speed\nrpm": lambda record, _: cell("speed", record.scalars["speed"]).value,
+        "branch": lambda record, k: str(int(record.coords["mode"][k])),
+        **MODE_TABLE.columns,
+        "critical speed\nrpm": lambda record, k: (
+            ABSENT
+            if math.isnan(float(record.fields[CRITICAL][k]))
+            else cell("speed", float(record.fields[CRITICAL][k])).value
+        ),
+    },
+    there=lambda record, k: math.isfinite(float(record.fields["natural_frequency"][k])),
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Campbell(Series):
+    """Natural modes over speed: without error bars, for modes of different grids need not belong to each other."""
+
+    takes_error_bars: ClassVar[bool] = False
+
+
 GRID = Grid(
     names=("critical_mass", "whirl_ratio", "contact_fraction", "eccentricity_x", "eccentricity_y", "status"),
     tables={
@@ -69,6 +95,13 @@ class CriticalMass:
 
 
 @dataclass(frozen=True)
+class RotorMass:
+    """The rotor."""
+
+    rotor_mass: float
+
+
+@dataclass(frozen=True)
 class Rotor:
     """The rotor, and the speed at which it becomes unstable."""
 
@@ -79,7 +112,9 @@ class Rotor:
 @analysis(
     Point(lists=MODES, histories=(TILT,), table=MODE_TABLE),
     GRID,
-    excludes={"speed": ("speeds",), "load": ("loads",), "mass": ("speeds", "loads")},
+    Campbell(lists=(*MODES, CRITICAL), histories=(TILT,), table=CAMPBELL_TABLE, at=at_speed),
+    excludes={"speed": ("speeds",), "load": ("loads",), "mass": ("loads",)},
+    results={CRITICAL: Variable(("mode",), "rad s-1", "speed at which the natural frequency is the speed", "omega_c")},
     error_bars=True,
 )
 def stability(  # noqa: PLR0913 - the options of the verb
@@ -99,7 +134,8 @@ def stability(  # noqa: PLR0913 - the options of the verb
     stick, as in the smallest motions. Where petals lie on each other along
     stretches, frequencies are known to several per cent, small damping to
     half of it: compare two grids. Of a rotor in two bearings (rotor.span)
-    load and masses are those of the whole rotor, and it may tilt.
+    load and masses are those of the whole rotor, and it may tilt. With
+    --speeds and --mass as a Campbell diagram: natural modes over speed.
 
     Example: petalfoil stability case.toml --load "20 N" --mass "2 kg"
 
@@ -113,6 +149,9 @@ def stability(  # noqa: PLR0913 - the options of the verb
     newton_only(case)
     if speeds is None and loads is None:
         return point(turning(at(case, speed)), load, mass, progress)
+    if speeds is not None and mass is not None:
+        over = [turning(at(case, omega)) for omega in speeds]
+        return Points(partial(_campbell, over, load, mass, progress), len(over), layout=Campbell)
     wanted = [applied_load(case, load)] if loads is None else [(0.0, -size) for size in loads]
     turn = [case.operation.speed if speed is None else speed] if speeds is None else speeds
     cases = [turning(at(case, omega, (0.0, 0.0))) for omega in turn]
@@ -188,6 +227,41 @@ def _points(
                     line.known = None
                     record = failed_record("stability", case, failure, AppliedLoad.of(load))
             yield record
+
+
+def _campbell(
+    cases: list[Case], load: Vector | None, mass: float, progress: Progress | None, done: Sequence[Record] = ()
+) -> Iterator[Record]:
+    """Natural modes of a rotor of `mass` [kg] speed by speed, each on the branch of the one before."""
+    rotor, branches = RotorOnBearings(whole_length(cases[0]), mass), Branches()
+    loaded = load is not None or cases[0].operation.load is not None
+    wanted = applied_load(cases[0], load) if loaded else None
+    line = None if wanted is None else SpeedLine(rotor.case, wanted)
+    if done:
+        branches.regain(next((record for record in reversed(done) if record.converged), done[-1]))
+        if line is not None:
+            line.regain([case.operation.speed for case in cases[: len(done)]], done[-1])
+    for number, case in enumerate(cases[len(done) :], len(done)):
+        speed = case.operation.speed
+        with running(part(progress, number, len(cases)), "stability") as run:
+            try:
+                if line is None:
+                    found = operating_point(at(rotor.case, speed), None)
+                    impedance = rotor.impedance(found.answer)
+                    whirl = rotor.whirl(impedance, speed)
+                else:
+                    found, whirl = _followed(line, case, rotor)
+                    impedance = rotor.impedance(found.answer)
+                fields, _ = mode_fields(rotor.modes(impedance, speed), speed, tilts=case.bearings > 1)
+                parts = (RotorMass(mass), *whirl_parts(case, found, whirl, ""), effort(run.seconds))
+                coords: dict[str, Array] = {"mode": np.arange(1, BRANCHES + 1)}
+                placed = branches.placed(fields, speed)
+                record = record_of("stability", case, *parts, fields=dict(placed), coords=coords)
+            except ConvergenceError as failure:
+                if line is not None:
+                    line.known = None
+                record = failed_record("stability", case, failure)
+        yield record
 
 
 def _followed(line: SpeedLine, case: Case, rotor: RotorOnBearings) -> tuple[OperatingPoint, Whirl]:

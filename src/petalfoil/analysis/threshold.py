@@ -20,8 +20,8 @@ from petalfoil.errors import ConvergenceError
 RANGE, FACTOR = 16.0, 1.3
 """Speeds between which the threshold is looked for, over the case's, and the factor between looks."""
 
-PRECISION = 1e-3
-"""Relative precision of the threshold speed."""
+PRECISION = 1e-6
+"""Relative precision of the threshold speed: two or three looks more than 1e-3 takes, for the margin is smooth."""
 
 Threshold = tuple[float, str]
 """Threshold speed [rad/s], nan where there is none, and how the search ended."""
@@ -99,8 +99,8 @@ def neutral_speed(
 
 
 JUMP = 0.1
-"""Margin on both sides of a threshold beyond which it changes sign in a jump: within `PRECISION` of the speed a
-followed equilibrium changes it by some thousandths."""
+"""Margin on both sides of a threshold beyond which it changes sign in a jump: near a threshold a followed equilibrium
+changes it by some thousandths."""
 
 
 def margins(rotor: RotorOnBearings, load: Vector | None) -> Callable[[float], float]:

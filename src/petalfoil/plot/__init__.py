@@ -16,6 +16,7 @@ In the order data flows:
 - ``speed_sweeps`` over the speed under a load (`runup`), lift-off over the load (`liftoff`)
 - ``dynamic_coefficients`` stiffness and damping over whirl frequency (`coefficients`)
 - ``stability_maps`` stability of a rigid rotor (`stability`)
+- ``campbell_diagram`` its natural modes over speed (`campbell`)
 - ``histories``    a motion over time (`orbit_histories`), its energy balance (`orbit_energy`)
 - ``spectra``      spectrum of the whirl (`orbit_spectrum`), over speed or time (`orbit_waterfall`)
 - ``journal_orbit`` path of the journal's centre (`orbit_path`), a motion in one figure (`orbit`)
@@ -40,6 +41,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from petalfoil.plot.animation import animate
     from petalfoil.plot.assembly import package
+    from petalfoil.plot.campbell_diagram import campbell
     from petalfoil.plot.canvas import save
     from petalfoil.plot.characteristics import curve, hysteresis, load_characteristic, static
     from petalfoil.plot.dynamic_coefficients import coefficients
@@ -59,6 +61,7 @@ if TYPE_CHECKING:
 _MODULES = {
     "animation": ("animate",),
     "assembly": ("package",),
+    "campbell_diagram": ("campbell",),
     "canvas": ("save",),
     "characteristics": ("curve", "hysteresis", "load_characteristic", "static"),
     "dynamic_coefficients": ("coefficients",),
@@ -79,6 +82,7 @@ _HOME = {name: module for module, names in _MODULES.items() for name in names}
 
 __all__ = [
     "animate",
+    "campbell",
     "coefficients",
     "convergence",
     "cross_section",

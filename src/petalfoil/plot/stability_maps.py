@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from petalfoil.errors import UsageError
 from petalfoil.plot import labels, style
+from petalfoil.plot.campbell_diagram import campbell
 from petalfoil.plot.labels import HERTZ, QUANTITIES, RPM
 from petalfoil.plot.views import Floats, array, number, unconverged
 
@@ -23,12 +24,12 @@ _CALM = "stable for any rotor mass"
 
 
 def stability(ds: xr.Dataset) -> Figure:
-    """Draw critical mass and whirl ratio over speed, a line for each load; a single point with its natural modes.
+    """Draw critical mass and whirl ratio over speed, a line for each load; natural modes of a point, or over speed.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        Result of ``stability``: a point, or a table over load and speed.
+        Result of ``stability``: a point, a table over load and speed, or natural modes over speed.
 
     Returns
     -------
@@ -46,6 +47,8 @@ def stability(ds: xr.Dataset) -> Figure:
     """
     if "critical_mass" not in ds:
         raise UsageError("this figure needs the result of `stability`")
+    if "point" in ds.dims:
+        return campbell(ds)
     mass = array(ds, "critical_mass")
     if np.isnan(mass).all():
         raise unconverged(str(np.ravel(ds["status"].values)[-1]))

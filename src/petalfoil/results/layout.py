@@ -39,15 +39,19 @@ class ArrayTable:
         The dimension.
     columns : dict
         Heading, and the value of a record at an index.
+    there : callable or None
+        Whether a record has a line at an index; by default it has.
     """
 
     dim: str
     columns: Mapping[str, Callable[[Record, int], Cell]]
+    there: Callable[[Record, int], bool] | None = None
 
     def lines(self, record: Record) -> Iterator[list[Cell]]:
         """The values line by line; none where the record has no such dimension."""
         for index in range(len(record.coords.get(self.dim, ()))):
-            yield [value(record, index) for value in self.columns.values()]
+            if self.there is None or self.there(record, index):
+                yield [value(record, index) for value in self.columns.values()]
 
 
 def at_position(record: Record) -> str:

@@ -198,11 +198,12 @@ def figures_of(time: Array, over: Mapping[str, Array], lever: float = 0.0) -> di
     return {"amplitude": settled_amplitude(path), "dominant_whirl_ratio": dominant_whirl_ratio(path)}
 
 
-def tilt_amplitude(time: Array, over: Mapping[str, Array]) -> float:
-    """Largest slope of the shaft from its mean in the settled part of a motion [rad]."""
+def tilt_figures(time: Array, over: Mapping[str, Array]) -> dict[str, float]:
+    """Largest slope of the shaft from its mean in the settled part of a motion [rad], and its dominant whirl ratio."""
     if len(time) < 2:
-        return 0.0
-    return settled_amplitude(Path.of(time, {**over, **{name: over[slope] for name, slope in SLOPES.items()}}))
+        return {"tilt_amplitude": 0.0, "tilt_whirl_ratio": math.nan}
+    path = Path.of(time, {**over, **{name: over[slope] for name, slope in SLOPES.items()}})
+    return {"tilt_amplitude": settled_amplitude(path), "tilt_whirl_ratio": dominant_whirl_ratio(path)}
 
 
 @dataclass(frozen=True)

@@ -266,6 +266,7 @@ SCALARS: dict[str, Variable] = {
         "m", "largest distance of a journal from its mean position, in the last half of a motion", "A"
     ),
     "tilt_amplitude": _answer("rad", "largest slope of the shaft from its mean, in the last half of a motion", "A_t"),
+    "tilt_whirl_ratio": _answer("1", "dominant frequency of the shaft's slope over the speed", "nu_t"),
     "dominant_whirl_ratio": _answer(
         "1", "frequency of the largest circle of the whirl over the speed, negative for backward whirl", "Omega/omega"
     ),

@@ -1,0 +1,151 @@
+"""Campbell diagram: natural frequencies and damping of a rotor over its speed, and where the unbalance meets them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from petalfoil.errors import UsageError
+from petalfoil.plot import labels, style
+from petalfoil.plot.labels import HERTZ, QUANTITIES, RPM
+from petalfoil.plot.views import Floats, array, unconverged
+
+CONICAL = 0.5
+"""Part of the tilt in a motion from which a mode is called conical."""
+ROUND = 0.5
+"""Whirl direction from which an orbit is called forward or backward rather than elliptical."""
+HEADROOM = 1.15
+"""Space above the highest mode."""
+
+
+def campbell(ds: xr.Dataset) -> Figure:
+    """Draw natural frequencies and damping ratios over speed; crossings with the speed (1×) are marked.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of ``stability`` with speeds and a mass.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Frequencies in Hz (left) and rpm (right) above, damping ratios below. Modes that grow are ringed.
+
+    Raises
+    ------
+    ConvergenceError
+        No operating point was found.
+    UsageError
+        The dataset holds no modes over speed.
+    """
+    if "natural_frequency" not in ds or "point" not in ds.dims:
+        raise UsageError("this figure needs the result of `stability` with several speeds and a mass")
+    if not np.isfinite(array(ds, "natural_frequency")).any():
+        raise unconverged(str(np.ravel(ds["status"].values)[-1]))
+    fig = style.figure(8.6, 8.2)
+    above, below = fig.subplots(2, 1, sharex=True, height_ratios=[1.7, 1.0])
+    _draw_branches(above, below, ds)
+    _draw_speed_lines(above, ds)
+    _mark_crossings(above, ds)
+    style.dress(above, "", "damped natural frequency [Hz]")
+    style.dress(below, QUANTITIES["speed"].axis, "damping ratio")
+    _set_limits(above, below, ds)
+    style.legend_below(above, 3)
+    mass = f"rotor {float(np.ravel(array(ds, 'rotor_mass'))[0]):.4g} kg"
+    style.set_title(fig, ds, mass, labels.load_fact(ds.isel(point=0)) if "load_x" in ds else "")
+    return fig
+
+
+def _kind(ds: xr.Dataset, branch: int) -> tuple[str, style.Look]:
+    """What a branch is called, and its look: colour by direction, line by form."""
+    shown = np.isfinite(array(ds, "natural_frequency")[:, branch])
+    direction = float(np.median(array(ds, "whirl_direction")[shown, branch]))
+    tilt = float(np.median(array(ds, "mode_tilt")[shown, branch])) if "mode_tilt" in ds else 0.0
+    way, colour = ("forward", style.BLUE) if direction > ROUND else ("elliptical", style.PURPLE)
+    if direction < -ROUND:
+        way, colour = "backward", style.ORANGE
+    form, marker = ("conical", "^") if tilt > CONICAL else ("cylindrical", "o")
+    return f"{form}, {way}", {"color": colour, "marker": marker, "linestyle": "--" if tilt > CONICAL else "-"}
+
+
+def _draw_branches(above: Axes, below: Axes, ds: xr.Dataset) -> None:
+    rpm, order = _speeds(ds)
+    hertz, ratio = array(ds, "natural_frequency")[order] * HERTZ, array(ds, "damping_ratio")[order]
+    named: set[str] = set()
+    for branch in np.flatnonzero(np.isfinite(hertz).any(axis=0)):
+        name, look = _kind(ds, int(branch))
+        label = "_" if name in named else name
+        named.add(name)
+        above.plot(rpm, hertz[:, branch], label=label, markersize=5, linewidth=1.6, **look)
+        below.plot(rpm, ratio[:, branch], markersize=5, linewidth=1.6, **look)
+        growing = ratio[:, branch] < 0.0
+        if growing.any():
+            ring: style.Look = {"markersize": 10, "markeredgecolor": style.VERMILLION, "markerfacecolor": "none"}
+            above.plot(rpm[growing], hertz[growing, branch], "o", gid="growing", markeredgewidth=1.6, **ring)
+    if (ratio < 0.0).any():
+        ring = {"markersize": 10, "markeredgecolor": style.VERMILLION, "markerfacecolor": "none"}
+        above.plot([], [], "o", label="grows: unstable", markeredgewidth=1.6, **ring)
+
+
+def _draw_speed_lines(ax: Axes, ds: xr.Dataset) -> None:
+    """The frequency of the unbalance, and half of it."""
+    ends = np.array([0.0, float(array(ds, "speed").max())])
+    for order, line, name in ((1.0, "-", "1× speed"), (0.5, ":", "½× speed")):
+        ax.plot(ends * RPM, order * ends * HERTZ, line, color=style.GREY, linewidth=1.2, label=name)
+
+
+def _mark_crossings(ax: Axes, ds: xr.Dataset) -> None:
+    critical = array(ds, "critical_speed")
+    critical = np.sort(critical[np.isfinite(critical)])
+    if not critical.size:
+        return
+    ax.plot(
+        critical * RPM, critical * HERTZ, "x", color=style.INK, markersize=9, markeredgewidth=2.0, gid="critical",
+        label="critical speed", zorder=5,
+    )  # fmt: skip
+    for place, speed in enumerate(critical):
+        ax.annotate(
+            f"{labels.grouped(speed * RPM)} rpm",
+            (speed * RPM, speed * HERTZ),
+            xytext=(8.0, -14.0) if place % 2 == 0 else (-8.0, 9.0),
+            textcoords="offset points",
+            ha="left" if place % 2 == 0 else "right",
+            fontsize=style.TICK,
+            color=style.INK,
+        )
+
+
+def _set_limits(above: Axes, below: Axes, ds: xr.Dataset) -> None:
+    top = float(array(ds, "speed").max())
+    highest = HEADROOM * max(float(np.nanmax(array(ds, "natural_frequency"))), top) * HERTZ
+    above.set_ylim(0.0, highest)
+    above.set_xlim(0.0, 1.03 * top * RPM)
+    rpm = above.secondary_yaxis("right", functions=(_to_rpm, _to_hertz))
+    rpm.set_ylabel("[rpm]", fontsize=style.LABEL)
+    rpm.tick_params(labelsize=style.TICK, color=style.GREY)
+    low = min(float(np.nanmin(array(ds, "damping_ratio"))), 0.0)
+    bottom, ceiling = below.get_ylim()
+    below.set_ylim(min(bottom, 1.2 * low, -0.02), ceiling)
+    below.axhspan(below.get_ylim()[0], 0.0, color=style.VERMILLION, alpha=0.1, linewidth=0)
+    below.axhline(0.0, color=style.GREY, linewidth=0.8)
+    place: style.Look = {"transform": below.transAxes, "va": "bottom", "fontsize": style.TICK}
+    below.text(0.01, 0.02, "unstable", color=style.GREY, **place)
+
+
+def _to_rpm(hertz: Any) -> Any:
+    return hertz * RPM / HERTZ
+
+
+def _to_hertz(rpm: Any) -> Any:
+    return rpm * HERTZ / RPM
+
+
+def _speeds(ds: xr.Dataset) -> tuple[Floats, NDArray[np.intp]]:
+    """Speeds in ascending order [rpm], and that order."""
+    order = np.argsort(array(ds, "speed"))
+    return array(ds, "speed")[order] * RPM, order
