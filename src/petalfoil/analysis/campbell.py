@@ -22,7 +22,7 @@ Modes = Mapping[str, NDArray[Any]]
 BRANCHES = 8
 """Most branches: a rotor in two bearings has four cylindrical and conical modes, and some of film and petals."""
 
-FAR = 0.5
+LONGEST_STEP = 0.5
 """Relative distance of two modes beyond which one does not continue the other."""
 
 SHAPE = 0.25
@@ -70,8 +70,8 @@ class Branches:
         if self.before:
             known = np.flatnonzero(np.isfinite(self.before["natural_frequency"].astype(float)))
             apart = distances({name: self.before[name].astype(float)[known] for name in modes}, modes, faster)
-            for old, new in zip(*linear_sum_assignment(np.minimum(apart, 2.0 * FAR)), strict=True):
-                if apart[old, new] < FAR:
+            for old, new in zip(*linear_sum_assignment(np.minimum(apart, 2.0 * LONGEST_STEP)), strict=True):
+                if apart[old, new] < LONGEST_STEP:
                     places[new] = known[old]
             free = [k for k in free if k not in known] + [int(k) for k in known if k not in places]
         for new in np.flatnonzero(places < 0)[: len(free)]:
