@@ -15,7 +15,6 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Any, ClassVar
 
-import case_keys
 import gallery
 import typer.main
 from docutils import nodes
@@ -25,6 +24,7 @@ from sphinx.util.docutils import SphinxDirective
 from petalfoil.analysis import known_verbs
 from petalfoil.analysis.arguments import Argument, Flag, Measured
 from petalfoil.analysis.declaration import Analysis
+from petalfoil.case import Case, keys
 from petalfoil.cli.app import STUDIES, app
 from petalfoil.cli.commands import option_of
 from petalfoil.cli.show import show_command
@@ -79,16 +79,16 @@ class CaseKeys(Written):
     def write(self) -> Iterator[str]:
         """A section for each table."""
         head = ("key", "symbol", "unit", "range", "default", "meaning")
-        yield from table(head, map(_cells, case_keys.keys(case_keys.Case)))
-        for name, definition in case_keys.sections().items():
+        yield from table(head, map(_cells, keys.keys(Case)))
+        for name, definition in keys.sections().items():
             yield f"(case-{name})="
             yield f"## `[{name}]`"
             yield ""
             yield inspect.getdoc(definition) or ""
-            yield from table(head, map(_cells, case_keys.keys(definition, f"{name}.")))
+            yield from table(head, map(_cells, keys.keys(definition, f"{name}.")))
 
 
-def _cells(key: case_keys.Key) -> tuple[str, ...]:
+def _cells(key: keys.Key) -> tuple[str, ...]:
     return f"`{key.name}`", symbol_text(key.symbol), key.unit, key.allowed, key.default, key.meaning
 
 

@@ -36,7 +36,9 @@ if TYPE_CHECKING:
         UnitError,
         UsageError,
     )
+    from petalfoil.report.case_report import design_report
     from petalfoil.report.reproduce import reproduce
+    from petalfoil.results.store import load, save
     from petalfoil.studies.sweep import sweep
 
 __version__ = "0.1.0"
@@ -56,17 +58,27 @@ __all__ = [
     "coefficients",
     "converge",
     "curve",
+    "design_report",
     "liftoff",
+    "load",
     "orbit",
     "reproduce",
     "runup",
+    "save",
     "solve",
     "stability",
     "static",
     "sweep",
 ]
 
-_HOMES = {"Case": "petalfoil.case", "reproduce": "petalfoil.report.reproduce", "sweep": "petalfoil.studies.sweep"}
+_HOMES = {
+    "Case": "petalfoil.case",
+    "design_report": "petalfoil.report.case_report",
+    "load": "petalfoil.results.store",
+    "reproduce": "petalfoil.report.reproduce",
+    "save": "petalfoil.results.store",
+    "sweep": "petalfoil.studies.sweep",
+}
 
 
 def __getattr__(name: str) -> object:

@@ -92,7 +92,8 @@ def options() -> set[str]:
     """Options of the program, its commands and the benchmarks."""
     group: Any = typer.main.get_command(app)
     inner = [part for command in commands().values() for part in getattr(command, "commands", {}).values()]
-    found = {name for command in (group, *commands().values(), *inner) for p in command.params for name in p.opts}
+    every = [parameter for command in (group, *commands().values(), *inner) for parameter in command.params]
+    found = {name for parameter in every for name in (*parameter.opts, *parameter.secondary_opts)}
     return found | {"--help"} | set(re.findall(r'"(--[a-z-]+)"', text(ROOT / "benchmarks" / "run.py")))
 
 

@@ -13,7 +13,8 @@ from matplotlib.figure import Figure
 from petalfoil import plot
 from petalfoil.analysis import known_verbs
 from petalfoil.case import Case
-from tests.docs.site import GALLERY, extension, listed
+from petalfoil.case import keys as case_keys
+from tests.docs.site import GALLERY, listed
 from tests.docs.texts import DOCS, text
 
 NO_FIGURES = {"animate", "register", "save", "study", "study_figures", "summary"}
@@ -27,7 +28,6 @@ def test_every_page_stands_in_a_table_of_contents() -> None:
 
 
 def test_every_key_of_a_case_is_described() -> None:
-    case_keys = extension("case_keys")
     described = list(case_keys.keys(Case))
     for name, definition in case_keys.sections().items():
         described += case_keys.keys(definition, f"{name}.")
@@ -36,7 +36,6 @@ def test_every_key_of_a_case_is_described() -> None:
 
 
 def test_the_reference_reads_units_ranges_and_defaults() -> None:
-    case_keys = extension("case_keys")
     keys = {key.name: key for section in case_keys.sections().values() for key in case_keys.keys(section)}
     thickness = keys["contact_film_thickness"]
     assert (thickness.symbol, thickness.unit, thickness.default) == ("h_c", "m", "1 µm")

@@ -20,6 +20,7 @@ In the order data flows:
 - `package`: geometry that follows, and whether the foil pack can be assembled.
 - `toml`: files and texts.
 - `definitions`: `Case`, which puts all of it together.
+- `keys`: every key with unit, range, default and meaning, and what a case says to it.
 - `parameters`: numbers of a case that may vary, by dotted path.
 - `plausibility`: warnings of what is implausible about a case and its answer.
 

@@ -50,6 +50,11 @@ def register_table(table: type[WallTable]) -> None:
     _registered[table.section] = table
 
 
+def registered_tables() -> tuple[type[WallTable], ...]:
+    """All tables that were registered."""
+    return tuple(_registered.values())
+
+
 def unregister_table(table: type[WallTable]) -> None:
     """Forget a table that was registered."""
     del _registered[table.section]

@@ -10,6 +10,7 @@ from typer.core import TyperCommand, TyperGroup
 from petalfoil import __version__
 from petalfoil.analysis import known_verbs
 from petalfoil.cli.failures import handled
+from petalfoil.cli.report import report
 from petalfoil.cli.reproduce import reproduce
 from petalfoil.cli.streams import accept_any_text, emit
 from petalfoil.cli.studio import studio
@@ -71,6 +72,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,  # `failures` speaks to the user, not a decorated traceback
     rich_markup_mode="rich",
 )
+app.command()(report)
 app.command()(reproduce)
 app.command()(studio)
 

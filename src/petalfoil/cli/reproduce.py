@@ -31,7 +31,7 @@ def reproduce(out: Folder = Path("report"), as_json: Json = False) -> None:
     Example: petalfoil reproduce --out report
     """
     with handled(as_json):
-        _check(out)
+        check_folder(out)
 
         from petalfoil.report.reproduce import report
 
@@ -44,7 +44,7 @@ def reproduce(out: Folder = Path("report"), as_json: Json = False) -> None:
             raise typer.Exit(NOT_CONVERGED)
 
 
-def _check(folder: Path) -> None:
+def check_folder(folder: Path) -> None:
     """Make sure before any work that the folder can be written to."""
     try:
         folder.mkdir(exist_ok=True)

@@ -1,4 +1,4 @@
-"""Elements of a page without external references: tables, figures inside the file, a style for screen and print."""
+"""Pages without external references, from the templates of this folder: elements, figures inside the file."""
 
 from __future__ import annotations
 
@@ -6,98 +6,88 @@ import base64
 import io
 import re
 from collections.abc import Iterable
+from functools import cache
 from html import escape
+from typing import Any
 
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from petalfoil.report.page_tables import TextTable
 
-STYLE = """
-:root { color-scheme: light; }
-body { font: 16px/1.5 system-ui, "Segoe UI", "DejaVu Sans", sans-serif; color: #222; background: #fff;
-       max-width: 62rem; margin: 2rem auto; padding: 0 1.2rem; }
-h1 { font-size: 1.7rem; line-height: 1.2; margin-bottom: .3rem; }
-h2 { font-size: 1.25rem; margin: 2.2rem 0 .6rem; border-bottom: 1px solid #ccc; padding-bottom: .2rem; }
-p.note, figcaption { color: #555; font-size: .9rem; }
-nav { font-size: .9rem; display: flex; flex-wrap: wrap; gap: .2rem 1.1rem; }
-a { color: #0072B2; } sub { line-height: 0; font-size: .75em; }
-figure { margin: 1rem 0; break-inside: avoid; } figure img { width: 100%; height: auto; }
-.pair { display: grid; grid-template-columns: 1fr 1fr; gap: 1rem; margin-bottom: 1.2rem; }
-.pair figure { margin: 0; }
-.scroll { overflow-x: auto; }
-table { border-collapse: collapse; width: 100%; font-size: .85rem; margin: .8rem 0; }
-th, td { padding: .3rem .55rem; text-align: left; vertical-align: top; border-bottom: 1px solid #e3e3e3; }
-th { border-bottom: 2px solid #999; font-weight: 600; }
-td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-tr { break-inside: avoid; }
-.verdict { width: 8.5rem; font-weight: 600; }
-span.note { color: #777; }
-.met { color: #00724f; } .unmet { color: #b34700; } .elsewhere { color: #8a6100; }
-tr.marked td { background: #eef7f2; }
-@media (max-width: 50rem) { .pair { grid-template-columns: 1fr; } }
-@media print { body { max-width: none; margin: 0; font-size: 10pt; } nav { display: none; } a { color: inherit; } }
-"""
+
+@cache
+def templates() -> Environment:
+    """The templates: everything is escaped, and a name that a template misses is an error."""
+    loader = PackageLoader("petalfoil.report")
+    made = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    made.filters |= {"prose": prose, "image": image, "kinds": kinds}
+    return made
 
 
 def page(title: str, body: Iterable[str]) -> str:
-    """The page as HTML."""
-    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(title)}</title>'
-    return (
-        f'<!DOCTYPE html>\n<html lang="en"><head>{head}<style>{STYLE}</style></head><body>\n'
-        + "\n".join(body)
-        + ("\n</body></html>\n")
-    )
+    """The page as HTML, from elements that are HTML."""
+    return templates().get_template("page.html").render(title=title, body=[Markup(part) for part in body])
 
 
-def prose(text: str) -> str:
-    """Plain text; indices of symbols such as `R_j` and `p_a` become subscripts."""
-    return re.sub(r"\b([A-Za-zφδ])_([A-Za-z]+)\b", r"\1<sub>\2</sub>", escape(text))
+def prose(text: str) -> Markup:
+    """Plain text; indices of symbols such as `R_j` and `p_a` become subscripts, code and line breaks stay."""
+    lowered = re.sub(r"\b([A-Za-zφδ])_([A-Za-z]+)\b", r"\1<sub>\2</sub>", escape(text))
+    coded = re.sub(r"`([^`]+)`", r"<code>\1</code>", lowered)
+    return Markup(coded.replace("\n", "<br>"))
 
 
 def paragraph(text: str, kind: str = "") -> str:
     """A paragraph of plain text."""
-    return f"<p{_class(kind)}>{prose(text)}</p>"
+    return _element("paragraph", text, kind)
 
 
 def bullets(items: Iterable[str]) -> str:
     """A list of plain texts."""
-    return "<ul>" + "".join(f"<li>{prose(item)}</li>" for item in items) + "</ul>"
+    return _element("bullets", list(items))
 
 
 def section(name: str, heading: str) -> str:
     """A heading with an anchor for the navigation."""
-    return f'<h2 id="{name}">{prose(heading)}</h2>'
+    return _element("section", name, heading)
 
 
 def table(content: TextTable, marked: Iterable[int] = ()) -> str:
     """A table. Columns of numbers are aligned to the right; the rows `marked` are highlighted."""
-    kinds = ["n" if all(_is_number(row[k]) for row in content.rows) else "" for k in range(len(content.head))]
-    head = "".join(f"<th{_class(kind)}>{prose(text)}</th>" for kind, text in zip(kinds, content.head, strict=True))
-    chosen, lines = set(marked), []
-    for number, row in enumerate(content.rows):
-        cells = "".join(f"<td{_class(kind)}>{prose(text)}</td>" for kind, text in zip(kinds, row, strict=True))
-        lines.append(f"<tr{_class('marked' if number in chosen else '')}>{cells}</tr>")
-    return f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{"".join(lines)}</tbody></table></div>'
+    return _element("table", content, kinds(content), set(marked))
 
 
 def picture(fig: Figure, caption: str, width: float | None = None) -> str:
     """A figure inside the page, as SVG, drawn for a `width` [inch] of its own if given."""
-    if width is not None:
-        fig.set_size_inches(width, width * fig.get_figheight() / fig.get_figwidth())
-    buffer = io.BytesIO()
-    fig.savefig(buffer, format="svg", metadata={"Date": None})
-    data = base64.b64encode(buffer.getvalue()).decode("ascii")
-    image = f'<img alt="{escape(caption)}" src="data:image/svg+xml;base64,{data}">'
-    return f"<figure>{image}<figcaption>{prose(caption)}</figcaption></figure>"
+    return _element("picture", image(fig, width), caption)
 
 
 def pair(first: str, second: str) -> str:
     """Two elements side by side."""
-    return f'<div class="pair">{first}{second}</div>'
+    return _element("pair", Markup(first), Markup(second))
 
 
-def _class(kind: str) -> str:
-    return f' class="{kind}"' if kind else ""
+def image(fig: Figure, width: float | None = None) -> str:
+    """A figure as an address that holds it, drawn for a `width` [inch] of its own if given."""
+    if width is not None:
+        fig.set_size_inches(width, width * fig.get_figheight() / fig.get_figwidth())
+    buffer = io.BytesIO()
+    fig.savefig(buffer, format="svg", metadata={"Date": None})
+    return f"data:image/svg+xml;base64,{base64.b64encode(buffer.getvalue()).decode('ascii')}"
+
+
+def kinds(content: TextTable) -> list[str]:
+    """Style class of each column: "n" for numbers, by the table's own word or because all cells are."""
+    width = max(len(line) for line in (content.head, *content.rows))
+    if content.left:
+        words = {k % width for k in content.left}
+        return ["" if k in words else "n" for k in range(width)]
+    return ["n" if all(_is_number(row[k]) for row in content.rows) else "" for k in range(width)]
+
+
+def _element(name: str, *arguments: Any) -> str:
+    return str(getattr(templates().get_template("elements.html").module, name)(*arguments))
 
 
 def _is_number(text: str) -> bool:

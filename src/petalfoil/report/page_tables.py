@@ -10,6 +10,9 @@ from petalfoil.report.claims import Evidence
 from petalfoil.report.interpretations import Interpretation
 from petalfoil.report.load_characteristics import COMPARED, CharacteristicFamily
 from petalfoil.report.paper_grids import GridLoad
+from petalfoil.results import tables
+from petalfoil.results.layout import Answer
+from petalfoil.results.tables import tables_of
 
 MISSING = "–"
 
@@ -19,10 +22,35 @@ SMALLEST_LOAD = 1e-3
 
 @dataclass(frozen=True)
 class TextTable:
-    """Headings and cells."""
+    """Headings and cells.
+
+    Attributes
+    ----------
+    head : tuple of str
+        Headings, the unit behind a line break; empty for lines that explain themselves.
+    rows : tuple of tuple of str
+        Cells.
+    title : str
+        What stands above it.
+    left : tuple of int
+        Columns of words, negative numbers from the end; where there are none, cells tell which columns hold numbers.
+    """
 
     head: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
+    title: str = ""
+    left: tuple[int, ...] = ()
+
+
+def of_answer(answer: Answer) -> tuple[TextTable, ...]:
+    """The tables of an answer."""
+    return tuple(map(_plain, tables_of(answer)))
+
+
+def _plain(table: tables.TextTable) -> TextTable:
+    head = tuple(f"{column.heading}\n{column.unit}".rstrip() for column in table.columns)
+    words = tuple(k for k, column in enumerate(table.columns) if not column.of_numbers)
+    return TextTable(head, tuple(table.lines), table.title, words if head else (0, -1))
 
 
 def text(value: float, digits: int) -> str:

@@ -1,4 +1,4 @@
-"""Every key of a case, read from its definitions: unit, range, default, meaning."""
+"""Every key of a case, read from its definitions: unit, range, default, meaning; and what a case says to each."""
 
 from __future__ import annotations
 
@@ -10,18 +10,31 @@ from enum import StrEnum
 from typing import Any
 
 from pydantic.fields import FieldInfo
-from pydantic_core import PydanticUndefined
 
-from petalfoil.case import Case
 from petalfoil.case.definition import Definition
+from petalfoil.case.definitions import Case
 from petalfoil.case.number_fields import Count, Quantity, QuantityOrWord
+from petalfoil.case.wall_tables import registered_tables
 from petalfoil.units.writing import format_quantity
-from petalfoil.walls import wall_kinds
 
 
 @dataclass(frozen=True)
 class Key:
-    """One key of a case."""
+    """One key of a case.
+
+    Attributes
+    ----------
+    name, symbol : str
+        Its name, and its letter in the equations.
+    unit : str
+        SI unit; empty of words.
+    allowed : str
+        Its range, or the words that it may be.
+    default : str
+        What it is where a case does not say it, with its unit.
+    meaning : str
+        What it is.
+    """
 
     name: str
     symbol: str
@@ -34,8 +47,7 @@ class Key:
 def sections() -> dict[str, type[Definition]]:
     """Definitions of the tables of a case by name: those that every case knows, and those of further walls."""
     found = {name: definition for name, field in Case.model_fields.items() if (definition := _definition(field))}
-    tables = [kind.table for kind in wall_kinds() if kind.table is not None]
-    return found | {table.section: table for table in tables}
+    return found | {table.section: table for table in registered_tables()}
 
 
 def keys(definition: type[Definition], prefix: str = "") -> Iterator[Key]:
@@ -46,6 +58,61 @@ def keys(definition: type[Definition], prefix: str = "") -> Iterator[Key]:
             yield _key(prefix + name, field)
         elif definition is not Case:
             yield from keys(inner, f"{prefix}{name}.")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What a case says to a key, or leaves to its default.
+
+    Attributes
+    ----------
+    key : Key
+        The key, by its dotted path.
+    value : str
+        Its value, with its unit.
+    given : bool
+        Whether the case says it.
+    """
+
+    key: Key
+    value: str
+    given: bool
+
+
+def entries(case: Case) -> Iterator[Entry]:
+    """All keys of the tables that a case has, with their values.
+
+    A table that the case leaves out is one of defaults. Keys without value, for which the case has a rule, are left
+    out, and so is the title.
+    """
+    for section in type(case).model_fields:
+        table = getattr(case, section)
+        if isinstance(table, Definition):
+            yield from _entries(table, f"{section}.")
+
+
+def _entries(table: Definition, prefix: str) -> Iterator[Entry]:
+    for name, field in type(table).model_fields.items():
+        value, key = getattr(table, name), _key(prefix + name, field)
+        if isinstance(value, Definition):
+            yield from _entries(value, f"{prefix}{name}.")
+        elif value is not None:
+            yield Entry(key, _plain(value, key.unit.partition(",")[0]), name in table.model_fields_set)
+
+
+def _plain(value: object, unit: str) -> str:
+    """A value for a reader."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, tuple):
+        return f"{len(value)} rows" if any(isinstance(v, tuple) for v in value) else _several(value, unit)
+    if isinstance(value, float) and unit:
+        return format_quantity(value, unit)
+    return f"{value}"
+
+
+def _several(values: tuple[Any, ...], unit: str) -> str:
+    return ", ".join(_plain(value, unit) for value in values)
 
 
 def _key(name: str, field: FieldInfo) -> Key:
@@ -74,9 +141,9 @@ def _allowed(number: Quantity | Count | None, words: list[type[StrEnum]], declar
 
 
 def _default(field: FieldInfo, unit: str) -> str:
-    value = field.get_default(call_default_factory=True) if not field.is_required() else PydanticUndefined
-    if value is PydanticUndefined:
+    if field.is_required():
         return "required"
+    value: Any = field.get_default(call_default_factory=True)
     if value is None:
         return "–"
     if isinstance(value, bool):
