@@ -21,7 +21,8 @@ from petalfoil.cli.studies import study_command
 from tests.docs.texts import DOCS, ROOT, SOURCE, labels_in, modules, name_of, pages, text, theory_labels
 
 FILE = re.compile(r"[\w<>.-]*/[\w<>./-]*|[\w<>-]+\.(?:py|md|toml|csv|json)")
-OF_THE_READER = {"case.toml", "index.html", "result.nc", "study.toml", "table.csv", "figures/", "fields/", "build/docs"}
+OF_THE_READER = {"case.toml", "index.html", "report.json", "result.nc", "study.toml", "table.csv", "figures/", "fields/"}
+OF_THE_READER |= {"build/docs"}
 """Files that a reader makes."""
 
 PLACES = (ROOT, SOURCE, ROOT / "examples", DOCS)
