@@ -13,7 +13,7 @@ from petalfoil.mesh.pack import pack_mesh
 from petalfoil.mesh.quadrature import trapezoid
 from petalfoil.physics.shell import PetalShell
 from petalfoil.results.record import Record
-from tests.random_packages import random_case
+from tests.random_packages import random_case, wide_case
 
 SEED = 2024
 
@@ -128,8 +128,20 @@ def test_two_hundred_random_packages() -> None:
     check(solved)
 
 
+@pytest.mark.parametrize("edges", [Edges.AMBIENT, Edges.CONTINUOUS])
+def test_four_bearings_of_the_whole_domain(edges: Edges) -> None:
+    """Their contact fraction is a share, also where the film sucks."""
+    for number in range(4):
+        record = solve.record(wide_case(np.random.default_rng([number, SEED]), **{"model.edges": edges}))
+        s = record.scalars
+        assert s["residual"] <= 1e-8  # type: ignore[operator]
+        assert s["mass_balance_error"] <= 1e-9  # type: ignore[operator]
+        assert s["reaction_balance_error"] <= 1e-9  # type: ignore[operator]
+        assert 0.0 <= s["contact_fraction"] <= 1.0  # type: ignore[operator]
+
+
 def test_continuous_edges_and_a_coating() -> None:
-    """In 3-D: not every 2-D film with continuous edges has an equilibrium."""
+    """In 3-D."""
     rng = np.random.default_rng(SEED + 2)
     changes = {"model.kind": "3d", "model.edges": Edges.CONTINUOUS, "petals.coating": 5e-6}
     for _ in range(4):

@@ -70,7 +70,7 @@ def by_slower_ways(problem: CoupledProblem) -> Solution | None:
     return None
 
 
-MARCHES = ((0.1, 3.0), (1.0, 3.0), (0.01, 3.0), (0.1, 30.0))
+MARCHES = ((0.1, 3.0), (1.0, 3.0), (0.01, 3.0), (0.001, 3.0), (0.1, 30.0))
 """Dampings of the wall and barriers at which the film joins, in the order of trial. Of twelve bearings with continuous
 edges that no barrier serves, either of the first two serves eight, in 40 to 114 factorisations."""
 
