@@ -16,7 +16,7 @@ from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case, ModelKind
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.equilibrium.branches import distinct, probe
-from petalfoil.equilibrium.cold_start import by_barriers, solve_cold
+from petalfoil.equilibrium.cold_start import BARRIERS, attempt, by_barriers, solve_cold
 from petalfoil.equilibrium.continuation import ascend, settle
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
@@ -163,6 +163,9 @@ def beyond_capacity(problem: CoupledProblem, load: Vector, failure: ConvergenceE
 def at_position(case: Case) -> OperatingPoint:
     """The equilibrium to report at the case's eccentricity.
 
+    That of the cold start, if it was found at the first barrier, is stable and the only one known; else the one to
+    which the pack is followed from rest, as long as it is stable.
+
     Raises
     ------
     ConvergenceError
@@ -173,12 +176,13 @@ def at_position(case: Case) -> OperatingPoint:
             "operation.moment is balanced together with a load: give one, or the slopes operation.tilt in its place"
         )
     problem = build_problem(case)
-    found = list(filter(None, [by_barriers(problem)]))
+    first = attempt(problem, BARRIERS[0])
+    found = list(filter(None, [first or by_barriers(problem, BARRIERS[1:])]))
     rates = [leading_eigenvalue(answer) for answer in found]
     several = wall_kind(case).can(Capability.SEVERAL_EQUILIBRIA)
     known = probe(build_problem(coarse(case))) if several else 1
     path = ""
-    if known > 1 or not found or rates[0].real > 0.0:
+    if known > 1 or first is None or rates[0].real > 0.0:
         risen, jumps = ascend(problem)
         if risen is not None:
             found, rates = [risen, *found], [leading_eigenvalue(risen), *rates]
