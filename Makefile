@@ -11,7 +11,7 @@ export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup docs demo test test-all fuzz check lint types layers format bench constraints clean
+.PHONY: help setup docs demo test test-all test-long fuzz fuzz-verbs check lint types layers format bench constraints clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -37,14 +37,20 @@ demo: setup ## Load characteristic of the paper's packages: figures and data in 
 	$(BIN)/python examples/demo.py demo
 
 test: setup ## Fast tests
-	$(BIN)/python -m pytest -n $(JOBS) -m "not slow" tests
+	$(BIN)/python -m pytest -n $(JOBS) -m "not slow and not long" tests
 
 test-all: setup ## All tests
-	$(BIN)/python -m pytest -n $(JOBS) tests
+	$(BIN)/python -m pytest -n $(JOBS) -m "not long" tests
+
+test-long: setup ## Tests that take minutes to hours each
+	$(BIN)/python -m pytest -n $(JOBS) -m long tests
 
 N ?= 200
 fuzz: setup ## N random bearings over the whole domain: a table by stratum (docs/random-bearings.md)
 	$(BIN)/python -m tests.fuzz $(N) --jobs $(JOBS)
+
+fuzz-verbs: setup ## Every analysis on N random bearings: converged, or a typed error
+	$(BIN)/python -m tests.fuzz_verbs $(N) --jobs $(JOBS)
 
 check: lint types layers ## Everything that reads the code without running it
 

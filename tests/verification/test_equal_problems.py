@@ -98,12 +98,21 @@ def compare(numbers: range, change: Callable[[Case], tuple[Case, float]]) -> lis
     return apart
 
 
-@pytest.mark.parametrize("change", [turned, tripled, doubled])
-def test_twenty_bearings(change: Callable[[Case], tuple[Case, float]]) -> None:
-    assert compare(range(20), change) == []
+CHANGES = pytest.mark.parametrize("change", [turned, tripled, doubled])
+
+
+@CHANGES
+def test_eight_bearings(change: Callable[[Case], tuple[Case, float]]) -> None:
+    assert compare(range(8), change) == []
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("change", [turned, tripled, doubled])
+@CHANGES
+def test_forty_bearings(change: Callable[[Case], tuple[Case, float]]) -> None:
+    assert compare(range(40), change) == []
+
+
+@pytest.mark.long
+@CHANGES
 def test_two_hundred_bearings(change: Callable[[Case], tuple[Case, float]]) -> None:
     assert compare(range(200), change) == []

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from petalfoil.analysis.solve import solve
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.continuation import rest
@@ -29,6 +30,14 @@ def test_answers_with_digits_to_spare(cells: int) -> None:
     for answer in at_rest_and_at_speed(cells):
         assert answer is not None
         assert answer.residual <= DIGITS
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("cells", [896, 1024, 2048, 4096])
+def test_solve_far_from_the_centre(cells: int) -> None:
+    found = solve.record(bearing(cells), eccentricity="0 um, -200 um").scalars
+    assert found["residual"] <= 1e-8  # type: ignore[operator]
+    assert found["factorizations"] <= 20  # type: ignore[operator]
 
 
 def test_differences_of_evenly_rounded_neighbours_are_exact() -> None:

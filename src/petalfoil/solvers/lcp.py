@@ -102,9 +102,9 @@ def _interior_step(M: Array, at: tuple[Array, Array, Array], mu: float) -> tuple
     aim = np.zeros_like(z)
     for corrector in (False, True):
         dz = la.lu_solve(factor, -off + (aim - z * w) / z, check_finite=False)
-        dw = M @ dz + off
-        if not (np.all(np.isfinite(dz)) and np.all(np.isfinite(dw))):
+        if not np.all(np.isfinite(dz)):
             return None
+        dw = M @ dz + off
         reach = min(1.0, 0.99 * fraction_to_boundary(z, dz), 0.99 * fraction_to_boundary(w, dw))
         if not corrector:
             share = float((z + reach * dz) @ (w + reach * dw)) / len(z) / mu

@@ -36,3 +36,7 @@ def test_where_swapping_goes_round() -> None:
 
 def test_no_answer_is_no_answer() -> None:
     assert solve_lcp(np.array([[-1.0]]), np.array([-1.0]), np.array([False])) is None
+
+
+def test_a_matrix_of_zeros_warns_of_nothing() -> None:
+    assert solve_lcp(np.zeros((2, 2)), -np.ones(2), np.zeros(2, dtype=bool)) is None
