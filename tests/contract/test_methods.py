@@ -32,6 +32,7 @@ def bearing(method: Method) -> Case:
     return case("paper_n8", **{"model.cells_per_pitch": 8, "model.method": method})
 
 
+@pytest.mark.slow
 def test_the_records_of_all_methods_are_alike() -> None:
     records = [solve.record(bearing(method)) for method in Method]
     for part in ("scalars", "fields", "coords"):

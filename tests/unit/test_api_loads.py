@@ -153,6 +153,7 @@ def test_the_legs_of_a_run_up_share_one_dimension() -> None:
     assert_allclose(ds["speed"], [0.0, 750.0, 3000.0, 750.0, 0.0], rtol=1e-12, atol=0.0)
 
 
+@pytest.mark.slow
 def test_a_load_beyond_the_capacity_is_said_to_be_that() -> None:
     with pytest.raises(ConvergenceError, match=r"load of 1e\+09 N is beyond the capacity of the bearing: at 1e\+08 N"):
         petalfoil.balance(case("paper_n8", **{"model.cells_per_pitch": 24}), 1e9)

@@ -49,6 +49,7 @@ def test_a_motion_survives_its_file(tmp_path: Path, bearing: petalfoil.Case) -> 
     assert ("frame_radius" in ds) == (bearing.petals is not None)
 
 
+@pytest.mark.slow
 def test_two_turns_and_two_more_are_four(four: xr.Dataset, tmp_path: Path) -> None:
     save(petalfoil.orbit(PLAIN, revolutions=2.0), tmp_path / "two.nc")
     more = petalfoil.orbit(PLAIN, revolutions=2.0, restart=tmp_path / "two.nc")

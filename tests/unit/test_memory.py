@@ -89,6 +89,7 @@ print(peak() - before)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 @pytest.mark.parametrize(("name", "grid"), [("paper_n8_spatial", (64, 24)), ("plain_journal", (512, 128))])
 def test_the_estimate_holds_within_a_factor_of_two(name: str, grid: tuple[int, int]) -> None:

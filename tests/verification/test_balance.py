@@ -125,6 +125,7 @@ def check(found: list[Drawn]) -> None:
         assert kkt_residual(drawn.case, drawn.balance) <= PUBLISHED, drawn.case
 
 
+@pytest.mark.slow
 def test_fifteen_random_bearings() -> None:
     found, _ = run_random(15)
     check(found)
@@ -170,6 +171,7 @@ def test_a_floating_journal_is_carried_by_the_film() -> None:
 # ---------------------------------------------------------------------------------------------- neighbours
 
 
+@pytest.mark.slow
 def test_a_sweep_of_load_is_warm_and_agrees_with_cold_starts() -> None:
     problem = build_problem(case("paper_n8", **COARSE, **{"operation.eccentricity": (0.0, 0.0)}))
     unit = problem.layout.scales.force
@@ -188,6 +190,7 @@ def test_a_sweep_of_load_is_warm_and_agrees_with_cold_starts() -> None:
     assert np.median(counts[1:]) <= 8
 
 
+@pytest.mark.slow
 def test_an_unstable_balance_gives_way_to_the_one_reached_from_rest() -> None:
     """The 166th random bearing has three equilibria where it was solved; cold, the balance lands on an unstable one."""
     rng = np.random.default_rng(SEED)

@@ -83,6 +83,7 @@ def test_an_unstable_equilibrium_is_left_for_a_stable_one() -> None:
     assert np.max(np.abs(after - before)) > 1e-3 * before[0]
 
 
+@pytest.mark.slow
 def test_solve_reports_the_stable_branch_and_that_there_are_more() -> None:
     record = solve.record(drawn(88))
     assert record.scalars["stable"]
@@ -90,6 +91,7 @@ def test_solve_reports_the_stable_branch_and_that_there_are_more() -> None:
     assert "rest" in str(record.scalars["solution_path"])
 
 
+@pytest.mark.slow
 def test_a_curve_reports_its_jump() -> None:
     """The branch of case 4 ends between 154.5 and 155 um: its leading eigenvalue goes to zero there, and the next point
     lies on another branch, with five times the torque though the push on the journal changes by 3 % only."""
@@ -111,6 +113,7 @@ def test_a_curve_reports_its_jump() -> None:
     assert all(record.scalars["residual"] <= 1e-8 for record in records)  # type: ignore[operator]
 
 
+@pytest.mark.slow
 def test_a_long_step_that_leaves_the_branch_is_told_too() -> None:
     """From 140 to 145 um, on half as many cells, Newton and interior point both land beyond the end of the branch."""
     package = drawn(4).replace(**{"model.cells_per_pitch": 32})

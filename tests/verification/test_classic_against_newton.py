@@ -27,7 +27,11 @@ def both(bearing: Case) -> tuple[Record, Record]:
 
 
 @pytest.mark.parametrize("e", [0.0, 200e-6])
-@pytest.mark.parametrize(("name", "grid"), CASES_2D + CASES_3D, ids=["n6", "n8", "n10", "3d"])
+@pytest.mark.parametrize(
+    ("name", "grid"),
+    [*CASES_2D, *(pytest.param(*case_3d, marks=pytest.mark.slow) for case_3d in CASES_3D)],
+    ids=["n6", "n8", "n10", "3d"],
+)
 def test_load_film_and_pressure_agree(name: str, grid: dict[str, object], e: float) -> None:
     classic, newton = both(case(name, **{**grid, "operation.eccentricity": (0.0, -e)}))
     assert classic.converged

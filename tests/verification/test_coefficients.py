@@ -216,6 +216,7 @@ def test_twenty_frequencies_cost_two_factorisations_more_than_one() -> None:
     assert counts[1] <= 5
 
 
+@pytest.mark.slow
 def test_the_reduced_model_gives_what_the_equations_give() -> None:
     """Within 1e-9 of the largest entry at every frequency, the checked ones and those between."""
     bearing = case("paper_n8", **PETALS)

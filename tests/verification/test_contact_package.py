@@ -121,6 +121,7 @@ def test_examples_are_optimal(name: str) -> None:
     check_optimality(example(name, 32))
 
 
+@pytest.mark.slow
 def test_random_packages_are_optimal() -> None:
     rng = np.random.default_rng(SEED)
     for _ in range(12):

@@ -193,6 +193,7 @@ def test_stiffness_is_smooth_along_a_sweep() -> None:
     assert noise[1] >= 3e-2
 
 
+@pytest.mark.slow
 def test_stiffness_is_the_slope_of_equilibria_far_apart() -> None:
     """Chords over 16 um, in which contacts pass some cells, against the mean stiffness on the way: 0.5 %."""
     bearing = BEARINGS["turbocharger"].replace(**{"model.cells_per_pitch": 256})

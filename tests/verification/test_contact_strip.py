@@ -107,6 +107,7 @@ AVERAGED = (16, 32, 64)
 GAPS = np.geomspace(8e-4, 0.0125, 33)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("grid", GRIDS)
 def test_total_reaction_of_line_contact(grid: str) -> None:
     """`R = q (l - a) + q a / 3`; root mean square over 33 gaps."""

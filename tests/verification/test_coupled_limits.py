@@ -45,6 +45,7 @@ def test_turning_by_one_pitch_turns_the_answer(kind: str, edges: str) -> None:
     assert_allclose(np.roll(here.fields["pressure"], 1, axis=0), there.fields["pressure"], rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_turning_package_and_displacement_turns_the_force() -> None:
     e, angle = np.array([0.0, -150e-6]), 0.377
     here = solve.record(PAPER, eccentricity=(0.0, -150e-6))
@@ -71,6 +72,7 @@ def film_alone(bearing: Case, H: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     raise AssertionError("the film alone did not converge")
 
 
+@pytest.mark.slow
 def test_stiff_petals_are_the_rigid_stepped_bearing() -> None:
     """`E / p_a -> infinity`: petals keep the shape of the assembled pack, and the film is that of a rigid bearing.
 
@@ -94,6 +96,7 @@ def test_stiff_petals_are_the_rigid_stepped_bearing() -> None:
     assert_allclose(np.array(errors[:-1]) / np.array(errors[1:]), 10.0, rtol=0.3)  # first order in p_a / E
 
 
+@pytest.mark.slow
 def test_slow_shaft_leaves_ambient_pressure_and_the_static_package() -> None:
     rest = next(static.records(PAPER, (100e-6,)))
     errors = []
@@ -113,6 +116,7 @@ def test_a_shaft_at_rest_is_the_static_package() -> None:
     assert still.scalars["contact_fraction"] == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_half_and_whole_length_agree() -> None:
     half = PAPER.replace(**{"model.kind": "3d", "model.cells_per_pitch": 16, "model.axial_cells": 6})
     whole = half.replace(**{"model.symmetry": False})

@@ -119,6 +119,7 @@ def test_loop_of_a_strip_on_its_tip(mu: float) -> None:
     assert orders(errors).min() > 1.2
 
 
+@pytest.mark.slow
 def test_loss_goes_with_friction_where_it_slips_and_vanishes_where_it_sticks() -> None:
     """Half the friction, half the loss, to first order; friction past which the tip holds loses nothing."""
     few, half = cycle_of_tip(32, 0.01), cycle_of_tip(32, 0.005)

@@ -213,6 +213,7 @@ def falling() -> Case:
     return plain(rotor={"mass": 0.1, "unbalance": 2e-6}, **{"operation.eccentricity": (0.0, -5e-6)})
 
 
+@pytest.mark.slow
 def test_second_order_in_time() -> None:
     """Differences of position and film after 1 rad between steps and half the steps fall with slope 2 +- 0.1."""
     bearing = falling()
@@ -277,6 +278,7 @@ def test_an_unstable_orbit_grows_to_the_wall_and_stays_within() -> None:
     assert np.asarray(record.fields["contact_fraction"]).max() > 0.0
 
 
+@pytest.mark.slow
 def test_speed_may_rise_from_rest() -> None:
     """A run-up in time: the shaft turns as the ramp says, the film lifts the journal on the way."""
     bearing = petals(rotor={"mass": 0.5})
@@ -288,6 +290,7 @@ def test_speed_may_rise_from_rest() -> None:
     assert replace(course, speeds=None).schedule(bearing).top == bearing.operation.speed
 
 
+@pytest.mark.slow
 def test_a_released_rotor_on_petals_ends_where_its_load_balances() -> None:
     """Petals hardly damp: steps too long to follow the swing, which an L-stable scheme takes out, lead there."""
     loaded, (x, y) = under(petals(), 1e-3, 20.0)

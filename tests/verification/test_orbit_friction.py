@@ -70,6 +70,7 @@ def test_the_motion_does_not_hang_on_the_width_of_the_stick() -> None:
     assert abs(losses[1] / losses[2] - 1.0) < abs(losses[0] / losses[2] - 1.0) + 1e-3
 
 
+@pytest.mark.slow
 def test_a_restart_goes_on_with_the_friction_that_was_there() -> None:
     bearing = rubbing(0.2, **{"operation.eccentricity": (0.0, -260e-6)})
     half, whole = OrbitRequest(revolutions=1.0), OrbitRequest(revolutions=2.0)

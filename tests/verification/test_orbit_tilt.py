@@ -35,6 +35,7 @@ def at(record: Record, name: str, time: Array) -> Array:
     return np.interp(time, np.asarray(record.coords["time"]), np.asarray(record.fields[name]))
 
 
+@pytest.mark.slow
 def test_parallel_motion_is_that_of_one_bearing() -> None:
     """Twice the mass in two bearings moves as one mass in one, and does not tilt."""
     one = follow(plain({"mass": 0.2, "unbalance": 1e-6}, **OFF, **{"model.symmetry": False}), COURSE)

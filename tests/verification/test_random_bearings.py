@@ -128,7 +128,7 @@ def test_two_hundred_random_packages() -> None:
     check(solved)
 
 
-@pytest.mark.parametrize("edges", [Edges.AMBIENT, Edges.CONTINUOUS])
+@pytest.mark.parametrize("edges", [Edges.AMBIENT, pytest.param(Edges.CONTINUOUS, marks=pytest.mark.slow)])
 def test_four_bearings_of_the_whole_domain(edges: Edges) -> None:
     """Their contact fraction is a share, also where the film sucks."""
     for number in range(4):
@@ -140,6 +140,7 @@ def test_four_bearings_of_the_whole_domain(edges: Edges) -> None:
         assert 0.0 <= s["contact_fraction"] <= 1.0  # type: ignore[operator]
 
 
+@pytest.mark.slow
 def test_continuous_edges_and_a_coating() -> None:
     """In 3-D."""
     rng = np.random.default_rng(SEED + 2)

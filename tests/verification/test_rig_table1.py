@@ -82,6 +82,7 @@ def test_the_example_gives_the_lift_off_speeds_of_the_page() -> None:
     assert_allclose(found, told()[1], rtol=2e-3, atol=0.0)
 
 
+@pytest.mark.slow
 def test_the_example_lifts_off_in_experiment_1_as_the_page_says() -> None:
     report = script("rig_report")
     assert_allclose(report.lift_off(report.rig(), report.experiments()[0]), told()[1][0], rtol=2e-3, atol=0.0)

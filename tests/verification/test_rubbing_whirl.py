@@ -156,6 +156,7 @@ def test_what_a_cycle_takes_is_the_area_of_its_loops_and_the_work_of_the_film() 
     assert_allclose(taken, loops + film, rtol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("amplitude", [1e-6, 3e-6])
 def test_cycles_are_near_those_that_the_bearing_is_led_through(amplitude: float) -> None:
     """A slow cycle in equilibria whose reactions and contacts change: stiffness within 2 %, loss within 12 %."""

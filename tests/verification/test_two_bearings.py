@@ -131,6 +131,7 @@ def test_the_end_of_the_search_is_no_threshold() -> None:
 # ---------------------------------------------------------------------------------------------- the motion
 
 
+@pytest.mark.slow
 def test_the_summary_of_a_motion_shows_what_the_journals_do() -> None:
     """The axis's middle moves 3 µm at the speed, the journals 15 µm at half of it."""
     ds = orbit(PAIR, revolutions=40.0)

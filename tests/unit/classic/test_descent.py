@@ -113,6 +113,7 @@ def petal_by_petal(problem: CoupledProblem, descent: PackDescent, W: Array, swee
     return W
 
 
+@pytest.mark.slow
 def test_petals_that_descend_one_by_one_stop_short_of_the_least_energy() -> None:
     """The pack is projected as a whole because a petal cannot displace a neighbour that is a fixed bound."""
     problem = package(8, 100e-6)

@@ -207,6 +207,7 @@ main()
 """
 
 
+@pytest.mark.slow
 def test_ctrl_c_ends_with_its_code(rotor: str, tmp_path: Path) -> None:
     out = tmp_path / "orbit.nc"
     arguments = ["orbit", rotor, "--revolutions", "50", "--out", str(out)]

@@ -178,6 +178,7 @@ def test_the_waterfall_of_one_speed_is_over_turns(steady: xr.Dataset) -> None:
     assert plot.orbit_waterfall(steady).axes[0].get_ylabel() == "revolutions of the shaft"
 
 
+@pytest.mark.slow
 def test_a_few_turns_have_no_spectrum(texts: Texts) -> None:
     short = to_dataset(moved(whirling(1.0, (1.0, 1e-5))))
     for draw in (plot.orbit, plot.orbit_spectrum, plot.orbit_waterfall):
