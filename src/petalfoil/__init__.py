@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from petalfoil.report.reproduce import reproduce
     from petalfoil.results.store import load, save
     from petalfoil.studies.sweep import sweep
+    from petalfoil.studies.tolerance import tolerance
 
 __version__ = "0.1.0"
 
@@ -69,6 +70,7 @@ __all__ = [
     "stability",
     "static",
     "sweep",
+    "tolerance",
 ]
 
 _HOMES = {
@@ -78,6 +80,7 @@ _HOMES = {
     "reproduce": "petalfoil.report.reproduce",
     "save": "petalfoil.results.store",
     "sweep": "petalfoil.studies.sweep",
+    "tolerance": "petalfoil.studies.tolerance",
 }
 
 

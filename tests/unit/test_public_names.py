@@ -32,6 +32,7 @@ NAMES = {
     "stability",
     "static",
     "sweep",
+    "tolerance",
 }
 
 

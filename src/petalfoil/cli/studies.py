@@ -58,6 +58,18 @@ Sample = Annotated[
     str,
     typer.Option("--sample", metavar="SAMPLE", help='A sample instead of all combinations: "lhs 200", "sobol 256".'),
 ]
+SCATTER_HELP = (
+    'What scatters, as often as needed: petals.thickness="± 5 um" (uniform), "normal 0.2 mm" (standard deviation), '
+    '"triangular ± 2 %"; "each" behind it for one value a petal.'
+)
+ScatterOption = Annotated[list[str], typer.Option("--scatter", metavar="PATH=SCATTER", help=SCATTER_HELP)]
+LimitOption = Annotated[
+    list[str],
+    typer.Option("--limit", metavar="LIMIT", help='A limit: "liftoff_speed < 15000 rpm"; as often as needed.'),
+]
+Samples = Annotated[
+    str, typer.Option("--samples", metavar="SAMPLE", help='Number of bearings, or a sample: "lhs 500, seed 2".')
+]
 RUNNING = {
     "out": (Out, Path("study")),
     "workers": (Workers, None),
@@ -100,6 +112,15 @@ def define_sweep(case: Case, question: Question, own: dict[str, Any]) -> Study:
     return sweep_study(case, assignments("--vary", own["vary"]), question, own["sample"])
 
 
+def define_tolerance(case: Case, question: Question, own: dict[str, Any]) -> Study:
+    """The study of ``petalfoil tolerance``."""
+    from petalfoil.studies.tolerance import tolerance_study
+
+    scatter, sample = assignments("--scatter", own["scatter"]), own["samples"]
+    sample = f"sobol {sample}" if sample.strip().isdigit() else sample
+    return tolerance_study(case, scatter, question, limits=own["limit"], sample=sample)
+
+
 COMMANDS = {
     "sweep": StudyCommand(
         help="""Ask an analysis of many cases: over a grid of parameters, or a sample of them.
@@ -112,6 +133,22 @@ Example: petalfoil sweep case.toml --vary petals.thickness="0.1 mm : 0.2 mm : 11
 """,
         options={"vary": (Vary, inspect.Parameter.empty), "sample": (Sample, "")},
         define=define_sweep,
+    ),
+    "tolerance": StudyCommand(
+        help="""Ask an analysis of bearings that scatter, and how likely they keep limits.
+
+Mean, standard deviation and quantiles of the results, beside the estimate of
+first order; of each limit the probability that it is kept, with its 95 %
+confidence interval. A bearing without an answer does not keep a limit.
+
+Example: petalfoil tolerance case.toml --scatter petals.thickness="± 5 um" --ask liftoff --load "20 N"
+""",
+        options={
+            "scatter": (ScatterOption, inspect.Parameter.empty),
+            "limit": (LimitOption, []),
+            "samples": (Samples, "500"),
+        },
+        define=define_tolerance,
     ),
 }
 """Commands that begin a study, by name."""

@@ -24,6 +24,7 @@ In the order data flows:
 - ``grid_convergence`` quantities against the grid (`convergence`)
 - ``study_views``  what figures take from a study
 - ``study_sweeps`` a study over its parameters (`sweep`, `parallel_coordinates`, `scatter_matrix`)
+- ``study_tolerance`` scatter of results with limits (`tolerance`)
 - ``studies``      the figures of a study by name (`study`, `study_figures`)
 - ``generic``      any other result (`quantities`)
 - ``figure_registry`` the figure of each analysis (`summary`), and new ones (`register`)
@@ -57,6 +58,7 @@ if TYPE_CHECKING:
     from petalfoil.plot.stability_maps import stability
     from petalfoil.plot.studies import study, study_figures
     from petalfoil.plot.study_sweeps import parallel_coordinates, scatter_matrix, sweep
+    from petalfoil.plot.study_tolerance import tolerance
 
 _MODULES = {
     "animation": ("animate",),
@@ -76,6 +78,7 @@ _MODULES = {
     "speed_sweeps": ("liftoff", "runup"),
     "stability_maps": ("stability",),
     "studies": ("study", "study_figures"),
+    "study_tolerance": ("tolerance",),
     "study_sweeps": ("parallel_coordinates", "scatter_matrix", "sweep"),
 }
 _HOME = {name: module for module, names in _MODULES.items() for name in names}
@@ -113,6 +116,7 @@ __all__ = [
     "study_figures",
     "summary",
     "sweep",
+    "tolerance",
 ]
 
 

@@ -25,6 +25,7 @@ FIGURES: dict[str, Draw | str] = {
     "stability": "stability_maps:stability",
     "orbit": "journal_orbit:orbit",
     "sweep": "study_sweeps:sweep",
+    "tolerance": "study_tolerance:tolerance",
 }
 """Function that draws the result of an analysis, or where it stands: module of this package, colon, function."""
 

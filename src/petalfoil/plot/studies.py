@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from petalfoil.errors import UsageError
 from petalfoil.plot.study_sweeps import parallel_coordinates, scatter_matrix, sweep
+from petalfoil.plot.study_tolerance import tolerance
 
 
 def study(ds: xr.Dataset, names: tuple[str, ...] = ()) -> Figure:
@@ -22,9 +23,9 @@ def study(ds: xr.Dataset, names: tuple[str, ...] = ()) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Lines, contours or parallel coordinates of a sweep.
+        Lines, contours or parallel coordinates of a sweep; histograms of a tolerance study.
     """
-    return sweep(ds, names)
+    return tolerance(ds, names) if ds.attrs["analysis"] == "tolerance" else sweep(ds, names)
 
 
 def study_figures(ds: xr.Dataset) -> dict[str, Figure]:
@@ -40,11 +41,15 @@ def study_figures(ds: xr.Dataset) -> dict[str, Figure]:
     dict of matplotlib.figure.Figure
         Figures by name; none where no result varies.
     """
-    drawn = {"sweep": _sweep}
+    drawn = {"sweep": _sweep, "tolerance": _tolerance}
     try:
         return drawn.get(str(ds.attrs["analysis"]), _sweep)(ds)
     except UsageError:  # no case has a result that varies: the page tells why each failed
         return {}
+
+
+def _tolerance(ds: xr.Dataset) -> dict[str, Figure]:
+    return {"tolerance": tolerance(ds), "scatter_matrix": scatter_matrix(ds)}
 
 
 def _sweep(ds: xr.Dataset) -> dict[str, Figure]:

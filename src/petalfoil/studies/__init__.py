@@ -11,6 +11,8 @@ In the order data flows:
 - `dataset`: outcomes as labelled data.
 - `run`: answers what is not answered yet, and lays it out.
 - `sweep`: a grid or a sample of parameters.
+- `limits`: limits and objectives: results with a bound.
+- `tolerance`: a sample of bearings that scatter.
 - `summary`: a study in words and numbers.
 - `page`: its figures and its page.
 - `export`: its cases as case files.

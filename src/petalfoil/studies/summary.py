@@ -17,6 +17,9 @@ from petalfoil.studies.question import CONVERGED
 Lines = tuple[tuple[str, ...], ...]
 SAME = 1e-6
 """Relative spread below which a result is the same in all cases: each is solved to 1e-8."""
+LIMIT_HEADS = ("limit", "kept by", "95 % confidence", "without an answer")
+QUANTILE_KEYS = ("quantile_05", "quantile_50", "quantile_95")
+TOLERANCE_HEADS = ("quantity", "nominal", "mean", "std. dev.", "first order", "5 %", "50 %", "95 %", "unit")
 RANGE_HEADS = ("quantity", "least", "median", "greatest", "unit")
 
 
@@ -37,9 +40,17 @@ def results(ds: xr.Dataset) -> list[str]:
         values = ds[name].values
         if ds[name].dims and variable.kind is DataType.FLOAT and variable.role is Role.ANSWER:
             finite = values[np.isfinite(values)]
-            if finite.size and float(np.ptp(finite)) > SAME * float(np.abs(finite).max()):
+            size = float(np.abs(finite).max()) if finite.size else 0.0
+            if size > 0.0 and float(np.ptp(finite)) > SAME * size and not _is_rounding(ds, name, size):
                 found.append(name)
     return found
+
+
+def _is_rounding(ds: xr.Dataset, name: str, size: float) -> bool:
+    """Whether a component of a force is nothing beside the whole force."""
+    if SCALARS[name].units != "N" or "bearing_force" not in ds:
+        return False
+    return size < SAME * float(np.nanmax(ds["bearing_force"].values))
 
 
 def ranges(ds: xr.Dataset) -> Lines:
@@ -56,9 +67,35 @@ def ranges(ds: xr.Dataset) -> Lines:
 def tables(ds: xr.Dataset) -> list[tuple[tuple[str, ...], Lines]]:
     """Tables that tell a study: headings and lines."""
     found: list[tuple[tuple[str, ...], Lines]] = []
+    told = extra(ds)
+    if "tolerance" in told:
+        return [(LIMIT_HEADS, _limits(told["tolerance"])), (TOLERANCE_HEADS, _scatter(told["tolerance"]))]
     if lines := ranges(ds):
         found.append((RANGE_HEADS, lines))
     return found
+
+
+def _limits(told: dict[str, Any]) -> Lines:
+    """Probability that each limit is kept."""
+    return tuple(
+        (
+            limit["limit"],
+            f"{100.0 * limit['probability']:.1f} %",
+            f"{100.0 * limit['low']:.1f} to {100.0 * limit['high']:.1f} %",
+            str(limit["without_answer"]),
+        )
+        for limit in told["limits"]
+    )
+
+
+def _scatter(told: dict[str, Any]) -> Lines:
+    """Nominal value, mean, standard deviation and quantiles of each result."""
+    keys = ("nominal", "mean", "standard_deviation", "first_order_standard_deviation", *QUANTILE_KEYS)
+    lines = []
+    for name, numbers in told["results"].items():
+        parts = [cell(name, math.nan if numbers.get(key) is None else numbers[key]) for key in keys]
+        lines.append((parts[0].label.strip(), *(part.value for part in parts), parts[0].unit))
+    return tuple(lines)
 
 
 def reasons(ds: xr.Dataset) -> list[str]:

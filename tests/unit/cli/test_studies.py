@@ -122,3 +122,15 @@ def test_a_study_without_any_answer_has_an_exit_code(two_d: str, tmp_path: Path)
     failed = run(*words, "--out", str(tmp_path / "study"), "--json")
     assert failed.exit_code == 3
     assert json.loads(failed.stdout)["cases"] == {"invalid case": 2}
+
+
+def test_tolerance_tells_how_likely_limits_are_kept(two_d: str, tmp_path: Path) -> None:
+    words = ["tolerance", two_d, "--scatter", "gas.viscosity=± 2 %", "--eccentricity", "0 um, -20 um"]
+    words_of_run = ["--limit", "bearing_force > 1 N", "--samples", "8", "--workers", "0", "--out", str(tmp_path / "t")]
+    done = run(*words, *words_of_run)
+    assert done.exit_code == 0, done.output
+    assert "tolerance of solve: 8 cases, 8 converged" in done.stdout
+    assert "100.0 %   63.1 to 100.0 %" in done.stdout
+    assert "first order" in done.stdout
+    refused = run(*words, "--limit", "bearing_forc > 1 N", "--out", str(tmp_path / "u"))
+    assert "Did you mean 'bearing_force'?" in refused.stderr

@@ -1,0 +1,125 @@
+"""Scatter: moments and probabilities against closed forms, and a bearing whose answer is linear."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from petalfoil.errors import UnitError, UsageError
+from petalfoil.studies.limits import Limit, unit_of
+from petalfoil.studies.plan import unit_sample
+from petalfoil.studies.question import CONVERGED, NOT_CONVERGED, Outcome
+from petalfoil.studies.run import Execution
+from petalfoil.studies.tolerance import kept, statistics, tolerance
+from petalfoil.studies.variation import read_scatter
+from tests.cases import case
+
+REFERENCE = Path(__file__).parents[2] / "verification" / "reference" / "r7_scatter.csv"
+PLAIN = case("plain_journal", **{"model.kind": "2d", "model.cells_per_pitch": 16})
+ALONE = Execution(workers=0)
+
+
+@pytest.fixture(autouse=True)
+def _no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("petalfoil.studies.page.write_page", lambda folder, ds: None)
+
+
+def reference() -> list[dict[str, str]]:
+    """Springs round a circle whose stiffness scatters as the cube of their thickness: closed forms."""
+    with REFERENCE.open(encoding="utf-8") as file:
+        return [row for row in csv.DictReader(file) if row["mode"] == "k only"]
+
+
+@pytest.mark.parametrize("row", reference(), ids=lambda row: f"s={row['s']}")
+def test_springs_of_scattered_thickness(row: dict[str, str]) -> None:
+    petals, scatter = int(row["n"]), float(row["s"])
+    (thickness,) = read_scatter(case("paper_n8"), "petals.thickness", f"normal {100.0 * scatter} %")
+    unit = unit_sample("sobol", 4096, petals, seed=7)
+    drawn = np.array([thickness.at(unit[:, petal]) for petal in range(petals)]) / thickness.nominal
+    stiffness = drawn**3
+    angles = 2.0 * np.pi * np.arange(petals) / petals
+    force = np.hypot(stiffness.T @ np.cos(angles), stiffness.T @ np.sin(angles))
+    told = statistics(stiffness[0])
+    error = told["standard_error"]
+    assert abs(told["mean"] - float(row["E k/k0"])) < 2.0 * error
+    assert told["standard_deviation"] ** 2 == pytest.approx(float(row["Var k/k0^2"]), rel=0.02)
+    rms = math.sqrt(float((force**2).mean()))
+    assert rms == pytest.approx(float(row["rms |F|/(k0 d0)"]), rel=0.02)
+    assert statistics(force)["mean"] == pytest.approx(float(row["mean|F| MC"]), rel=0.02)
+
+
+def test_quantiles_are_those_of_the_sample() -> None:
+    told = statistics(np.array([1.0, 2.0, 3.0, 4.0, math.inf, math.nan]))
+    assert (told["mean"], told["quantile_50"], told["quantile_95"]) == (2.5, 3.0, math.inf)
+
+
+def outcomes(*values: float | None) -> list[Outcome]:
+    """Cases with these films; None of one without an answer."""
+    return [
+        Outcome(str(number), {}, CONVERGED, records=[{"min_film_thickness": value}])
+        if value is not None
+        else Outcome(str(number), {}, NOT_CONVERGED)
+        for number, value in enumerate(values)
+    ]
+
+
+def test_the_interval_of_a_probability_is_that_of_clopper_and_pearson() -> None:
+    limit = Limit.read("min_film_thickness > 5 um")
+    found = kept(limit, outcomes(*[6e-6] * 8, 4e-6, None))
+    assert found["probability"] == 0.8
+    assert (found["low"], found["high"]) == pytest.approx((0.44390, 0.97479), abs=2e-5)  # tables of 8 in 10
+    assert found["without_answer"] == 1
+    assert kept(limit, outcomes(*[6e-6] * 10))["low"] == pytest.approx(0.025 ** (1 / 10), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("min_film > 5 um", "Did you mean 'min_film_thickness'?"),
+        ("min_film_thickness = 5 um", "is no limit"),
+        ("min_film_thickness > 5 N", "min_film_thickness: '5 N' measures something else"),
+        ("status > 5", "is no result"),
+    ],
+)
+def test_a_limit_that_cannot_be_is_refused(text: str, words: str) -> None:
+    with pytest.raises((UsageError, UnitError)) as refused:
+        Limit.read(text)
+    assert words in str(refused.value)
+
+
+def test_limits_have_units() -> None:
+    assert Limit.read("liftoff_speed < 15000 rpm").value == pytest.approx(500.0 * math.pi, rel=1e-15)
+    assert Limit.read("contact_fraction <= 5 %").value == pytest.approx(0.05, rel=1e-15)
+    assert Limit.read("friction_torque < 20 mN*m").value == pytest.approx(0.02, rel=1e-15)
+    assert (unit_of("side_leakage"), unit_of("growth_rate"), unit_of("overlap")) == ("kg/s", "1/s", "1")
+
+
+def test_a_small_scatter_is_linear() -> None:
+    scatter = {"gas.viscosity": "normal 0.1 %", "bearing.journal_radius": "± 5 nm"}
+    ds = tolerance(
+        PLAIN, scatter, "solve", limits=["bearing_force > 1 N"], samples=64, execution=ALONE, eccentricity=(0.0, -20e-6)
+    )
+    told = json.loads(ds.attrs["tolerance"])
+    force = told["results"]["bearing_force"]
+    assert ds["bearing_force"].dims == ("case",)
+    assert force["mean"] == pytest.approx(force["nominal"], rel=1e-4)
+    assert force["standard_deviation"] == pytest.approx(force["first_order_standard_deviation"], rel=0.05)
+    assert abs(force["effects"]["gas.viscosity"]) > 0.0
+    (limit,) = told["limits"]
+    assert (limit["probability"], limit["without_answer"]) == (1.0, 0)
+
+
+def test_a_result_that_the_analysis_does_not_give_is_refused_after_one_case(monkeypatch: pytest.MonkeyPatch) -> None:
+    from petalfoil.studies import engine
+
+    asked: list[str] = []
+    real = engine.answered
+    monkeypatch.setattr(engine, "answered", lambda task: asked.append(task.key) or real(task))
+    with pytest.raises(UsageError, match="solve gives no liftoff_speed; it gives "):
+        tolerance(PLAIN, {"gas.viscosity": "± 1 %"}, limits=["liftoff_speed < 1 rpm"], samples=16, execution=ALONE)
+    assert len(asked) == 1
