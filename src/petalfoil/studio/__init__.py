@@ -9,6 +9,7 @@ What is asked and computed, without widgets:
 - ``engine``        the workers and their queue
 - ``worker_process`` the server's end of a worker
 - ``worker``        the process that computes
+- ``lifeline``      ends it with the server
 - ``tasks``         what it computes: an answer, a file
 - ``arrays``        what of an answer the browser draws
 - ``one_page``      an answer as a report

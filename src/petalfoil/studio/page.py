@@ -100,7 +100,9 @@ class Page:
             self._view = ui.toggle({"section": "Cross-section", "space": "3-D"}, value="section")
             self._view.props("dense no-caps unelevated").on_value_change(self._show_state)
             self._pin = quiet_button("Pin as A", "push_pin", self.session.pin)
-        self._section = ui.plotly(empty(self._theme(), "computing …")).classes("chart section-chart")
+        self._section_place = ui.element("div").classes("chart section-chart")
+        with self._section_place:
+            self._section = ui.plotly(empty(self._theme(), "computing …")).classes("fill")
         self._section.props["aria-label"] = "cross-section of the bearing"
         self._space_place = ui.element("div").classes("chart section-chart")
         self._film = ui.plotly(empty(self._theme(), "")).classes("chart film-chart")
@@ -144,7 +146,7 @@ class Page:
         self._results.show()
         self._pin.set_text("Unpin A" if shown and pinned and pinned.toml == shown.toml else "Pin as A")
         is_space = self._view.value == "space"
-        self._section.set_visibility(not is_space)
+        self._section_place.set_visibility(not is_space)
         self._space_place.set_visibility(is_space)
         if not is_space and self._space is not None:
             self._space.delete()

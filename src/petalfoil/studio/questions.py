@@ -88,9 +88,11 @@ class Question:
         if isinstance(argument, Flag):
             return ui.switch(label, value=False).props("dense").tooltip(argument.help)
         must = default is inspect.Parameter.empty
-        example = EXAMPLES.search(argument.help) if must else None
-        field = ui.input(label, value=example[1] if example else "").props("dense stack-label").tooltip(argument.help)
-        field.props["placeholder"] = argument.metavar if must or default is None else argument.text(default)
+        example = EXAMPLES.search(argument.help)
+        field = ui.input(label, value=example[1] if example and must else "").props("dense stack-label")
+        field.tooltip(argument.help)
+        hint = f"such as {example[1]}" if example else argument.metavar.lower()
+        field.props["placeholder"] = hint if must or default is None else argument.text(default)
         field.props["aria-label"] = f"{self.verb} {label}"
         return field
 
@@ -160,14 +162,9 @@ class Questions:
         with ui.tabs().props("dense no-caps inline-label align=left outside-arrows mobile-arrows") as tabs:
             for verb, summary in verbs.items():
                 ui.tab(verb).tooltip(summary)
-        self._panels = {}
-        with ui.tab_panels(tabs, value="curve", on_change=lambda event: self._show(str(event.value))).props(
-            "keep-alive"
-        ):
-            for verb in verbs:
-                with ui.tab_panel(verb).classes("question") as panel:
-                    self._panels[verb] = panel
-        self._show("curve" if "curve" in verbs else next(iter(verbs)))
+        self._panels = {verb: ui.element("div").classes("question") for verb in verbs}
+        tabs.on_value_change(lambda event: self._show(str(event.value)))
+        tabs.set_value("curve" if "curve" in verbs else next(iter(verbs)))
 
     def show(self) -> None:
         """Show new answers."""
@@ -180,6 +177,9 @@ class Questions:
             question.redraw()
 
     def _show(self, verb: str) -> None:
+        """Show one analysis; the others are hidden, since a chart must stay in the page to keep its size."""
+        for name, panel in self._panels.items():
+            panel.set_visibility(name == verb)
         if verb not in self._open:
             with self._panels[verb]:
                 self._open[verb] = Question(verb, self._session)

@@ -17,12 +17,14 @@ from fastapi import FastAPI
 from nicegui import app as nicegui_app
 from nicegui import ui
 
-from petalfoil.errors import UsageError
+from petalfoil.analysis import known_verbs
+from petalfoil.errors import DefinitionError, UsageError
 from petalfoil.studio.design import Design
 from petalfoil.studio.engine import Engine, default_size
 from petalfoil.studio.guard import Guard
 from petalfoil.studio.page import Page
 from petalfoil.studio.session import Session
+from petalfoil.studio.tasks import found_analysis
 
 LOOPBACK = "127.0.0.1"
 MOST_SESSIONS = 64
@@ -31,12 +33,16 @@ CONNECT = 20.0
 """Time that a browser has to open its web socket after it asked for the page [s]."""
 LARGEST_MESSAGE = 256 * 1024
 """Largest message of a browser on the web socket [bytes]: a long text in a field."""
+RECONNECT = 5.0
+"""Time after which a page whose connection broke is taken for left [s]."""
+RESENT = 30
+"""Messages that are kept for a connection that breaks: a picture has 100 kB, and a page that missed more reloads."""
 WIDE = 900
 """Width of a window above which the case stands beside the pictures [px]."""
 LOOK = "[matchMedia('(prefers-color-scheme: dark)').matches, innerWidth]"
 """What the browser is asked for: whether its user prefers a dark page, and the width of its window."""
 KEY = "petalfoil_session"
-"""Name under which a tab keeps the key of its session."""
+"""Name under which a tab keeps the key of its session and its own number, which a copy of the tab does not have."""
 
 
 @dataclass(frozen=True)
@@ -88,10 +94,13 @@ class Sessions:
         self._engine, self._design = engine, design
         self._sessions: OrderedDict[str, Session] = OrderedDict()
 
-    def open(self, key: str | None) -> Session | None:
-        """The session of a key that no other page shows, or a new one; None where too many pages are open."""
+    def open(self, key: str | None, *, is_copy: bool = False) -> Session | None:
+        """The session of a key, or a new one, with the same design where a tab was copied.
+
+        None where too many pages are open.
+        """
         known = self._sessions.get(key or "")
-        if known is not None and known.listener is None:
+        if known is not None and not is_copy:
             self._sessions.move_to_end(known.key)
             return known
         if len(self._sessions) >= MOST_SESSIONS and not self._forget_one():
@@ -131,6 +140,7 @@ def serve(
     browse : bool
         Whether to open a browser.
     """
+    warm_up(design)
     engine = Engine(default_size())
     sessions = Sessions(engine, design)
 
@@ -156,6 +166,14 @@ def serve(
     uvicorn.Server(config).run(sockets=[listening])
 
 
+def warm_up(design: Design) -> None:
+    """Load what the first page needs, so that it is as quick as the others; a case may be refused and mended there."""
+    with contextlib.suppress(DefinitionError):
+        design.case()
+    for verb in known_verbs.summaries():
+        found_analysis(verb)
+
+
 def _application(lifespan: Any, sessions: Sessions) -> FastAPI:
     """The application behind the guard."""
     application = FastAPI(lifespan=lifespan, docs_url=None, redoc_url=None, openapi_url=None)
@@ -171,7 +189,8 @@ def _application(lifespan: Any, sessions: Sessions) -> FastAPI:
         dark=None,
         tailwind=False,
         show_welcome_message=False,
-        reconnect_timeout=5.0,
+        reconnect_timeout=RECONNECT,
+        message_history_length=RESENT,
         binding_refresh_interval=None,
     )
     return application
@@ -182,13 +201,14 @@ async def show(sessions: Sessions) -> None:
     client = ui.context.client
     await client.connected(timeout=CONNECT)
     tab = nicegui_app.storage.tab
-    session = sessions.open(tab.get(KEY))
+    key, of_tab = tab.get(KEY, (None, None))
+    session = sessions.open(key, is_copy=of_tab != client.tab_id)
     if session is None:
         ui.label(f"{MOST_SESSIONS} pages are open: close one of them, and load this one again")
         return
     is_dark, width = await ui.run_javascript(LOOK, timeout=CONNECT)
-    if session.key != tab.get(KEY):
-        tab[KEY] = session.key
+    if session.key != key:
+        tab[KEY] = (session.key, client.tab_id)
         session.is_dark = bool(is_dark)
     page = Page(session, is_wide=width > WIDE)
     session.listener = page.changed

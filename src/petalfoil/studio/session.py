@@ -215,17 +215,20 @@ class Session:
                 self._say("refused", None, failure="the case is refused: see the fields that are marked")
                 continue
             verb = live_verb(case)
-            if needs_coarse(case):
-                await self._answer_coarse(design, verb)
+            if needs_coarse(case) and not await self._answer_coarse(design, verb):
+                continue
             if not self._is_due:
                 await self._answer_fine(design, verb)
 
-    async def _answer_coarse(self, design: Design, verb: str) -> None:
+    async def _answer_coarse(self, design: Design, verb: str) -> bool:
+        """Show a coarse answer, if there is one; false where it was cancelled."""
+        self._say("computing", 0.0)
         job = self._engine.submit(self.key, Work.ANSWER, verb=verb, case_toml=design.to_toml(), coarse=True)
         outcome = await job.outcome
         if isinstance(outcome, Done) and isinstance(outcome.result, Found):
             self.state = Shown(outcome.result, design.to_toml(), is_coarse=True)
             self._tell(Aspect.STATE)
+        return not isinstance(outcome, Cancelled)
 
     async def _answer_fine(self, design: Design, verb: str) -> None:
         case, toml = design.case(), design.to_toml()

@@ -1,9 +1,8 @@
 """A worker: a process that runs one task after another and ends when the server does.
 
 A thread reads what the server sends while the main thread computes, so that a task can be cancelled on its way. The
-server may be killed without a word. Then the pipe of tasks ends, and the thread ends the process. A factorisation may
-hold the interpreter for seconds; on POSIX systems the operating system itself ends the process when the server is gone
-(`end_with`).
+server may be killed without a word: then the pipe of tasks ends, and the thread ends the process, if the system has not
+done so before (`lifeline.py`).
 """
 
 from __future__ import annotations
@@ -87,23 +86,6 @@ def outcome(task: Task, inbox: Inbox, tell: Callable[[Message], None]) -> Messag
         return Failure(task.number, f"{type(error).__name__}: {error}", is_fault=True)
 
 
-def end_with(lifeline: int) -> None:
-    """Let the operating system end this process when the other end of a pipe closes.
-
-    Nothing is ever written to the pipe, so it becomes readable only when its other end is closed, also by a kill.
-
-    Parameters
-    ----------
-    lifeline : int
-        File descriptor of the reading end.
-    """
-    import fcntl
-
-    signal.signal(signal.SIGIO, signal.SIG_DFL)  # the default ends the process, whatever Python is at
-    fcntl.fcntl(lifeline, fcntl.F_SETOWN, os.getpid())
-    fcntl.fcntl(lifeline, fcntl.F_SETFL, fcntl.fcntl(lifeline, fcntl.F_GETFL) | os.O_ASYNC)
-
-
 def warm_up() -> None:
     """Load what an answer needs, so that the first one is as quick as the others."""
     for verb in ("balance", "solve"):
@@ -113,8 +95,6 @@ def warm_up() -> None:
 
 def main() -> None:
     """Serve the process that started this one: tasks on standard input, reports on standard output."""
-    if len(sys.argv) > 1:
-        end_with(int(sys.argv[1]))
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the server's to handle
     reports = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints must not stand between the frames
@@ -129,7 +109,3 @@ def main() -> None:
     warm_up()
     tell(Ready())
     run(inbox, tell)
-
-
-if __name__ == "__main__":
-    main()

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Self
 
+from petalfoil.studio.lifeline import COMMAND
 from petalfoil.studio.protocol import HEADER, Cancel, Message, Ready, frame, unframed
 
 if TYPE_CHECKING:
@@ -49,9 +50,9 @@ class WorkerProcess:
         reading, writing = os.pipe()
         process = await asyncio.create_subprocess_exec(
             sys.executable,
-            "-m",
-            "petalfoil.studio.worker",
-            *([str(reading)] if posix else []),
+            "-c",
+            COMMAND,
+            str(reading if posix else -1),
             stdin=asyncio.subprocess.PIPE,
             stdout=asyncio.subprocess.PIPE,
             pass_fds=(reading,) if posix else (),

@@ -1,0 +1,236 @@
+"""The page in Debian's Chromium: it shows what the command line prints, without an error or a request outside."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from petalfoil.analysis import known_verbs
+from petalfoil.case import Case
+from petalfoil.results.summary import rows
+from tests.studio.server import CHROMIUM, OPTIONS, Studio, running_studio, why_no_browser
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(bool(why_no_browser()), reason=why_no_browser() or "there is a browser"),
+]
+playwright = pytest.importorskip("playwright.sync_api")
+Browser = playwright.Browser
+Page = playwright.Page
+
+PATIENCE = 60_000.0
+"""Time for an answer on a machine that others use [ms]."""
+NOT_OF_THE_STATE = {"time"}
+"""Results that differ from run to run."""
+
+
+@pytest.fixture(scope="module")
+def studio() -> Iterator[Studio]:
+    with running_studio() as server:
+        yield server
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with playwright.sync_playwright() as driver:
+        running = driver.chromium.launch(executable_path=str(CHROMIUM), args=list(OPTIONS))
+        yield running
+        running.close()
+
+
+@pytest.fixture
+def page(studio: Studio, browser: Browser) -> Iterator[Page]:
+    """A page of its own; afterwards nothing was logged as an error, and nothing was asked of another server."""
+    context = browser.new_context(viewport={"width": 1440, "height": 1000}, accept_downloads=True)
+    shown = context.new_page()
+    errors: list[str] = []
+    shown.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
+    shown.on("pageerror", lambda error: errors.append(str(error)))
+    outside: list[str] = []
+    own = (f"http://{studio.host}/", f"ws://{studio.host}/", "data:", "blob:")
+    shown.on("request", lambda request: None if request.url.startswith(own) else outside.append(request.url))
+    shown.set_default_timeout(PATIENCE)
+    shown.goto(studio.url)
+    answered(shown)
+    yield shown
+    context.close()
+    assert (errors, outside) == ([], [])
+
+
+def answered(page: Page, words: str = "converged in") -> None:
+    """Wait until the header says that an answer is there."""
+    page.wait_for_function("words => document.querySelector('.status')?.textContent.includes(words)", arg=words)
+
+
+def numbers(page: Page) -> dict[str, tuple[str, ...]]:
+    """Cells of the results by label."""
+    read = "all => all.map(row => [...row.querySelectorAll('td')].map(cell => cell.textContent))"
+    lines = page.eval_on_selector_all(".numbers tbody tr", read)
+    return {cells[0].strip(): tuple(cell.strip() for cell in cells[1:]) for cells in lines}
+
+
+def drag(page: Page, name: str, part: float) -> None:
+    """Drag a slider by a part of its length, in steps as a hand does."""
+    box = page.get_by_label(f"slide {name}", exact=True).bounding_box()
+    assert box is not None
+    share = 0.43  # where a slider from a quarter to twice its value begins
+    y = box["y"] + 0.5 * box["height"]
+    page.mouse.move(box["x"] + share * box["width"], y)
+    page.mouse.down()
+    for step in range(1, 11):
+        page.mouse.move(box["x"] + (share + 0.1 * step * part) * box["width"], y)
+        page.wait_for_timeout(40)
+    page.mouse.up()
+
+
+def type_in(page: Page, path: str, text: str) -> None:
+    """Type a value into the field of a key."""
+    field = page.locator(f'[aria-label^="{path} "]')
+    field.fill(text)
+    field.press("Enter")
+
+
+def downloaded_case(page: Page, folder: Path) -> Case:
+    """The case that the page saves."""
+    page.locator(".top").get_by_label("Save").click()
+    with page.expect_download() as download:
+        page.get_by_text("Case, TOML").click()
+    download.value.save_as(folder / "case.toml")
+    return Case.load(folder / "case.toml")
+
+
+def printed(case: Case) -> dict[str, str]:
+    """What `petalfoil balance` prints for a case, by label; labels that come twice carry the last value."""
+    balance = known_verbs.find("balance")
+    assert balance is not None
+    return {row.label.strip(): row.value for row in rows(balance.record(case))}
+
+
+def test_dragging_moves_picture_and_numbers_to_those_of_balance(page: Page, tmp_path: Path) -> None:
+    before, picture = numbers(page), page.inner_html(".section-chart .main-svg >> nth=0")
+    drag(page, "petals.thickness", 0.1)
+    page.wait_for_function(
+        "old => !document.querySelector('.numbers').textContent.includes(old)", arg=before["minimum film thickness"][0]
+    )
+    page.wait_for_selector(".numbers .grid-note:has-text('balance: cells_per_pitch = 128')")
+    answered(page)
+    page.wait_for_timeout(500)
+    after, case = numbers(page), downloaded_case(page, tmp_path)
+    assert case.petals is not None
+    assert case.petals.thickness > 180e-6
+    assert page.inner_html(".section-chart .main-svg >> nth=0") != picture
+    expected = printed(case)
+    shown = {label: cells[0] for label, cells in after.items() if label not in NOT_OF_THE_STATE}
+    assert {"bearing force", "minimum film thickness", "peak pressure", "friction torque"} <= set(shown)
+    assert shown == {label: expected[label] for label in shown}
+
+
+def test_a_refusal_stands_at_its_field_and_goes_when_it_is_mended(page: Page) -> None:
+    before = numbers(page)
+    type_in(page, "petals.thickness", "12 N")
+    page.get_by_text("measures something else").wait_for()
+    near = page.locator(".key", has=page.locator('[aria-label^="petals.thickness "]'))
+    assert "expected a length" in near.inner_text()
+    assert numbers(page) == before
+    type_in(page, "petals.thickness", "180 um")
+    page.get_by_text("measures something else").wait_for(state="detached")
+    answered(page)
+    assert numbers(page)["minimum film thickness"] != before["minimum film thickness"]
+
+
+def test_a_long_run_is_cancelled_and_the_next_is_answered(page: Page) -> None:
+    page.locator(".table-of-case", has_text="model").last.locator(".q-item").first.click()
+    type_in(page, "model.cells_per_pitch", "80")
+    page.wait_for_selector(".numbers .grid-note:has-text('balance: cells_per_pitch = 80')")
+    page.get_by_label("kind", exact=True).first.click()
+    page.get_by_role("option", name="3d").click()
+    page.get_by_role("button", name="Cancel").wait_for()
+    page.get_by_text("first answer, coarse 2-D").wait_for()
+    page.get_by_role("button", name="Cancel").click()
+    answered(page, "cancelled")
+    page.get_by_label("kind", exact=True).first.click()
+    page.get_by_role("option", name="2d").click()
+    answered(page)
+    page.wait_for_selector(".numbers .grid-note:has-text('balance: cells_per_pitch = 80')")
+
+
+def test_a_pinned_design_stands_beside_the_new_one_and_history_goes_back(page: Page) -> None:
+    first = numbers(page)["minimum film thickness"][0]
+    page.get_by_label("Pin as A").click()
+    type_in(page, "petals.thickness", "190 um")
+    page.wait_for_selector(".past tbody tr:nth-child(2)")
+    answered(page)
+    now, before = numbers(page), numbers(page)["minimum film thickness"]
+    assert before[0] == first
+    assert re.fullmatch(r"[+-][\d.]+ %", before[2])
+    assert now["minimum film thickness"][1] != first
+    assert page.evaluate("document.querySelector('.film-chart').data.length") == 4
+    page.locator(".past tbody tr").last.click()
+    page.wait_for_function(
+        "first => [...document.querySelectorAll('.numbers tbody tr')].some(row =>"
+        " row.cells[0].textContent.trim() === 'minimum film thickness' && row.cells[2].textContent.trim() === first)",
+        arg=first,
+    )
+
+
+def test_the_state_survives_a_reload_and_another_tab_has_its_own(page: Page, studio: Studio) -> None:
+    type_in(page, "petals.thickness", "185 um")
+    page.wait_for_selector(".past tbody tr:nth-child(2)")
+    answered(page)
+    before = numbers(page)
+    page.reload()
+    answered(page)
+    assert page.locator('[aria-label^="petals.thickness "]').input_value() == "185 um"
+    assert numbers(page) == before
+    assert page.locator(".past tbody tr").count() == 2
+    other = page.context.new_page()
+    other.goto(studio.url)
+    answered(other)
+    assert other.locator('[aria-label^="petals.thickness "]').input_value() == "176 um"
+
+
+def test_a_script_in_a_title_is_text_and_files_open_again(page: Page, tmp_path: Path) -> None:
+    title = "<script>window.hacked = 1</script><img src=x onerror='window.hacked = 1'>"
+    case = Case.load(Path(__file__).parents[2] / "examples" / "paper_n8.toml").replace(title=title)
+    (tmp_path / "evil.toml").write_text(case.to_toml())
+    page.set_input_files("input[type=file]", tmp_path / "evil.toml")
+    page.get_by_text("<script>window.hacked", exact=False).first.wait_for()
+    answered(page)
+    page.get_by_role("tab", name="Log").click()
+    assert page.evaluate("window.hacked") is None
+    assert downloaded_case(page, tmp_path) == case
+
+
+def test_a_question_is_answered_from_its_declaration(page: Page) -> None:
+    page.get_by_role("tab", name="curve").click()
+    page.get_by_label("curve eccentricities").fill("0 um : 100 um : 3")
+    page.get_by_role("button", name="Run curve").click()
+    answered(page, "curve: done")
+    page.wait_for_selector(".question tbody tr:nth-child(3)")
+    assert page.evaluate("document.querySelector('.question .js-plotly-plot').data[0].x.length") == 3
+    page.get_by_label("curve eccentricities").fill("0 N : 100 um : 3")
+    page.get_by_role("button", name="Run curve").click()
+    page.locator(".question .refusal:visible", has_text="eccentricities").wait_for()
+
+
+def test_the_3d_view_alone_uses_webgl(page: Page) -> None:
+    assert page.locator("canvas").count() == 0
+    page.get_by_role("button", name="3-D").click()
+    page.locator("canvas").first.wait_for()
+    page.get_by_role("button", name="Cross-section").click()
+    page.locator("canvas").first.wait_for(state="detached")
+
+
+def test_names_for_screen_readers_and_a_narrow_window(page: Page) -> None:
+    nameless = page.evaluate(
+        "[...document.querySelectorAll('button, input:not([type=file]), [role=slider]')].filter(one => one.offsetParent"
+        " && !(one.getAttribute('aria-label') || one.textContent.trim() || one.closest('label')?.textContent.trim()"
+        " || one.closest('[aria-label]'))).map(one => one.outerHTML.slice(0, 120))"
+    )
+    assert nameless == []
+    page.set_viewport_size({"width": 400, "height": 800})
+    page.wait_for_timeout(500)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 400
