@@ -11,7 +11,7 @@ export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup docs demo test test-all test-long fuzz fuzz-verbs check lint types layers format bench constraints clean
+.PHONY: help setup docs demo test test-all test-studio test-long fuzz fuzz-verbs check lint types layers format bench constraints clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -38,6 +38,9 @@ demo: setup ## Load characteristic of the paper's packages: figures and data in 
 
 test: setup ## Fast tests
 	$(BIN)/python -m pytest -n $(JOBS) -m "not slow and not long" tests
+
+test-studio: setup ## The page of `petalfoil studio` in a browser, under attack, and its processes
+	$(BIN)/python -m pytest -n 0 tests/studio
 
 test-all: setup ## All tests
 	$(BIN)/python -m pytest -n $(JOBS) -m "not long" tests

@@ -12,7 +12,7 @@ from petalfoil.walls import register, unregister
 from tests.walls.elastic_foundation import ElasticFoundation
 
 HERE = Path(__file__).parent
-FOLDERS = ("unit", "contract", "verification", "validation", "regression", "docs")
+FOLDERS = ("unit", "contract", "verification", "validation", "regression", "docs", "studio")
 
 settings.register_profile("petalfoil", derandomize=True, deadline=None, database=None)
 settings.load_profile("petalfoil")
