@@ -117,7 +117,7 @@ class LinearSolver:
         try:
             factor = Factor(symmetric_lu(scaled, places), row, col, places)
             if trusted(scaled, factor):
-                if order is not None:
+                if order is not None and scaled.shape[0]:  # active contacts may hold all unknowns
                     fill = factor.lu.nnz / scaled.shape[0]
                     order.learn(postorder(scaled, np.argsort(factor.lu.perm_c)) if places is None else None, fill)
                 return factor
