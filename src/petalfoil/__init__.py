@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from petalfoil.analysis.liftoff import liftoff
     from petalfoil.analysis.orbit import orbit
     from petalfoil.analysis.runup import runup
+    from petalfoil.analysis.sensitivity import sensitivity
     from petalfoil.analysis.solve import solve
     from petalfoil.analysis.stability import stability
     from petalfoil.analysis.static import static
@@ -66,6 +67,7 @@ __all__ = [
     "reproduce",
     "runup",
     "save",
+    "sensitivity",
     "solve",
     "stability",
     "static",

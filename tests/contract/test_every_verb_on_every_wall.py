@@ -39,6 +39,7 @@ VERBS: dict[str, Callable[[Case], xr.Dataset]] = {
     "orbit": lambda of: petalfoil.orbit(
         of.replace(rotor={"mass": "1 kg"}), revolutions=0.02, load="30 N", tolerance=1e-7
     ),  # a motion is solved to a share of its tolerance in time
+    "sensitivity": lambda of: petalfoil.sensitivity(of, "operation.speed, bearing.length", load="30 N"),
     "check": petalfoil.check,
 }
 

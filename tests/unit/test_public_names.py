@@ -27,6 +27,7 @@ NAMES = {
     "load",
     "orbit",
     "runup",
+    "sensitivity",
     "save",
     "solve",
     "stability",

@@ -10,6 +10,7 @@
 `coefficients.py`      stiffness and damping over whirl frequency
 `stability.py`         critical mass, threshold speed, damped natural frequencies
 `orbit.py`             a rigid rotor through time
+`sensitivity.py`       how far a small change of each parameter moves a result
 `converge.py`          one position on finer and finer grids
 `check.py`             what follows from a case without a run
 =====================  ===================================================================
@@ -19,6 +20,7 @@ How they are declared:
 =====================  ===================================================================
 `declaration.py`       the decorator, and what follows from a declaration
 `arguments.py`         kinds of arguments with unit, range and help; those that are shared
+`words.py`             arguments that are words: one of several, lists of names
 `known_verbs.py`       the analyses by name
 `runs.py`              an analysis under way
 `resume.py`            a series that goes on from the points that it wrote
@@ -33,6 +35,10 @@ What they share:
 `hysteresis.py`        the same at rest, with friction between petals
 `speeds.py`            a load followed over speed
 `crossings.py`         speeds at which the contact fraction crosses a limit
+`variation.py`         a case at values of one of its parameters
+`derivatives.py`       exact derivatives of the results of an equilibrium
+`liftoff_derivatives.py`  the same of lift-off and touchdown speed
+`sensitivity_table.py` the rows of `sensitivity`
 `impedance.py`         small motions of the journal
 `rotor_on_bearings.py` a rigid rotor on its bearing, or in two of them
 `tilted_journal.py`   one equilibrium, its journal free to tilt or held

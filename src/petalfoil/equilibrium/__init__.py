@@ -9,6 +9,7 @@
 `branches.py`              whether there is more than one equilibrium at a position
 `under_load.py`            the journal's position under a load
 `friction_path.py`         equilibria with friction between petals, one after another
+`parameter_response.py`    how an equilibrium follows a parameter of its case
 `linear_response.py`       the response to a small motion of the journal
 `travelling_contacts.py`   contacts of that response that move between nodes
 =========================  ====================================================================

@@ -17,6 +17,7 @@ In the order data flows:
 - ``dynamic_coefficients`` stiffness and damping over whirl frequency (`coefficients`)
 - ``stability_maps`` stability of a rigid rotor (`stability`)
 - ``campbell_diagram`` its natural modes over speed (`campbell`)
+- ``tornado``      how far a small change of each parameter moves a result (`tornado`)
 - ``histories``    a motion over time (`orbit_histories`), its energy balance (`orbit_energy`)
 - ``spectra``      spectrum of the whirl (`orbit_spectrum`), over speed or time (`orbit_waterfall`)
 - ``journal_orbit`` path of the journal's centre (`orbit_path`), a motion in one figure (`orbit`)
@@ -59,6 +60,7 @@ if TYPE_CHECKING:
     from petalfoil.plot.studies import study, study_figures
     from petalfoil.plot.study_sweeps import parallel_coordinates, scatter_matrix, sweep
     from petalfoil.plot.study_tolerance import tolerance
+    from petalfoil.plot.tornado import tornado
 
 _MODULES = {
     "animation": ("animate",),
@@ -80,6 +82,7 @@ _MODULES = {
     "studies": ("study", "study_figures"),
     "study_tolerance": ("tolerance",),
     "study_sweeps": ("parallel_coordinates", "scatter_matrix", "sweep"),
+    "tornado": ("tornado",),
 }
 _HOME = {name: module for module, names in _MODULES.items() for name in names}
 
@@ -117,6 +120,7 @@ __all__ = [
     "summary",
     "sweep",
     "tolerance",
+    "tornado",
 ]
 
 

@@ -26,6 +26,7 @@ FIGURES: dict[str, Draw | str] = {
     "orbit": "journal_orbit:orbit",
     "sweep": "study_sweeps:sweep",
     "tolerance": "study_tolerance:tolerance",
+    "sensitivity": "tornado:tornado",
 }
 """Function that draws the result of an analysis, or where it stands: module of this package, colon, function."""
 

@@ -1,0 +1,199 @@
+"""Exact derivatives of the results of an equilibrium by the parameters of its case.
+
+The state follows a parameter by one solve with the tangent of the equilibrium (V2). A result is a function of state and
+case; its derivative is taken along that line, through geometry, mesh and units alike. Where a contact is about to open
+or to close, the derivative has two values, one on either side.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeAlias
+
+import numpy as np
+
+from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.analysis.fields import all_fields
+from petalfoil.analysis.records import position
+from petalfoil.analysis.variation import ABOVE, BELOW, FILM_CHANGE, Stencil, Variation, equations_of, quotient
+from petalfoil.case import Case
+from petalfoil.case.parameters import parameter_of
+from petalfoil.equilibrium.parameter_response import (
+    Equations,
+    HeldEquilibrium,
+    ParameterResponse,
+    StateRate,
+    parameter_response,
+)
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.errors import UsageError
+from petalfoil.results.parts import scalars_of
+from petalfoil.results.schema import SCALARS
+from petalfoil.walls import wall_kind
+
+Results: TypeAlias = Mapping[str, float]
+"""Results of an equilibrium by name, SI."""
+ResultsOf: TypeAlias = Callable[[Case, Solution], Results]
+
+KINK = 1e-6
+"""A contact that opens or closes within this relative change of a parameter makes a kink: its derivative would hold for
+no change that a user can mean."""
+
+
+@dataclass(frozen=True)
+class Derivative:
+    """Derivatives of the results by one parameter.
+
+    Attributes
+    ----------
+    below, above : dict
+        Derivative of each result toward smaller and toward larger values of the parameter; equal where it is smooth.
+    reach : (float, float)
+        How far the parameter can decrease and increase until a contact opens or closes.
+    at_kink : bool
+        Whether the two sides differ.
+    fineness : float
+        Steps in which the results were differentiated, see `Variation`.
+    """
+
+    below: Results
+    above: Results
+    reach: tuple[float, float]
+    at_kink: bool
+    fineness: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class DerivativesOf:
+    """Derivatives of the results of one equilibrium.
+
+    Attributes
+    ----------
+    case : Case
+        The bearing, with the load or the eccentricity that the equilibrium belongs to.
+    solution : Solution
+        The equilibrium.
+    results : callable
+        Results of a case and a solution.
+    """
+
+    case: Case
+    solution: Solution
+    results: ResultsOf
+
+    @cached_property
+    def values(self) -> Results:
+        """The results themselves."""
+        return self.results(self.case, self.solution)
+
+    @property
+    def residual(self) -> float:
+        """Residual of the equilibrium."""
+        return self.solution.residual
+
+    @cached_property
+    def held(self) -> HeldEquilibrium:
+        """The equilibrium, its tangent factorised."""
+        return HeldEquilibrium.of(self.solution, self.solution.active)
+
+    @cached_property
+    def own(self) -> Equations:
+        """The equations of the case itself."""
+        return equations_of(self.case, under_load=self.solution.load is not None)
+
+    @cached_property
+    def thinnest(self) -> float:
+        """Minimum film thickness at the nodes [m]: what steps are small beside."""
+        problem = self.solution.problem
+        return float(np.min(problem.film(self.solution.x))) * problem.layout.scales.length
+
+    def variation(self, path: str) -> Variation:
+        """The case at values of the parameter `path`.
+
+        Raises
+        ------
+        DefinitionError
+            The case has no such parameter.
+        UsageError
+            It is a count, or follows from a rule.
+        """
+        parameter = parameter_of(self.case, path)
+        if parameter.is_count or parameter.value is None:
+            why = "a whole number" if parameter.is_count else "left to a rule in this case: give it a value"
+            raise UsageError(f"no derivative by {path}: it is {why}")
+        return Variation(self.case, parameter, self.own, self.thinnest)
+
+    def by(self, path: str) -> Derivative:
+        """Derivatives by the parameter `path`.
+
+        Raises
+        ------
+        DefinitionError, UsageError
+            The case has no such parameter, or none that it could be differentiated by.
+        ConvergenceError
+            The contacts do not determine the state.
+        """
+        return self.along(self.variation(path))
+
+    def along(self, variation: Variation) -> Derivative:
+        """Derivatives along a variation of the case."""
+        response = parameter_response(self.held, variation.rates(self.solution), KINK * variation.size)
+        finer = self._small_beside_the_film(variation, response)
+        if not response.at_kink:
+            along = self._along(finer, response.above, variation.stencil)
+            return Derivative(along, along, response.reach, False, finer.fineness)
+        return self._on_both_sides(finer, response)
+
+    def _small_beside_the_film(self, variation: Variation, response: ParameterResponse) -> Variation:
+        """The variation in steps that change no film by more than `FILM_CHANGE` of it: petals may move it further."""
+        steps = variation.stencil[-1][0]
+        there = response.above.moved(self.solution, steps * variation.step, variation.at(steps)[1])
+        unit = there.problem.layout.scales.length / self.solution.problem.layout.scales.length
+        own, moved = self.solution.problem.film(self.solution.x), there.problem.film(there.x) * unit
+        change = float(np.max(np.abs(moved / own - 1.0))) / abs(steps)
+        return variation if change <= FILM_CHANGE else variation.finer(variation.fineness * FILM_CHANGE / change)
+
+    def _on_both_sides(self, variation: Variation, response: ParameterResponse) -> Derivative:
+        """Derivatives at a kink; nan on a side where the parameter cannot go."""
+        nothing = dict.fromkeys(self.values, math.nan)
+        below, above = (
+            self._along(variation, rate, points) if variation.admits(points) else nothing
+            for rate, points in ((response.below, BELOW), (response.above, ABOVE))
+        )
+        return Derivative(below, above, response.reach, True, variation.fineness)
+
+    def _along(self, variation: Variation, rate: StateRate, points: Stencil) -> Results:
+        """Derivatives of the results along the line of the state."""
+        sampled = []
+        for steps, _ in points:
+            case, equations = variation.at(steps)
+            sampled.append(self.results(case, rate.moved(self.solution, steps * variation.step, equations)))
+        return {
+            name: quotient(points, variation.step, [nearest_turn(name, at[name], value) for at in sampled])
+            for name, value in self.values.items()
+        }
+
+
+def nearest_turn(name: str, angle: float, own: float) -> float:
+    """A result; of an angle, the one of its turns that is nearest to its `own` value."""
+    if SCALARS[name].units != "rad":
+        return angle
+    return own + math.remainder(angle - own, 2.0 * math.pi)
+
+
+def equilibrium_results(case: Case, solution: Solution) -> dict[str, float]:
+    """Results of an equilibrium that can be differentiated, SI: forces, film, friction, leakage, stress, position.
+
+    The places of extremes are left out: they jump from one strip or one node to another.
+    """
+    found = Evaluation.of(case, solution)
+    parts = (found.forces(), found.film(), wall_kind(case).scalars(all_fields(found)), position(case, solution))
+    results = {name: float(value) for name, value in scalars_of(*parts).items() if isinstance(value, float)}
+    return {name: value for name, value in results.items() if name not in PLACES}
+
+
+PLACES = ("min_film_thickness_angle", "min_film_thickness_z", "peak_pressure_angle")
+"""Places of extremes."""

@@ -1,0 +1,219 @@
+"""`sensitivity`: how far a small change of each parameter moves a result, from exact derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+from petalfoil.analysis.arguments import Load, Position, Quantity, Speed
+from petalfoil.analysis.classic_method import newton_only
+from petalfoil.analysis.crossings import CONTACT_FRACTION
+from petalfoil.analysis.declaration import analysis
+from petalfoil.analysis.derivatives import DerivativesOf, equilibrium_results
+from petalfoil.analysis.liftoff import Limit, own_load
+from petalfoil.analysis.liftoff_derivatives import speed_derivatives
+from petalfoil.analysis.operating_point import Vector, applied_load, at, at_position, under_load
+from petalfoil.analysis.records import asked_position, effort, record_of
+from petalfoil.analysis.runs import Points
+from petalfoil.analysis.sensitivity_table import LAYOUT, RESULTS, Line, Source, lines_of, ordered
+from petalfoil.analysis.solve import placed
+from petalfoil.analysis.words import Choice, Names, known
+from petalfoil.case import Case
+from petalfoil.case.parameters import parameter_of, parameters_of
+from petalfoil.equilibrium.run_context import Progress, running
+from petalfoil.errors import UsageError
+from petalfoil.results.parts import AppliedLoad
+from petalfoil.results.record import Record
+from petalfoil.results.schema import SCALARS, DataType, Role
+from petalfoil.walls import Capability, required
+
+MAIN_RESULT = {"solve": "bearing_force", "balance": "min_film_thickness", "liftoff": "liftoff_speed"}
+"""Questions that have derivatives, and the result that is asked for unless another is."""
+
+NOT_PHYSICAL = ("model.", "surface.friction_width", "petals.free_shape_tolerance")
+"""Numbers of the discretisation: their derivatives are asked for by name only."""
+
+ANSWERS = [
+    name
+    for name, variable in SCALARS.items()
+    if not variable.dims and variable.kind is DataType.FLOAT and variable.role is Role.ANSWER
+] + ["eccentricity_x", "eccentricity_y"]
+"""Results that a question may have; which of them it has is known once it is answered."""
+
+Vary = Annotated[
+    list[str] | None,
+    Names(
+        metavar="PATHS", help='Parameters, as "petals.thickness, gas.viscosity"; by default all that have an effect.'
+    ),
+]
+Ask = Annotated[
+    str | None,
+    Choice(
+        metavar="VERB",
+        words=tuple(MAIN_RESULT),
+        help="Whose results: solve, balance or liftoff; by default balance where there is a load, else solve.",
+    ),
+]
+Of = Annotated[
+    list[str] | None,
+    Names(metavar="RESULTS", help='Results, as "min_film_thickness, friction_torque"; by default the main one.'),
+]
+Step = Annotated[
+    float,
+    Quantity(unit="1", metavar="SHARE", help="Change of each parameter whose effect is told.", above=0.0, at_most=1.0),
+]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What derivatives are asked for.
+
+    Attributes
+    ----------
+    verb : str
+        The question that they belong to.
+    paths : list of str
+        Parameters.
+    quantities : list of str
+        Results.
+    step : float
+        Relative change of the parameters whose effect is told [1].
+    all_of_them : bool
+        Whether the parameters are all that the case has, so that those without effect are left out.
+    """
+
+    verb: str
+    paths: list[str]
+    quantities: list[str]
+    step: float
+    all_of_them: bool
+
+
+@analysis(LAYOUT, results=RESULTS, excludes={"load": ("eccentricity",)})
+def sensitivity(  # noqa: PLR0913 - the options of the verb
+    case: Case,
+    vary: Vary = None,
+    *,
+    ask: Ask = None,
+    of: Of = None,
+    load: Load = None,
+    eccentricity: Position = None,
+    speed: Speed = None,
+    contact_fraction: Limit = CONTACT_FRACTION,
+    step: Step = 0.01,
+    progress: Progress | None = None,
+) -> Points:
+    """Tell how far a small change of each parameter moves a result.
+
+    From exact derivatives of the equilibrium, through geometry, grid and
+    contacts: a table of parameters by their effect. "Contacts hold" is the
+    change up to which no contact opens or closes.
+
+    Example: petalfoil sensitivity case.toml --ask liftoff --load "20 N" --plot tornado.png
+
+    Raises
+    ------
+    UsageError
+        A parameter is none of the case, a whole number or left to a rule; a result is none of the question.
+    ConvergenceError
+        The equilibrium was not found, or its contacts do not determine it.
+    """
+    newton_only(case)
+    verb = ask or ("balance" if load is not None or (case.operation.load and eccentricity is None) else "solve")
+    there = posed(at(case, speed), verb, load, eccentricity)
+    paths = default_paths(there, verb) if vary is None else [checked(there, path) for path in vary]
+    quantities = [known(name, ANSWERS, "result") for name in of or [MAIN_RESULT[verb]]]
+    asked = Asked(verb, paths, quantities, step, vary is None)
+    return Points(_points(there, asked, contact_fraction, progress), len(paths) * len(asked.quantities), "effects")
+
+
+def posed(case: Case, verb: str, load: Vector | None, eccentricity: Vector | None) -> Case:
+    """The case with the load or the position that the question `verb` is about.
+
+    Raises
+    ------
+    UsageError
+        It has neither, or both.
+    """
+    if verb == "solve":
+        if load is not None:
+            raise UsageError("solve holds the journal at a position: give an eccentricity, or ask balance")
+        return placed(case, eccentricity)
+    if eccentricity is not None:
+        raise UsageError(f"{verb} finds the position under a load: give a load, or ask solve")
+    wanted = applied_load(case, load)
+    loaded = case.replace(**{"operation.load": wanted, "operation.eccentricity": (0.0, 0.0)})
+    if verb == "liftoff":
+        required(case, Capability.LIFT_OFF, "lift-off")
+        own_load(loaded)
+    return loaded
+
+
+def default_paths(case: Case, verb: str) -> list[str]:
+    """Parameters that the results of a question may depend on."""
+    given = "operation.load" if case.operation.load is None else "operation.eccentricity"
+    without = (*NOT_PHYSICAL, given, *(["operation.speed"] if verb == "liftoff" else []))
+    known_ones = parameters_of(case).values()
+    return [p.path for p in known_ones if not p.is_count and p.value is not None and not p.path.startswith(without)]
+
+
+def checked(case: Case, path: str) -> str:
+    """A path of a parameter that has a derivative.
+
+    Raises
+    ------
+    UsageError, DefinitionError
+        It has none.
+    """
+    parameter = parameter_of(case, path)
+    if parameter.is_count:
+        raise UsageError(f"{path} is a whole number: it has no derivative; `sweep` varies it")
+    if parameter.value is None:
+        raise UsageError(f"{path} is left to a rule in this case: give it a value there")
+    return path
+
+
+def _points(case: Case, asked: Asked, limit: float, progress: Progress | None) -> Iterator[Record]:
+    """One record for each parameter and result, by the size of the effect."""
+    with running(progress, "sensitivity") as run:
+        there = {name: source for source in sources_of(case, asked.verb, limit) for name in source.values}
+        sources = {known(name, list(there), f"result of {asked.verb} here"): there[name] for name in asked.quantities}
+        lines: list[Line] = []
+        for number, path in enumerate(asked.paths, 1):
+            lines += lines_of(path, sources, asked.step)
+            if progress is not None:
+                progress(number / len(asked.paths), f"sensitivity: {path}")
+        felt = [line for line in lines if line.row.is_felt or not asked.all_of_them]
+        cost = effort(run.seconds)
+        records = [
+            record_of("sensitivity", case, line.row, *state_of(case, asked.verb), cost, line.outcome)
+            for line in ordered(felt, asked.quantities)
+        ]
+    silent = {line.row.parameter: True for line in lines if line.row.parameter not in {f.row.parameter for f in felt}}
+    if records and silent:
+        records[-1] = replace(records[-1], remarks=(f"without effect: {', '.join(silent)}",))
+    yield from records
+
+
+def state_of(case: Case, verb: str) -> tuple[object, ...]:
+    """What is given of the equilibrium: its load or its position, and its speed unless that is the result."""
+    if case.operation.load is None:
+        return (asked_position(case),)
+    speed = {} if verb == "liftoff" else {"speed": case.operation.speed}
+    return speed, AppliedLoad.of(case.operation.load, case.operation.moment)
+
+
+def sources_of(case: Case, verb: str, limit: float) -> Sequence[Source]:
+    """Where the results of a question have their derivatives.
+
+    Raises
+    ------
+    ConvergenceError
+        The equilibrium was not found.
+    """
+    if verb == "liftoff":
+        return speed_derivatives(case, own_load(case), limit)
+    load = case.operation.load
+    solution = at_position(case).answer if load is None else under_load(case, load)[0]
+    return [DerivativesOf(case, solution, equilibrium_results)]

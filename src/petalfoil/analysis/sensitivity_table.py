@@ -1,0 +1,208 @@
+"""The table of `sensitivity`: one row for each parameter and result, by the size of the effect."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+from petalfoil.analysis.derivatives import Derivative, Results
+from petalfoil.analysis.variation import Variation
+from petalfoil.case.parameters import Parameter
+from petalfoil.errors import ConvergenceError
+from petalfoil.results.layout import Series
+from petalfoil.results.parts import Outcome
+from petalfoil.results.record import Record
+from petalfoil.results.schema import SCALARS, DataType, Role, Shown, Variable
+from petalfoil.results.summary import cell
+from petalfoil.units import format_quantity
+
+FELT = 1e-7
+"""Part of a result below which its change by a parameter, over the relative change of that, is rounding."""
+
+
+def _text(long_name: str, symbol: str, shown: str = "", role: Role = Role.GIVEN) -> Variable:
+    return Variable((), "", long_name, symbol, DataType.STR, role, Shown(shown or long_name))
+
+
+def _number(long_name: str, symbol: str, role: Role = Role.ANSWER, units: str = "") -> Variable:
+    shown = Shown(long_name, "%", 100.0) if units == "1" else Shown(long_name)
+    return Variable((), units, long_name, symbol, role=role, shown=shown)
+
+
+RESULTS = {
+    "parameter": _text("dotted path of a parameter of the case", "p", "parameter"),
+    "parameter_text": _text("value of the parameter with its unit", "p", "value"),
+    "parameter_value": _number("value of the parameter, in its SI unit", "p", Role.GIVEN),
+    "parameter_unit": _text("SI unit of the parameter", "[p]"),
+    "parameter_change": _number("change of the parameter, in its SI unit", "delta p", Role.GIVEN),
+    "change_text": _text("change of the parameter in words", "delta p", "change"),
+    "quantity": _text("name of a result", "q", "result"),
+    "quantity_value": _number("value of the result, in its SI unit", "q"),
+    "quantity_unit": _text("SI unit of the result", "[q]"),
+    "derivative": _number("derivative of the result by the parameter, on the side of its change", "dq/dp"),
+    "derivative_below": _number("derivative toward smaller values of the parameter", "dq/dp-"),
+    "derivative_above": _number("derivative toward larger values of the parameter", "dq/dp+"),
+    "effect": _number("change of the result by the change of the parameter, in its SI unit", "delta q"),
+    "effect_text": _text("change of the result with its unit", "delta q", "effect", Role.ANSWER),
+    "relative_effect": _number("change of the result over its value", "delta q/q", units="1"),
+    "contacts_hold": _number(
+        "relative change of the parameter up to which no contact opens or closes", "delta p_c", units="1"
+    ),
+}
+
+
+def of_parameter(record: Record) -> str:
+    """The parameter in words."""
+    return f"by {record.scalars['parameter']}"
+
+
+LAYOUT = Series(
+    columns={
+        "parameter": "parameter",
+        "parameter_text": "value",
+        "change_text": "change",
+        "quantity": "result",
+        "relative_effect": "effect",
+        "effect_text": "effect",
+        "contacts_hold": "contacts\nhold ±",
+    },
+    at=of_parameter,
+)
+
+
+class Source(Protocol):
+    """Results with derivatives."""
+
+    @property
+    def values(self) -> Results:
+        """The results by name."""
+
+    @property
+    def residual(self) -> float:
+        """Residual of the equilibrium."""
+
+    def variation(self, path: str) -> Variation:
+        """The case at values of a parameter."""
+
+    def along(self, variation: Variation) -> Derivative:
+        """Derivatives along it."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """The effect of one parameter on one result; `nan` where there is no derivative."""
+
+    parameter: str
+    parameter_text: str
+    parameter_value: float
+    parameter_unit: str
+    parameter_change: float
+    change_text: str
+    quantity: str
+    quantity_value: float
+    quantity_unit: str
+    derivative: float = math.nan
+    derivative_below: float = math.nan
+    derivative_above: float = math.nan
+    effect: float = math.nan
+    effect_text: str = ""
+    relative_effect: float = math.nan
+    contacts_hold: float = math.nan
+
+    @property
+    def size(self) -> float:
+        """What rows are ordered by: the relative effect, or the effect on a result that is zero."""
+        size = abs(self.effect if math.isnan(self.relative_effect) else self.relative_effect)
+        return -1.0 if math.isnan(size) else size
+
+    @property
+    def is_felt(self) -> bool:
+        """Whether the parameter has an effect beyond rounding, or none is known."""
+        if math.isnan(self.effect):
+            return True
+        return abs(self.effect) > FELT * abs(self.parameter_change / self.parameter_size * self.quantity_value)
+
+    @property
+    def parameter_size(self) -> float:
+        """Magnitude of the parameter; its change where it is zero."""
+        return abs(self.parameter_value) or abs(self.parameter_change)
+
+
+@dataclass(frozen=True)
+class Line:
+    """A row and how it came about."""
+
+    row: Row
+    outcome: Outcome
+
+
+def lines_of(path: str, sources: Mapping[str, Source], step: float) -> list[Line]:
+    """The rows of one parameter for each result; where a result has no derivative, its row says why."""
+    lines, done = [], dict[int, Derivative | ConvergenceError]()
+    for quantity, source in sources.items():
+        variation = source.variation(path)
+        if id(source) not in done:
+            try:
+                done[id(source)] = source.along(variation)
+            except ConvergenceError as failure:
+                done[id(source)] = failure
+        row, found = asked_row(variation, (quantity, source.values[quantity]), step), done[id(source)]
+        if isinstance(found, ConvergenceError):
+            lines.append(Line(row, Outcome(converged=False, status=f"not converged: {found}")))
+        else:
+            lines.append(
+                Line(with_effect(row, found, variation), Outcome(status=in_words(found), residual=source.residual))
+            )
+    return lines
+
+
+def asked_row(variation: Variation, result: tuple[str, float], step: float) -> Row:
+    """What a row tells of its parameter and its result."""
+    parameter, (quantity, value) = variation.parameter, result
+    change = step * (variation.value or variation.size)
+    return Row(
+        parameter=parameter.path,
+        parameter_text=format_quantity(variation.value, parameter.unit),
+        parameter_value=variation.value,
+        parameter_unit=parameter.unit,
+        parameter_change=change,
+        change_text=change_text(parameter, change, step),
+        quantity=quantity,
+        quantity_value=value,
+        quantity_unit=SCALARS[quantity].units,
+    )
+
+
+def change_text(parameter: Parameter, change: float, step: float) -> str:
+    """The change in words: relative, or absolute where the parameter is zero."""
+    return f"{100.0 * step:g} %" if parameter.value else f"+{format_quantity(change, parameter.unit)}"
+
+
+def with_effect(row: Row, found: Derivative, variation: Variation) -> Row:
+    """The row with the derivatives of its result, and what they make of the change."""
+    quantity, value, change = row.quantity, row.quantity_value, row.parameter_change
+    side = found.above if change > 0.0 else found.below
+    effect = side[quantity] * change
+    shown = cell(quantity, effect)
+    return replace(
+        row,
+        derivative=side[quantity],
+        derivative_below=found.below[quantity],
+        derivative_above=found.above[quantity],
+        effect=effect,
+        effect_text=f"{'+' if effect > 0.0 else ''}{shown.value} {shown.unit}".rstrip(),
+        relative_effect=effect / abs(value) if value else math.nan,
+        contacts_hold=min(found.reach) / variation.size,
+    )
+
+
+def in_words(found: Derivative) -> str:
+    """Whether the derivative has two sides."""
+    return "converged; a contact opens or closes here: the sides differ" if found.at_kink else "converged"
+
+
+def ordered(lines: Sequence[Line], quantities: Sequence[str]) -> list[Line]:
+    """Lines by result, then by the size of the effect."""
+    return sorted(lines, key=lambda line: (quantities.index(line.row.quantity), -line.row.size))

@@ -1,0 +1,91 @@
+"""How far a small change of each parameter moves a result (`tornado`)."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from petalfoil.plot import labels, style
+from petalfoil.plot.labels import QUANTITIES
+from petalfoil.plot.views import Floats, array, number, unconverged
+from petalfoil.text import for_figure
+
+MOST_BARS = 20
+"""Parameters of one panel: those of the largest effects."""
+
+BAR = 0.3
+"""Height of a bar with its share of the panel [in]."""
+
+
+def tornado(ds: xr.Dataset) -> Figure:
+    """Draw the effects of a small change of each parameter as bars, the largest on top.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of ``sensitivity``.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A panel for each result. A bar to the right says that the result grows; full bars are for the change stated
+        beside the parameter, pale ones for the opposite change.
+
+    Raises
+    ------
+    ConvergenceError
+        No parameter has a derivative.
+    """
+    shown = ds.isel(point=np.flatnonzero(ds["converged"].values & np.isfinite(array(ds, "effect"))))
+    if not shown.sizes["point"]:
+        raise unconverged(str(ds["status"].values[-1]))
+    names = list(dict.fromkeys(str(name) for name in shown["quantity"].values))
+    panels = [shown.isel(point=np.flatnonzero(shown["quantity"].values == name)[:MOST_BARS]) for name in names]
+    heights = [panel.sizes["point"] for panel in panels]
+    fig = style.figure(8.5, BAR * sum(heights) + 0.75 * len(names) + 0.8)
+    axes = fig.subplots(len(names), 1, squeeze=False, gridspec_kw={"height_ratios": heights}).ravel()
+    for ax, name, panel in zip(axes, names, panels, strict=True):
+        _draw(ax, name, panel)
+    style.legend(axes[0], loc="lower right")
+    style.set_title(fig, ds, "effect of small changes of the parameters", *_state(shown.isel(point=0)))
+    return fig
+
+
+def _state(ds: xr.Dataset) -> tuple[str, ...]:
+    """Speed, load or displacement of the equilibrium."""
+    speed = labels.speed_fact(number(ds, "speed")) if "speed" in ds else ""
+    return speed, labels.load_fact(ds) if "load_x" in ds else labels.displacement_fact(ds)
+
+
+def _draw(ax: Axes, name: str, ds: xr.Dataset) -> None:
+    effect, opposite, unit = _effects(ds)
+    place = -np.arange(len(effect))
+    ax.barh(place, opposite, height=0.62, color=style.SKY, alpha=0.45, label="opposite change", gid="opposite")
+    ax.barh(place, effect, height=0.62, color=style.BLUE, label="change as stated", gid="effect")
+    for y, value, far in zip(place, effect, np.maximum(np.abs(effect), np.abs(opposite)), strict=True):
+        ax.annotate(f"{value:+.3g}", (far, y), (4, 0), textcoords="offset points", va="center", fontsize=style.TICK)
+    changes = zip(ds["parameter"].values, ds["parameter_text"].values, ds["change_text"].values, strict=True)
+    ax.set_yticks(place, [for_figure(f"{path} = {value}, {_signed(change)}") for path, value, change in changes])
+    ax.axvline(0.0, color=style.GREY, linewidth=0.8)
+    label = QUANTITIES[name].name if name in QUANTITIES else for_figure(name.replace("_", " "))
+    style.dress(ax, f"change of the {label} [{unit}]")
+    ax.grid(False, axis="y")
+    reach = max(float(np.max(np.abs(effect))), float(np.max(np.abs(opposite))))
+    ax.set_xlim(-1.1 * reach, 1.25 * reach)
+
+
+def _effects(ds: xr.Dataset) -> tuple[Floats, Floats, str]:
+    """Changes of a result by the stated and by the opposite changes, and their unit: % where the result has a value."""
+    value, change = array(ds, "quantity_value"), array(ds, "parameter_change")
+    effect = array(ds, "effect")
+    other = np.where(change > 0.0, array(ds, "derivative_below"), array(ds, "derivative_above"))
+    opposite = np.nan_to_num(-other * change)
+    if np.all(value == 0.0):
+        return effect, opposite, for_figure(str(ds["quantity_unit"].values[0]))
+    return 100.0 * effect / np.abs(value), 100.0 * opposite / np.abs(value), "%"
+
+
+def _signed(change: str) -> str:
+    return change if change.startswith("+") else f"+{change}"

@@ -1,0 +1,97 @@
+"""The table of `sensitivity`: rows, order, refusals, both faces."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+from numpy.testing import assert_allclose
+from typer.testing import CliRunner
+
+import petalfoil
+from petalfoil import plot
+from petalfoil.cli.app import app
+from petalfoil.errors import DefinitionError, UsageError
+from tests.cases import EXAMPLES, case
+
+SMALL = case(**{"model.cells_per_pitch": 8})
+PATHS = "petals.youngs_modulus, operation.speed, gas.viscosity, gas.temperature"
+
+
+@pytest.fixture(scope="module")
+def under_load() -> xr.Dataset:
+    return petalfoil.sensitivity(SMALL, PATHS, load="20 N", of="min_film_thickness, friction_torque", step=0.02)
+
+
+def test_rows_are_ordered_by_result_and_effect(under_load: xr.Dataset) -> None:
+    assert list(under_load["quantity"].values) == ["min_film_thickness"] * 4 + ["friction_torque"] * 4
+    size = np.abs(under_load["relative_effect"].values)
+    assert np.all(np.diff(size[:4]) <= 0.0)
+    assert np.all(np.diff(size[4:]) <= 0.0)
+
+
+def test_speed_and_viscosity_have_the_same_relative_effect_on_the_film(under_load: xr.Dataset) -> None:
+    film = under_load.isel(point=slice(0, 4))
+    effect = dict(zip(film["parameter"].values, film["relative_effect"].values, strict=True))
+    assert_allclose(effect["operation.speed"], effect["gas.viscosity"], rtol=1e-6)
+    assert_allclose(effect["gas.temperature"], 0.0, atol=1e-12)
+
+
+def test_the_effect_is_derivative_times_change(under_load: xr.Dataset) -> None:
+    change = under_load["parameter_change"].values
+    assert_allclose(change, 0.02 * under_load["parameter_value"].values, rtol=1e-15)
+    assert_allclose(under_load["effect"].values, under_load["derivative"].values * change, rtol=1e-12)
+    relative = under_load["effect"].values / under_load["quantity_value"].values
+    assert_allclose(under_load["relative_effect"].values, relative, rtol=1e-12)
+
+
+def test_the_figure_has_a_panel_for_each_result(under_load: xr.Dataset) -> None:
+    fig = plot.tornado(under_load)
+    assert [ax.get_xlabel() for ax in fig.axes] == [
+        "change of the minimum film thickness [%]",
+        "change of the friction torque [%]",
+    ]
+    longest = max(bar.get_width() for bar in fig.axes[0].patches)
+    assert_allclose(longest, 100.0 * np.abs(under_load["relative_effect"].values).max(), rtol=1e-12)
+
+
+def test_a_parameter_that_is_zero_has_an_absolute_change() -> None:
+    ds = petalfoil.sensitivity(SMALL, "petals.first_root", of="bearing_force")
+    assert str(ds["change_text"].values[0]).endswith("°")
+    assert float(ds["parameter_change"].values[0]) == pytest.approx(1e-3)
+
+
+def test_the_command_prints_the_table_and_one_json_object() -> None:
+    arguments = ["sensitivity", str(EXAMPLES / "plain_journal.toml"), "--vary", "gas.viscosity"]
+    shown = CliRunner().invoke(app, arguments)
+    assert shown.exit_code == 0
+    assert "gas.viscosity" in shown.output
+    assert "bearing_force" in shown.output
+    points = json.loads(CliRunner().invoke(app, [*arguments, "--json"]).output)["points"]
+    assert [point["parameter"] for point in points] == ["gas.viscosity"]
+    assert points[0]["contacts_hold"] is None or points[0]["contacts_hold"] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("given", "refusal", "message"),
+    [
+        ({"ask": "balanse"}, UsageError, "Did you mean 'balance'"),
+        ({"of": "min_film"}, UsageError, "Did you mean 'min_film_thickness'"),
+        ({"vary": "petals.thicknes"}, DefinitionError, "petals.thickness"),
+        ({"vary": "petals.count"}, UsageError, "petals.count is a whole number"),
+        ({"vary": "petals.root_tilt"}, UsageError, "left to a rule"),
+        ({"vary": "petals.thickness,"}, UsageError, "names nothing between two commas"),
+        ({"step": 0.0}, UsageError, "step"),
+        ({"ask": "solve", "load": "20 N"}, UsageError, "solve holds the journal at a position"),
+        ({"ask": "balance"}, UsageError, "no load to balance"),
+        ({"ask": "balance", "eccentricity": "0 um, 1 um"}, UsageError, "give a load, or ask solve"),
+        ({"ask": "liftoff", "load": "1 N, -20 N"}, UsageError, "does not act along -y"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused_before_anything_runs(
+    given: dict[str, object], refusal: type[Exception], message: str
+) -> None:
+    with pytest.raises(refusal, match=message):
+        petalfoil.sensitivity(SMALL, **given)

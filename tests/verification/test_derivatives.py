@@ -1,0 +1,203 @@
+"""Derivatives of an equilibrium by the parameters of its case: exact ones, and those of equilibria solved again."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from petalfoil.analysis.derivatives import DerivativesOf, Results, equilibrium_results
+from petalfoil.analysis.liftoff_derivatives import refined, speed_derivatives
+from petalfoil.analysis.operating_point import at_position, under_load
+from petalfoil.analysis.speeds import SpeedLine
+from petalfoil.case import Case
+from petalfoil.case.parameters import with_values
+from petalfoil.equilibrium.run_context import RunContext
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.errors import DefinitionError, UsageError
+from petalfoil.walls import register, unregister
+from tests.cases import case
+from tests.random_packages import random_case, wide_case
+from tests.verification.film_helpers import table
+from tests.verification.resolved import compared, parameters_with_effect
+from tests.walls.slider import Slider
+
+EXACT = 1e-6
+"""Agreement of a derivative with the difference quotient of equilibria solved again."""
+
+SMOOTH_SHARE = 0.4
+"""Least share of the parameters that no contact keeps from being compared."""
+
+
+def derivatives_of(of: Case) -> DerivativesOf:
+    """Derivatives at the position of a case, or under its load."""
+    load = of.operation.load
+    solution = at_position(of).answer if load is None else under_load(of, load)[0]
+    return DerivativesOf(of, solution, equilibrium_results)
+
+
+def loaded(of: Case, load: float) -> Case:
+    """The case under a load along -y [N]."""
+    return of.replace(**{"operation.load": (0.0, -load), "operation.eccentricity": (0.0, 0.0)})
+
+
+FEW = ("bearing.bushing_radius", "petals.thickness", "petals.bend_radius", "gas.ambient_pressure", "operation.speed")
+"""Parameters that change films, petals, forces at rest, the units of the unknowns, and the film alone."""
+
+
+def assert_exact(derivatives: DerivativesOf, paths: Sequence[str] = ()) -> None:
+    """Where no contact opens or closes within the quotient, it agrees with the derivative; by default by all paths."""
+    paths = paths or parameters_with_effect(derivatives.case, under_load=derivatives.solution.load is not None)
+    comparisons = [compared(derivatives, path) for path in paths]
+    clear = [comparison for comparison in comparisons if comparison.clear]
+    assert len(clear) >= SMOOTH_SHARE * len(paths)
+    assert [comparison for comparison in clear if comparison.error > EXACT] == []
+
+
+# ---------------------------------------------------------------------------------------------- exact derivatives
+
+
+@pytest.fixture(scope="module")
+def slider() -> Iterator[Case]:
+    """A taper slider as long as its journal's radius, on a grid from which second order is extrapolated."""
+    kind = Slider()
+    register(kind)
+    yield Case.load(Path(__file__).parents[1] / "walls" / "slider.toml")
+    unregister(kind)
+
+
+def slider_load(case: Case, solution: Solution) -> Results:
+    """`W / (p_a B)` under the name of a force that no film of one strip has."""
+    problem = solution.problem
+    excess = problem.pressure(solution.x) - 1.0
+    return {"bearing_force": float(np.sum(excess[0, :, 0] * problem.layout.wall.film.arc_weight))}
+
+
+def slider_derivatives(of: Case, ratio: float, number: float) -> np.ndarray:
+    """Load of a slider, its derivatives by the film ratio and by the bearing number (through the speed)."""
+    film, radius = of.wall.outlet_film, of.bearing.journal_radius
+    speed = number * of.gas.ambient_pressure * film**2 / (6.0 * of.gas.viscosity * radius**2)
+    there = of.replace(**{"slider.film_ratio": ratio, "operation.speed": speed})
+    derivatives = DerivativesOf(there, at_position(there).answer, slider_load)
+    by_speed = derivatives.by("operation.speed").above["bearing_force"] * speed / number
+    by_ratio = derivatives.by("slider.film_ratio").above["bearing_force"]
+    return np.array([derivatives.values["bearing_force"], by_ratio, by_speed])
+
+
+@pytest.mark.parametrize("row", [1, 3, 6], ids=["a 1.5", "a 2", "a 3"])
+def test_derivatives_of_a_sliders_load(slider: Case, row: int) -> None:
+    exact = {name: float(value) for name, value in table("r5a_slider_derivatives.csv")[row].items()}
+    coarse, fine = (
+        slider_derivatives(slider.replace(**{"model.cells_per_pitch": cells}), exact["a"], exact["Lam"])
+        for cells in (400, 800)
+    )
+    found = fine + (fine - coarse) / 3.0
+    assert_allclose(found, [exact["W/(pa B)"], exact["dW/da"], exact["dW/dLam"]], rtol=2e-5, atol=1e-8)
+
+
+# ---------------------------------------------------------------------------------------------- equilibria solved again
+
+
+def test_a_journal_at_a_position_in_petals() -> None:
+    assert_exact(derivatives_of(case(**{"model.cells_per_pitch": 8})), FEW)
+
+
+def test_a_journal_under_a_load_in_petals() -> None:
+    assert_exact(derivatives_of(loaded(case(**{"model.cells_per_pitch": 8}), 20.0)), FEW)
+
+
+def test_a_plain_journal_under_a_load() -> None:
+    plain = case("plain_journal", **{"model.cells_per_pitch": 12, "model.axial_cells": 4})
+    assert_exact(derivatives_of(loaded(plain, 15.0)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("bearing", ["paper_n8", "paper_n8_spatial"])
+@pytest.mark.parametrize("load", [None, 20.0])
+def test_all_parameters_of_the_papers_bearings(bearing: str, load: float | None) -> None:
+    of = case(bearing, **{"model.cells_per_pitch": 8, "model.axial_cells": 4})
+    assert_exact(derivatives_of(of if load is None else loaded(of, load)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(30))
+def test_thirty_random_bearings(number: int) -> None:
+    draw = wide_case if number % 2 else random_case
+    assert_exact(derivatives_of(draw(np.random.default_rng(number), **{"model.cells_per_pitch": 8})))
+
+
+def test_one_factorisation_serves_all_parameters(run: RunContext) -> None:
+    derivatives = derivatives_of(case(**{"model.cells_per_pitch": 8}))
+    before = run.probes.factorizations + run.film.factorizations
+    for path in ("petals.thickness", "gas.viscosity", "operation.speed"):
+        derivatives.by(path)
+    assert run.probes.factorizations + run.film.factorizations == before + 1
+
+
+def test_at_a_contact_that_just_touches_both_sides_differ() -> None:
+    """A journal that is moved until a petal just leaves it: solid contact carries on one side alone."""
+    near = case(**{"model.cells_per_pitch": 16, "operation.eccentricity": (0.0, -330e-6)})
+    derivatives = derivatives_of(near)
+    for _ in range(4):  # onto the kink: how far the nearest contact is follows from the rates
+        step = derivatives.by("operation.eccentricity.y")
+        x, y = near.operation.eccentricity
+        near = near.replace(**{"operation.eccentricity": (x, y + step.reach[1])})
+        derivatives = derivatives_of(near)
+        found = derivatives.by("operation.eccentricity.y")
+        if found.at_kink:
+            break
+    assert found.at_kink
+    change = 2e-9
+    for sign, side in ((-1.0, found.below), (1.0, found.above)):
+        path = "operation.eccentricity.y"
+        there = derivatives_of(with_values(near, {path: near.operation.eccentricity[1] + sign * change}))
+        rate = there.by(path).above
+        assert_allclose(side["bearing_force"], rate["bearing_force"], rtol=1e-3)
+    assert abs(found.below["bearing_force"] / found.above["bearing_force"] - 1.0) > 1e-2
+
+
+# ---------------------------------------------------------------------------------------------- lift-off
+
+
+def test_the_lift_off_speed_is_inverse_to_the_viscosity_and_follows_its_thickness() -> None:
+    of = case(**{"model.cells_per_pitch": 16})
+    lift_off = speed_derivatives(of, 30.0, 0.01)[0]
+    speed = lift_off.values["liftoff_speed"]
+    by_viscosity = lift_off.by("gas.viscosity").above["liftoff_speed"] * of.gas.viscosity / speed
+    assert_allclose(by_viscosity, -1.0, rtol=1e-8)  # the film knows their product alone
+    found = lift_off.by("petals.thickness")
+    change = min(0.2 * min(found.reach), 1e-9)
+    speeds = [
+        again(lift_off.balance, {"petals.thickness": of.petals.thickness + sign * change}, speed) for sign in (-1, 1)
+    ]
+    assert_allclose(found.above["liftoff_speed"], (speeds[1] - speeds[0]) / (2.0 * change), rtol=1e-5)
+
+
+def again(balance: DerivativesOf, values: dict[str, float], near: float) -> float:
+    """Lift-off speed of another bearing, found from that of the first."""
+    there = with_values(balance.case, values)
+    line = SpeedLine(there, there.operation.load)
+    line.known = balance.solution
+    return refined("liftoff_speed", line, near, 0.01).values["liftoff_speed"]
+
+
+# ---------------------------------------------------------------------------------------------- refusals
+
+
+def test_what_has_no_derivative_is_refused() -> None:
+    derivatives = derivatives_of(case("plain_journal", **{"model.cells_per_pitch": 8, "model.axial_cells": 4}))
+    with pytest.raises(UsageError, match=r"by model\.cells_per_pitch: it is a whole number"):
+        derivatives.by("model.cells_per_pitch")
+    with pytest.raises(DefinitionError, match=r"gas\.viscosity"):
+        derivatives.by("gas.viscosty")
+
+
+def test_a_parameter_at_the_end_of_its_range_is_differentiated_inside() -> None:
+    derivatives = derivatives_of(case(**{"model.cells_per_pitch": 8}))
+    by_coating = derivatives.by("petals.coating")
+    assert derivatives.variation("petals.coating").stencil[0][0] == 0
+    assert math.isfinite(by_coating.above["bearing_force"])
