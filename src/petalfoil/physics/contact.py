@@ -18,6 +18,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.mesh.pack import PackMesh
+from petalfoil.sparsity import SparseRows
 
 Array = NDArray[np.float64]
 
@@ -61,7 +62,7 @@ class Contacts:
         The gaps in lines around the shaft; none where the wall has no bending stiffness.
     """
 
-    G: sp.csr_array
+    G: SparseRows
     rest: Array
     by_e: Array
     area: Array
@@ -109,7 +110,7 @@ def pack_contacts(mesh: PackMesh, free_radius: Array, sizes: dict[str, float]) -
     signs = np.concatenate([np.ones(n_J), -np.ones(n_B), -np.ones(n_P), np.ones(n_P)])
     at_root = cols < 0  # a root does not move
     shape = (m, n * (mesh.n_node - 1) * mesh.n_z)
-    G = sp.coo_array((signs[~at_root], (rows[~at_root], cols[~at_root])), shape=shape).tocsr()
+    G = SparseRows(sp.coo_array((signs[~at_root], (rows[~at_root], cols[~at_root])), shape=shape))
     by_e = np.zeros((m, 2))
     by_e[:n_J] = -np.stack([np.cos(theta[:, film]).ravel(), np.sin(theta[:, film]).ravel()], axis=1)
     return Contacts(
@@ -149,4 +150,4 @@ def bore_contacts(theta: Array, clearance: float, area: Array) -> Contacts:
     """
     m, none = len(theta), slice(0, 0)
     by_e = -np.stack([np.cos(theta), np.sin(theta)], axis=1)
-    return Contacts(sp.csr_array((m, 0)), np.full(m, clearance), by_e, area, slice(0, m), none, none)
+    return Contacts(SparseRows((m, 0)), np.full(m, clearance), by_e, area, slice(0, m), none, none)

@@ -108,22 +108,19 @@ class PetalShell:
         keep[0] = float(self.clamped)
         return keep
 
-    @property
+    @cached_property
     def _second_phi(self) -> sp.csr_array:
         """Matrix from circumferential differences to the second derivative at the nodes [1]."""
-        second = _second_derivative(self.phi)
-        if self.clamped:  # the node before the root is the mirror image of the first one
-            second[0, 0] = 2.0 / (self.phi[1] - self.phi[0]) ** 2
-        return second.tocsr()
+        mirrored = 2.0 / (self.phi[1] - self.phi[0]) ** 2  # a clamped root mirrors the first node
+        return _second_derivative(self.phi, first=mirrored if self.clamped else None)
 
-    @property
+    @cached_property
     def _second_z(self) -> sp.csr_array:
         """Matrix from axial differences to the second derivative [1/m^2]. Rows of free sides and of 2-D are empty."""
         z = self.axial.z
-        second = _second_derivative(z)
-        if self.axial.half:  # the node beyond the plane of symmetry is the mirror image of the one before it
-            second[-1, -1] = -2.0 / (z[-1] - z[-2]) ** 2
-        return second.tocsr()
+        if not self.axial.half:
+            return _second_derivative(z)
+        return _second_derivative(z, last=-2.0 / (z[-1] - z[-2]) ** 2)  # beyond the plane of symmetry z is mirrored
 
     @property
     def _twist_scale(self) -> Array:
@@ -207,14 +204,22 @@ def _neighbour_differences(n: int) -> sp.csr_array:
     return sp.csr_array(sp.diags_array([-one, one], offsets=[0, 1], shape=(n - 1, n)))
 
 
-def _second_derivative(nodes: Array) -> sp.lil_array:
-    """Matrix from differences of neighbours to the second derivative at the inner `nodes`, three points each."""
+def _second_derivative(nodes: Array, first: float | None = None, last: float | None = None) -> sp.csr_array:
+    """Matrix from differences of neighbours to the second derivative at the inner `nodes`, three points each.
+
+    At the outer nodes the outermost difference counts `first` and `last` times; without these their rows are empty.
+    """
     n, cell = len(nodes), np.diff(nodes)
-    second = sp.lil_array((n, n - 1))
-    for i in range(1, n - 1):
-        span = 0.5 * (cell[i - 1] + cell[i])
-        second[i, i - 1], second[i, i] = -1.0 / (cell[i - 1] * span), 1.0 / (cell[i] * span)
-    return second
+    inner, span = np.arange(1, n - 1), 0.5 * (cell[:-1] + cell[1:])
+    rows, cols = [inner, inner], [inner - 1, inner]
+    values = [-1.0 / (cell[:-1] * span), 1.0 / (cell[1:] * span)]
+    for end, place, value in ((0, 0, first), (n - 1, n - 2, last)):
+        if value is not None:
+            rows.append(np.array([end]))
+            cols.append(np.array([place]))
+            values.append(np.array([value]))
+    places = (np.concatenate(rows), np.concatenate(cols))
+    return sp.csr_array(sp.coo_array((np.concatenate(values), places), shape=(n, max(n - 1, 0))))
 
 
 def bending_stress(shell: PetalShell, W: Array, youngs_modulus: float, thickness: float) -> Array:

@@ -25,6 +25,7 @@ from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 from petalfoil.physics.contact import Contacts
 from petalfoil.physics.forces import contact_fraction, node_area
+from petalfoil.sparsity import SparseRows
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.walls.petals import build_mesh, petals_of
@@ -100,7 +101,7 @@ def bounds(case: Case, contacts: Contacts) -> Contacts:
     rows = (contacts.G[kept], _selected(number[:, covered], 1.0, n), _selected(number[:, lap], -1.0, n))
     rest = np.concatenate([contacts.rest[kept], inner, outer.ravel()])
     return Contacts(
-        G=sp.csr_array(sp.vstack(rows, format="csr")),
+        G=SparseRows(sp.vstack(rows, format="csr")),
         rest=rest,
         by_e=np.concatenate([contacts.by_e[kept], -direction, np.zeros((outer.size, 2))]),
         area=np.concatenate([contacts.area[kept], area[:, covered].ravel(), area[:, lap].ravel()]),

@@ -18,7 +18,7 @@ import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from petalfoil.solvers.sparse_lu import Factor, LinearSolver
-from petalfoil.sparsity import TiedOrder, add_up
+from petalfoil.sparsity import SparseRows, TiedOrder, add_up
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -44,7 +44,7 @@ class ContactConstraints:
     """
 
     held: Mask
-    G: sp.csr_array
+    G: SparseRows
     group: Index
     n_free: int
     stops: Index
@@ -125,7 +125,7 @@ def constrain(G: sp.csr_array, active: Mask, stops: slice | None = None) -> Cont
     without it all are held, and the constraints are not determinate.
     """
     held = active if stops is None else determining(G, active, stops)
-    rows = sp.csr_array(G[held])
+    rows = SparseRows(G[held])
     n, entries = G.shape[1], np.diff(rows.indptr)
     single, double = rows.indptr[:-1][entries == 1], rows.indptr[:-1][entries == 2]
     ground = n

@@ -244,5 +244,5 @@ def revise(problem: ContactProblem, state: ContactState) -> Mask:
     if not state.active.any():
         return below
     # rows that lose digits blur reactions too
-    noise = np.maximum(problem.weight, abs(problem.G) @ state.linearized.row_scale)
+    noise = np.maximum(problem.weight, problem.G.magnitude @ state.linearized.row_scale)
     return np.where(state.active, state.lam > -RESIDUAL_TOLERANCE * noise, below)

@@ -17,6 +17,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.solvers.constraints import ContactConstraints
+from petalfoil.sparsity import SparseRows
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -35,7 +36,7 @@ class PointConstraints(ContactConstraints):
         Changes of all unknowns by the free ones, `G basis = 0`.
     """
 
-    basis: sp.csr_array
+    basis: SparseRows
 
     def gather(self, full: NDArray[Any]) -> NDArray[Any]:
         """Equations of the free unknowns; shape (n_free,)."""
@@ -54,12 +55,12 @@ def constrain_points(nodes: ContactConstraints, points: sp.csr_array) -> PointCo
     """Node contacts and the rows `points` (k, n) together."""
     n, inside = len(nodes.group), nodes.group >= 0
     one = np.ones(int(inside.sum()))
-    moved = sp.csr_array((one, (np.flatnonzero(inside), nodes.group[inside])), shape=(n, nodes.n_free))
-    rest, strongest = eliminated(sp.csr_array(points @ moved))
-    rows = sp.csr_array(sp.vstack([nodes.G, points], format="csr"))
+    moved = SparseRows((one, (np.flatnonzero(inside), nodes.group[inside])), shape=(n, nodes.n_free))
+    rest, strongest = eliminated(points @ moved)
+    rows = SparseRows(sp.vstack([nodes.G, points], format="csr"))
     group = np.where(inside, strongest[nodes.group], -1)
     every, none = np.ones(rows.shape[0], dtype=bool), np.zeros(0, dtype=np.intp)
-    return PointConstraints(every, rows, group, rest.shape[1], none, sp.csr_array(moved @ rest))
+    return PointConstraints(every, rows, group, rest.shape[1], none, SparseRows(moved @ rest))
 
 
 def eliminated(rows: sp.csr_array) -> tuple[sp.csr_array, Index]:

@@ -10,6 +10,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.sparsity import SparseRows
+
 Array = NDArray[np.float64]
 
 RESIDUAL_TOLERANCE = 1e-8
@@ -44,7 +46,7 @@ class ContactProblem(Protocol):
     """Equations with gaps. A row of `G` holds one unknown (+-1) or the difference of two."""
 
     @property
-    def G(self) -> sp.csr_array:
+    def G(self) -> SparseRows:
         """Derivative of the gaps, (m, n)."""
 
     @property

@@ -13,7 +13,7 @@ from petalfoil.case import Case
 from petalfoil.physics.forces import film_force_rows, node_area
 from petalfoil.physics.mass_balance import FilmBalance
 from petalfoil.solvers.problem import Border
-from petalfoil.sparsity import add_up
+from petalfoil.sparsity import SparseRows, add_up
 from petalfoil.system.film_rows import FilmRows
 from petalfoil.system.scales import Scales
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE, BlockEntries, BlockPattern, ExtraField, Unknowns
@@ -94,9 +94,9 @@ class BearingLayout:
         return self.wall.elasticity.force(w, low_order) * (self.scales.length / self.scales.force)
 
     @cached_property
-    def stiffness_size(self) -> sp.csr_array:
+    def stiffness_size(self) -> SparseRows:
         """Magnitudes of the entries of `K` [1]."""
-        return sp.csr_array(abs(self.stiffness))
+        return SparseRows(abs(self.stiffness))
 
     @cached_property
     def loss(self) -> sp.csr_array | None:
@@ -110,19 +110,19 @@ class BearingLayout:
         return sp.coo_array((held.data, (held.row, held.col)), shape=(self.n, self.n)).tocsc()
 
     @cached_property
-    def push(self) -> sp.csr_array:
+    def push(self) -> SparseRows:
         """`A`: nodal forces on the wall from the pressure unknowns, (n_wall, n_film) [1]."""
         wall, unknown = self.wall.film_unknown.ravel(), self.wall.film.unknown.ravel()
         both = (wall >= 0) & (unknown >= 0)
         area = self.wall.load_area.ravel()[both] * self.scales.pressure / self.scales.force
         shape = (self.n_wall, self.wall.film.n_unknown)
-        return sp.coo_array((area, (wall[both], unknown[both])), shape=shape).tocsr()
+        return SparseRows(sp.coo_array((area, (wall[both], unknown[both])), shape=shape))
 
     @cached_property
-    def G(self) -> sp.csr_array:
+    def G(self) -> SparseRows:
         """Derivative of the gaps by all unknowns, (m, n) [1]."""
         by_w = self.wall.contacts.G
-        return sp.csr_array(sp.hstack([by_w, sp.csr_array((by_w.shape[0], self.n - self.n_wall))], format="csr"))
+        return SparseRows(sp.hstack([by_w, sp.csr_array((by_w.shape[0], self.n - self.n_wall))], format="csr"))
 
     @cached_property
     def weight(self) -> Array:

@@ -17,6 +17,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, Border
+from petalfoil.sparsity import SparseRows
 from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE, FieldRows
@@ -53,7 +54,7 @@ class CoupledProblem:
         return replace(self, bearing_number=Lam, displacement=e)
 
     @property
-    def G(self) -> sp.csr_array:
+    def G(self) -> SparseRows:
         """Derivative of the gaps by the unknowns."""
         return self.layout.G
 

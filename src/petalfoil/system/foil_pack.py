@@ -10,6 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.sparsity import SparseRows
 from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.coupled import CoupledProblem, wall_scale
 from petalfoil.system.unknowns import DEFLECTION, BlockPattern, Unknowns
@@ -38,7 +39,7 @@ class FoilPackProblem:
         return self.coupled.layout
 
     @property
-    def G(self) -> sp.csr_array:
+    def G(self) -> SparseRows:
         """Derivative of the gaps by the deflections, (m, n_wall)."""
         return self.layout.wall.contacts.G
 
@@ -97,8 +98,8 @@ class FoilPackLinearization:
     def matrix(self, barrier_weight: Array, rate: float = 0.0) -> sp.csc_array:
         """`K + G^T diag(barrier_weight) G`; nothing is stored, so `rate` adds nothing."""
         _, _, gap, factor = self.problem.layout.gap_products
-        K = self.problem.layout.stiffness.tocoo()
-        return self.problem.pattern.assemble([K.data, barrier_weight[gap] * factor])
+        stiffness, _ = self.problem.layout.constant_entries
+        return self.problem.pattern.assemble([stiffness, barrier_weight[gap] * factor])
 
     def slack_derivative(self, change: Array, rate: float = 0.0) -> Array:
         """The residual does not depend on the gaps."""

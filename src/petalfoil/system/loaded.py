@@ -18,6 +18,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
+from petalfoil.sparsity import SparseRows
 from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.build import lever_of
 from petalfoil.system.coupled import CoupledProblem, Linearization
@@ -71,10 +72,10 @@ class LoadedProblem:
         return self.coupled.at(displacement=z[self.unknowns[POSITION]]), z[: self.coupled.layout.n]
 
     @cached_property
-    def G(self) -> sp.csr_array:
+    def G(self) -> SparseRows:
         """Derivative of the gaps by deflections, pressures and position, (m, n + n_position)."""
         by_e = sp.csr_array(self.coupled.border.gap_derivative)
-        return sp.csr_array(sp.hstack([self.coupled.G, by_e], format="csr"))
+        return SparseRows(sp.hstack([self.coupled.G, by_e], format="csr"))
 
     @property
     def weight(self) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -82,11 +83,16 @@ class Wall:
         """Coordinates of the journal's position: 2, or 4 where the shaft is free to tilt."""
         return int(self.contacts.by_e.shape[1])
 
+    @cached_property
+    def _normal(self) -> tuple[Array, Array]:
+        """Components of the normal at the film nodes, (strip, node) each [1]."""
+        return np.cos(self.film.theta), np.sin(self.film.theta)
+
     def film_thickness(self, W: Array, e: Array) -> Array:
         """Film over deflections `W` (n,) and journal position `e` (n_position,), shape of the film mesh [m]."""
         if self.n_position == ALIGNED:  # the same along the shaft
-            normal = self.film.theta
-            displaced = self.rest_film - (e[0] * np.cos(normal) + e[1] * np.sin(normal))[:, :, None]
+            along_x, along_y = self._normal
+            displaced = self.rest_film - (e[0] * along_x + e[1] * along_y)[:, :, None]
         else:
             displaced = self.rest_film + (self.contacts.by_e[self.contacts.journal] @ e).reshape(self.rest_film.shape)
         thickness: Array = displaced + np.append(W, 0.0)[self.film_unknown]

@@ -9,6 +9,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.sparsity import SparseRows
+
 Array = NDArray[np.float64]
 
 
@@ -37,7 +39,7 @@ class Elasticity:
         return sp.csr_array(S.T @ self.rigidity @ S)
 
     @cached_property
-    def _levels(self) -> tuple[sp.csr_array, sp.csr_array, sp.csr_array]:
+    def _levels(self) -> tuple[SparseRows, SparseRows, SparseRows]:
         """(whole, rest, metric): strains over the largest entry of their rows by jumps, and the rigidity between them.
 
         Jumps are differences of neighbouring deflections. Entries of `whole` are +-1, or 0 beside a cell of less than
@@ -53,11 +55,16 @@ class Elasticity:
         rest.data[np.abs(rest.data) < CELL_ROUNDING] = 0.0
         for part in (whole, rest):
             part.eliminate_zeros()
-        return whole, rest, sp.csr_array(scale @ self.rigidity @ scale)
+        return SparseRows(whole), SparseRows(rest), SparseRows(scale @ self.rigidity @ scale)
+
+    @cached_property
+    def _jumps(self) -> SparseRows:
+        """`difference`, for products."""
+        return SparseRows(self.difference)
 
     def _strains(self, W: Array) -> Array:
         """Strains of deflections `W`, over the largest entry of their rows; (m,)."""
-        (whole, rest, _), jumps = self._levels, self.difference @ W
+        (whole, rest, _), jumps = self._levels, self._jumps @ W
         strains: Array = whole @ jumps + rest @ jumps
         return strains
 
@@ -65,7 +72,7 @@ class Elasticity:
         """Nodal forces of deflections `W` plus their low-order part, below the last digit of `W`; (n,) [N]."""
         whole, rest, metric = self._levels
         moments = metric @ (self._strains(W) if low_order is None else self._strains(W) + self._strains(low_order))
-        out: Array = self.difference.T @ (whole.T @ moments + rest.T @ moments)
+        out: Array = self._jumps.T @ (whole.T @ moments + rest.T @ moments)
         return out
 
 

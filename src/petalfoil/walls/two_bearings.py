@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from petalfoil.mesh.strips import FilmMesh
 from petalfoil.physics.contact import Contacts, GapLines
+from petalfoil.sparsity import SparseRows
 from petalfoil.walls.base import Wall
 from petalfoil.walls.elasticity import Elasticity
 
@@ -92,7 +93,7 @@ def paired_contacts(wall: Wall, span: float, order: Index) -> Contacts:
     ends = np.concatenate([[0], np.cumsum(sizes)])
     journal, bushing, petals = (slice(int(a), int(b)) for a, b in pairwise(ends))
     return Contacts(
-        sp.csr_array(twice(contacts.G)[order]),
+        SparseRows(twice(contacts.G)[order]),
         np.concatenate([contacts.rest, contacts.rest])[order],
         np.vstack(sides)[order],
         np.concatenate([contacts.area, contacts.area])[order],

@@ -1,0 +1,48 @@
+"""Products of sparse rows are those of SciPy, bit by bit."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from numpy.testing import assert_array_equal
+
+from petalfoil.sparsity import SparseRows
+
+
+def random_rows(m: int, n: int, seed: int) -> sp.csr_array:
+    """A random sparse matrix with entries of very different size, so that the order of sums shows."""
+    rng = np.random.default_rng(seed)
+    matrix = sp.random_array((m, n), density=0.2, rng=rng, format="csr")
+    matrix.data = matrix.data * 10.0 ** rng.integers(-8, 8, len(matrix.data))
+    return sp.csr_array(matrix)
+
+
+@pytest.mark.parametrize(("m", "n"), [(40, 30), (1, 7), (5, 0), (0, 5)])
+def test_products_are_those_of_scipy(m: int, n: int) -> None:
+    plain, rng = random_rows(m, n, seed=m + n), np.random.default_rng(1)
+    rows, x, y = SparseRows(plain), rng.standard_normal(n), rng.standard_normal(m)
+    assert_array_equal(rows @ x, plain @ x)
+    assert_array_equal(rows.T @ y, plain.T @ y)
+    assert_array_equal(rows.magnitude @ x, abs(plain) @ x)
+    assert_array_equal(rows.T.toarray(), plain.toarray().T)
+
+
+def test_other_products_are_left_to_scipy() -> None:
+    plain, rng = random_rows(20, 30, seed=3), np.random.default_rng(2)
+    rows, block = SparseRows(plain), rng.standard_normal((30, 4))
+    assert_array_equal(rows @ block, plain @ block)
+    assert_array_equal(rows @ (1j * block[:, 0]), plain @ (1j * block[:, 0]))
+    assert_array_equal((rows @ rows.T).toarray(), (plain @ plain.T).toarray())
+    assert_array_equal(rows @ block[:, 1], plain @ np.ascontiguousarray(block[:, 1]))
+
+
+def test_slices_of_rows_are_right_after_the_transpose_was_used() -> None:
+    plain = random_rows(20, 30, seed=4)
+    rows = SparseRows(plain)
+    assert rows.T.shape == (30, 20)
+    assert rows[3:7].T.shape == (30, 4)
+    assert_array_equal(rows[3:7] @ np.ones(30), plain[3:7] @ np.ones(30))
+
+
+def test_a_vector_of_another_length_is_refused() -> None:
+    with pytest.raises(ValueError, match="30 columns cannot multiply a vector of 20"):
+        SparseRows(random_rows(20, 30, seed=5)) @ np.ones(20)
