@@ -11,6 +11,7 @@ from petalfoil.analysis.balances import mass_balance, reaction_balance, side_lea
 from petalfoil.analysis.extremes import highest, lowest
 from petalfoil.case import Case
 from petalfoil.equilibrium.solution import Solution
+from petalfoil.mesh.strips import FilmMesh
 from petalfoil.physics.forces import attitude_angle, contact_fraction, node_area, viscous_torque
 from petalfoil.results.parts import Balances, Film, Forces
 from petalfoil.system.film_rows import FilmState
@@ -99,7 +100,7 @@ class Evaluation:
         """Extremes of film and pressure, friction and leakage."""
         film, case = self.answer.problem.layout.wall.film, self.case
         radius, omega = case.bearing.journal_radius, case.operation.speed
-        thin, high = lowest(self.film_thickness, film.phi), highest(self.pressure, film.phi)
+        thin, high = lowest(*whole_film(film, self.film_thickness)), highest(*whole_film(film, self.pressure))
         thinnest = closed_film(case, self.film_thickness, thin.value)
         torque = viscous_torque(
             film,
@@ -112,7 +113,7 @@ class Evaluation:
         return Film(
             min_film_thickness=thinnest,
             min_film_thickness_angle=self._bushing_angle(thin.strip, thin.phi),
-            min_film_thickness_z=None if film.axial.is_2d else float(film.axial.whole_z[thin.axial]),
+            min_film_thickness_z=None if film.axial.is_2d else thin.z,
             knudsen_number=case.gas.mean_free_path / thinnest,
             peak_pressure=high.value,
             peak_pressure_angle=self._bushing_angle(high.strip, high.phi),
@@ -139,6 +140,11 @@ class Evaluation:
         scales, gas = self.answer.problem.layout.scales, self.case.gas
         unit = scales.pressure**2 * scales.length**3 / (12.0 * gas.viscosity)  # of pressure times volume flow
         return side_leakage(self.answer, self.rows.fluxes) * unit * gas.ambient_density / gas.ambient_pressure
+
+
+def whole_film(film: FilmMesh, field: Array) -> tuple[Array, Array, Array]:
+    """A nodal field (strip, node, axial) over the whole length, the angles of its nodes [rad], and its stations [m]."""
+    return film.axial.whole(field), film.phi, film.axial.whole_z
 
 
 def closed_film(case: Case, film_thickness: Array, between_nodes: float) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
-from petalfoil.analysis.evaluation import closed_film
+from petalfoil.analysis.evaluation import closed_film, whole_film
 from petalfoil.analysis.extremes import highest, lowest
 from petalfoil.case import Case
 from petalfoil.dynamics.time_state import Instant
@@ -149,8 +149,8 @@ class Trace:
         viscous = viscous_torque(mesh, case.bearing.journal_radius, (p, h), shear, case.slip_length * ambient)
         film = FilmState(problem.layout.film_rows, P, H, problem.bearing_number)
         return {
-            "min_film_thickness": closed_film(case, h, lowest(h, mesh.phi).value),
-            "peak_pressure": highest(p, mesh.phi).value,
+            "min_film_thickness": closed_film(case, h, lowest(*whole_film(mesh, h)).value),
+            "peak_pressure": highest(*whole_film(mesh, p)).value,
             "contact_fraction": contact_fraction(touching, p - ambient, self._area),
             "force_x": float(pushed[0]),
             "force_y": float(pushed[1]),
