@@ -54,6 +54,7 @@ What they share:
 `classic_method.py`    the paper's own method
 `evaluation.py`        a solution evaluated once, as typed parts
 `extremes.py`          extremes between nodes
+`adapted_stations.py`  stations along the shaft where a coarse solution bends most
 `balances.py`          balances of a solution
 `fields.py`            its fields on the mesh
 `records.py`           typed parts to a record

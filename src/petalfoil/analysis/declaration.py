@@ -19,6 +19,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias, get_type_hints
 
+from petalfoil.analysis.adapted_stations import with_stations
 from petalfoil.analysis.arguments import Argument, ErrorBars, StoredResult
 from petalfoil.analysis.error_bars import WithErrorBars
 from petalfoil.analysis.known_verbs import register
@@ -205,6 +206,7 @@ class Analysis:
         if not isinstance(case, Case):
             raise UsageError(f"{shown(case)} is not a Case; Case.load(path) reads one from a file")
         asked = {name: value for name, value in values.items() if name != ERROR}
+        case = with_stations(case)
         with one_thread():
             begun = self.question(case, **asked, **({"progress": progress} if self._tells_progress else {}))
         run: Run = Single(begun) if isinstance(begun, Record) else begun

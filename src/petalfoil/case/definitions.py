@@ -19,7 +19,7 @@ from petalfoil.case.package import Package, bearing_problems, package_of, packag
 from petalfoil.case.petal_table import Petals
 from petalfoil.case.problems import Problem, refusal
 from petalfoil.case.rotor import Rotor
-from petalfoil.case.sections import Bearing, Method, Model, ModelKind, Operation, Surface
+from petalfoil.case.sections import ADAPTED, Bearing, Method, Model, ModelKind, Operation, Surface
 from petalfoil.case.wall_tables import WallTable, with_table
 from petalfoil.errors import DefinitionError, PackageError
 from petalfoil.text import for_terminal
@@ -29,6 +29,8 @@ from petalfoil.units import format_quantity
 # displaced by 100 to 280 um: at most 0.3 % in 2-D, 0.6 % in 3-D) and on plain bearings (L/D 1/2 to 2).
 DEFAULT_CELLS = {ModelKind.TWO_D: 128, ModelKind.THREE_D: 64}  # along a pitch
 DEFAULT_AXIAL_CELLS = 24
+ADAPTED_FROM = 8
+"""Cells over the length from which stations are adapted: fewer do not resolve where the solution bends."""
 DEFAULT_PLAIN_CELLS = 128  # a plain bearing's pitch is the whole circle
 DEFAULT_PLAIN_AXIAL_CELLS = 32
 DEFAULT_BUMP_AXIAL_CELLS = 64  # over a foil the pressure stays high up to its ends
@@ -190,7 +192,23 @@ class Case(Definition):
         """How far cells shrink toward the ends, the default filled in; of no effect in a 2-D model [1]."""
         if self.model.axial_grading is not None:
             return self.model.axial_grading
+        if self.model.axial_density is not None:
+            return 0.0
         return DEFAULT_PLAIN_GRADING if self.petals is None else 0.0
+
+    @property
+    def axial_density(self) -> tuple[float, ...]:
+        """Density of the stations from an end to the middle; empty where cells follow `axial_grading` [1]."""
+        density = self.model.axial_density
+        return density if isinstance(density, tuple) else ()
+
+    @property
+    def adapts_stations(self) -> bool:
+        """Whether the stations are to be placed where a solution on a coarse grid bends most."""
+        model = self.model
+        if model.kind is not ModelKind.THREE_D or self.petals is None or self.axial_cells < ADAPTED_FROM:
+            return False
+        return model.axial_density == ADAPTED or (model.axial_density is None and model.axial_grading is None)
 
     # ------------------------------------------------------------------------------------------ validation
 
@@ -234,7 +252,13 @@ class Case(Definition):
             yield replace(problem, text=text)
 
     def _grid_problems(self) -> Iterator[Problem]:
-        cells = self.axial_cells
+        cells, density = self.axial_cells, self.model.axial_density
+        if density is not None and self.model.axial_grading is not None:
+            text = "is given beside model.axial_grading, and both place the stations; allowed: one of them"
+            yield Problem("model.axial_density", text, density, "one of both")
+        if density == ADAPTED and self.petals is None:
+            text = 'stations are adapted to petals only; allowed: "uniform", a list, or model.axial_grading'
+            yield Problem("model.axial_density", text, density, "uniform, a list, or model.axial_grading")
         if self.model.kind is ModelKind.THREE_D and self.symmetric and cells % 2:
             text = (
                 f"{cells} cells cannot be halved at the plane of symmetry; allowed: an even number, or symmetry = false"

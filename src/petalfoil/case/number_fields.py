@@ -154,6 +154,52 @@ class Count(Range):
         return core_schema.no_info_before_validator_function(self.parse, core_schema.int_schema())
 
 
+@dataclass(frozen=True, kw_only=True)
+class NumbersOrWord(Range):
+    """A list of numbers, or a word that asks for a rule, such as ``"adapted"``.
+
+    Parameters
+    ----------
+    meaning : str
+        What the numbers are, in words.
+    words : tuple of str
+        The words.
+    least, most : int
+        Length of the list.
+    """
+
+    meaning: str
+    words: tuple[str, ...]
+    least: int
+    most: int
+    symbol: str = ""
+
+    @property
+    def allowed(self) -> str:
+        """Words for what a user may write."""
+        words = " or ".join(f'"{word}"' for word in self.words)
+        return f"{words}, or a list of {self.least} to {self.most} numbers, each {self.bounds('1')}: {self.meaning}"
+
+    def parse(self, value: object) -> tuple[float, ...] | str:
+        """Let the words through, and check the entries of a list."""
+        if isinstance(value, str) and value in self.words:
+            return value
+        entries = as_sequence(value)
+        if entries is None or not self.least <= len(entries) <= self.most:
+            raise refuse(VALUE_PROBLEM, f"{shown(value)} is not allowed; allowed: {self.allowed}", self.allowed)
+        wrong = [k for k, entry in enumerate(entries) if not self._holds(entry)]
+        if wrong:
+            text = f"entry {wrong[0] + 1}, {shown(entries[wrong[0]])}, is not allowed; allowed: {self.allowed}"
+            raise refuse(VALUE_PROBLEM, text, self.allowed)
+        return tuple(float(entry) for entry in entries if isinstance(entry, int | float))
+
+    def _holds(self, entry: object) -> bool:
+        return isinstance(entry, int | float) and not isinstance(entry, bool) and self.holds(float(entry))
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.parse)
+
+
 def as_pair(value: object) -> object:
     """Let only sequences of two entries through: the components along x and y."""
     allowed = "two quantities, [x, y]"

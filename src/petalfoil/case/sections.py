@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar
 from pydantic import BeforeValidator, StrictBool
 
 from petalfoil.case.definition import Definition
-from petalfoil.case.number_fields import Count, Quantity, as_load, as_pair
+from petalfoil.case.number_fields import Count, NumbersOrWord, Quantity, as_load, as_pair
 
 MAX_SPEED = 1e6  # rad/s, 9.5 million rpm: beyond any shaft
 
@@ -107,6 +107,10 @@ class Operation(Definition):
         return max(math.hypot(x + a_x * z, y + a_y * z) for z in ends)
 
 
+ADAPTED, UNIFORM = "adapted", "uniform"
+"""Stations along the shaft where a solution on a coarse grid bends most, or at equal distances."""
+
+
 class ModelKind(StrEnum):
     """Dimensions of the model: infinitely long, without side leakage (`TWO_D`), or of finite length (`THREE_D`)."""
 
@@ -148,7 +152,23 @@ class Model(Definition):
         ]
         | None
     ) = None
-    """0 unless given, of a plain bearing 0.6; of no effect in 2-D."""
+    """0 unless given, of a plain bearing 0.6; of no effect in 2-D or beside `axial_density`."""
+    axial_density: (
+        Annotated[
+            tuple[float, ...] | str,
+            NumbersOrWord(
+                meaning="density of the stations at equal distances from an end of the bearing to its middle",
+                words=(ADAPTED, UNIFORM),
+                symbol="rho_z",
+                least=3,
+                most=65,
+                at_least=1e-2,
+                at_most=1e2,
+            ),
+        ]
+        | None
+    ) = None
+    """Density of the stations from an end to the middle; where petals bend, unless given, from 8 cells on."""
     symmetry: StrictBool = True
     """Solve half of the length in 3-D."""
     slip: StrictBool = False

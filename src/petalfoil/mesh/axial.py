@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
 
 from petalfoil.mesh.quadrature import cubic_weights, trapezoid
 
@@ -79,13 +81,41 @@ def axis_2d(length: float) -> AxialGrid:
     return AxialGrid(np.array([0.5 * length]), np.array([length]), length, half=False)
 
 
-def axis_3d(length: float, cells: int, *, half: bool, grading: float = 0.0) -> AxialGrid:
+def axis_3d(length: float, cells: int, *, half: bool, grading: float = 0.0, density: Sequence[float] = ()) -> AxialGrid:
     """The axis of the 3-D model: `cells` cells over the whole `length` [m].
 
     A half model has the first half of them, rounded up. With `grading` > 0 the cells become smaller toward the bearing
-    ends. The largest cell is about `(1 + grading) / (1 - grading)` times the smallest.
+    ends. The largest cell is about `(1 + grading) / (1 - grading)` times the smallest. A `density` at equal distances
+    from an end to the middle places the stations instead.
     """
     cells += cells % 2 if half else 0
     s = np.arange(cells // 2 + 1 if half else cells + 1) / cells
-    z = length * (s - grading / (2.0 * np.pi) * np.sin(2.0 * np.pi * s))
+    if len(density):
+        z = length * equidistributed(density, s)
+    else:
+        z = length * (s - grading / (2.0 * np.pi) * np.sin(2.0 * np.pi * s))
     return AxialGrid(z, trapezoid(z) * (2.0 if half else 1.0), length, half)
+
+
+def equidistributed(density: Sequence[float], s: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Places over the length that have the parts `s` (k,) of all stations before them, (k,) [1].
+
+    Parameters
+    ----------
+    density : sequence of float
+        Relative density of the stations at equal distances from an end to the middle; a monotone cubic between them,
+        mirrored at the middle. Grids with more cells are then nested in the same smooth map.
+    s : (k,) array
+        Parts of the stations, 0 to 1.
+    """
+    at = np.linspace(0.0, 0.5, len(density))
+    before = PchipInterpolator(at, np.asarray(density, dtype=np.float64)).antiderivative()
+    nearer, total = np.minimum(s, 1.0 - s), 2.0 * float(before(0.5))
+    places = np.array([_first_root(before.solve(part * total, extrapolate=False)) for part in nearer])
+    places[nearer >= 0.5] = 0.5
+    return np.where(s > 0.5, 1.0 - places, places)
+
+
+def _first_root(roots: NDArray[np.float64]) -> float:
+    """The root of an increasing function within its range; 0 where rounding puts it before the start."""
+    return float(roots[0]) if len(roots) else 0.0

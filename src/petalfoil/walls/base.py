@@ -120,4 +120,5 @@ def axial_grid(case: Case) -> AxialGrid:
     length = case.bearing.length
     if case.model.kind is ModelKind.TWO_D:
         return axis_2d(length)
-    return axis_3d(length, case.axial_cells, half=case.symmetric, grading=case.axial_grading)
+    cells, half = case.axial_cells, case.symmetric
+    return axis_3d(length, cells, half=half, grading=case.axial_grading, density=case.axial_density)

@@ -1,0 +1,106 @@
+"""Stations along the shaft where the solution bends most, from a solution of the same bearing on a coarse grid.
+
+Near both ends the petals lift off the film within a few millimetres: the film opens fivefold between two of 24 equal
+stations, and pressure and film of the whole bearing are wrong by some per cent. The density of the stations is
+
+    rho(z) = sqrt( |P_zz| / mean + |(P - 1) (ln H)_zz| / mean )       root mean squares round the bearing
+
+smoothed, with a floor. A case gets it as `model.axial_density`: it is that of the case's own operating point, whatever
+is asked, so that all results of a case share their stations.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.analysis.session import one_thread
+from petalfoil.case import Case
+from petalfoil.case.sections import UNIFORM
+from petalfoil.equilibrium.cold_start import by_barriers
+from petalfoil.equilibrium.run_context import running
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.equilibrium.under_load import balance_cold
+from petalfoil.errors import ConvergenceError
+from petalfoil.system.build import build_problem
+
+Array = NDArray[np.float64]
+
+COARSE_CELLS, COARSE_AXIAL = 24, 16
+"""Grid of the coarse solution: a tenth of the time of the default grid."""
+
+FLOOR = 0.3
+"""Least density over the mean of what asks for stations. On 24 cells, 8 petals at 200 and 280 um: minimum film within
+0.5 % of that on 48, peak pressure within 0.3 % (1.0: 0.8 and 1.7 %; equal stations: 2.2 and 4.4 %)."""
+
+SMOOTHINGS = 2
+"""Times that each density is averaged with its neighbours (1/4, 1/2, 1/4): cells then grow evenly."""
+
+DIGITS = 4
+"""Digits of a density: what rounding does to the coarse solution does not reach the stations."""
+
+
+def with_stations(case: Case) -> Case:
+    """The case with its adapted `model.axial_density`; as it is where stations are not to be adapted.
+
+    Where the coarse grid has no solution, stations lie at equal distances, and the case of the result says so.
+    """
+    if not case.adapts_stations or case.operation.speed == 0.0:
+        return case
+    coarse = case.replace(
+        **{
+            "model.cells_per_pitch": min(case.cells_per_pitch, COARSE_CELLS),
+            "model.axial_cells": COARSE_AXIAL,
+            "model.axial_density": UNIFORM,
+        }
+    )
+    with one_thread(), running():
+        solution = coarse_solution(coarse)
+    if solution is None:
+        return case.replace(**{"model.axial_density": UNIFORM})
+    return case.replace(**{"model.axial_density": station_density(solution)})
+
+
+def coarse_solution(case: Case) -> Solution | None:
+    """An equilibrium at the case's operating point; None where none is found at once."""
+    problem, load = build_problem(case), case.operation.load
+    if load is None:
+        return by_barriers(problem)
+    try:
+        return balance_cold(problem, np.array(load) / case.bearings / problem.layout.scales.force)
+    except ConvergenceError:  # the analysis itself will say why, on the grid that is asked for
+        return None
+
+
+def station_density(solution: Solution) -> tuple[float, ...]:
+    """Density of the stations from an end to the middle, with mean 1, from a solution on stations of equal distance."""
+    problem, axial = solution.problem, solution.problem.layout.wall.film.axial
+    z, P, H = axial.whole_z, axial.whole(problem.pressure(solution.x)), axial.whole(problem.film(solution.x))
+    by_pressure = round_the_bearing(second_derivative(P, z))
+    by_film = round_the_bearing((P[..., 1:-1] - 1.0) * second_derivative(np.log(H), z))
+    wanted = np.sqrt(over_mean(by_pressure) + over_mean(by_film))
+    density = np.pad(wanted, 1, mode="edge")
+    for _ in range(SMOOTHINGS):
+        padded = np.pad(density, 1, mode="edge")
+        density = 0.25 * padded[:-2] + 0.5 * padded[1:-1] + 0.25 * padded[2:]
+    density = density + FLOOR * float(np.mean(density))
+    density = 0.5 * (density + density[::-1])
+    half = density[: len(density) // 2 + 1] / float(np.mean(density))
+    return tuple(float(f"{value:.{DIGITS}g}") for value in half)
+
+
+def second_derivative(values: Array, z: Array) -> Array:
+    """Second derivative along the last axis at the inner stations `z`."""
+    slope = np.diff(values, axis=-1) / np.diff(z)
+    return np.asarray(np.diff(slope, axis=-1) / (0.5 * (z[2:] - z[:-2])))
+
+
+def round_the_bearing(values: Array) -> Array:
+    """Root mean square over strips and nodes, (axial,)."""
+    return np.asarray(np.sqrt(np.mean(values**2, axis=(0, 1))))
+
+
+def over_mean(values: Array) -> Array:
+    """Values over their mean; zeros where all vanish."""
+    mean = float(np.mean(values))
+    return values / mean if mean > 0.0 else np.zeros_like(values)
