@@ -58,8 +58,9 @@ class Task:
 
     @property
     def case(self) -> Case:
-        """The package."""
-        return Case.load(HERE / f"paper_n{self.count}.toml").replace(**{"model.kind": self.kind})
+        """The package, in 3-D on equal stations, which are nested on the coarsest grid too."""
+        changes = {"model.kind": self.kind} | ({"model.axial_density": "uniform"} if self.kind == "3d" else {})
+        return Case.load(HERE / f"paper_n{self.count}.toml").replace(**changes)
 
 
 def run(task: Task) -> dict[str, Extrapolation]:

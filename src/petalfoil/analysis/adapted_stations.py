@@ -23,10 +23,11 @@ from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold
 from petalfoil.errors import ConvergenceError
 from petalfoil.system.build import build_problem
+from petalfoil.system.loaded import load_of
 
 Array = NDArray[np.float64]
 
-COARSE_CELLS, COARSE_AXIAL = 24, 16
+FIRST_CELLS, FIRST_AXIAL = 24, 16
 """Grid of the coarse solution: a tenth of the time of the default grid."""
 
 FLOOR = 0.3
@@ -49,8 +50,8 @@ def with_stations(case: Case) -> Case:
         return case
     coarse = case.replace(
         **{
-            "model.cells_per_pitch": min(case.cells_per_pitch, COARSE_CELLS),
-            "model.axial_cells": COARSE_AXIAL,
+            "model.cells_per_pitch": min(case.cells_per_pitch, FIRST_CELLS),
+            "model.axial_cells": FIRST_AXIAL,
             "model.axial_density": UNIFORM,
         }
     )
@@ -67,7 +68,7 @@ def coarse_solution(case: Case) -> Solution | None:
     if load is None:
         return by_barriers(problem)
     try:
-        return balance_cold(problem, np.array(load) / case.bearings / problem.layout.scales.force)
+        return balance_cold(problem, load_of(case, load, problem.layout))
     except ConvergenceError:  # the analysis itself will say why, on the grid that is asked for
         return None
 
