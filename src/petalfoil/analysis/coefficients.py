@@ -192,6 +192,13 @@ EXPORTS = (
         writer="petalfoil.results.export:write_csv",
     ),
     Export(
+        option="xltrc",
+        metavar="FILE.txt",
+        help="Write those of synchronous whirl over speed for XLTRC2: for unbalance, not for stability.",
+        suffixes=(".txt", ".csv"),
+        writer="petalfoil.results.export:write_xltrc",
+    ),
+    Export(
         option="ross",
         metavar="FILE.toml",
         help="Write them for ROSS 3 over speed and whirl frequency: .toml or .json; needs 5 speeds or more.",

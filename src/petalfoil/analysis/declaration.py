@@ -77,6 +77,15 @@ class Export:
     settings: Mapping[str, Argument] = field(default_factory=dict)
 
 
+TABLE = Export(
+    option="table",
+    metavar="FILE.csv",
+    help="Write all results in SI units for other programs: .csv, or .xlsx with fields.",
+    suffixes=(".csv", ".xlsx"),
+    writer="petalfoil.results.spreadsheet:write_table",
+)
+"""File that every analysis can write."""
+
 RESUME = StoredResult(metavar="FILE.nc", help="Go on from the points that --out wrote for the same question.")
 """Option of every series."""
 
@@ -324,7 +333,7 @@ def analysis(
 
     def declared(question: Question) -> Analysis:
         declare(results or {})
-        made = Analysis(question, layouts, exports, excludes or {}, error_bars)
+        made = Analysis(question, layouts, (TABLE, *exports), excludes or {}, error_bars)
         register(made)
         return made
 

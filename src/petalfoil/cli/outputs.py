@@ -91,6 +91,10 @@ class Outputs:
             check_file(plot, "--plot", FIGURE_SUFFIXES)
         for export in exports:
             check_file(export.path, export.option, export.suffixes)
+            if export.path.suffix.lower() == ".xlsx":
+                from petalfoil.results.spreadsheet import need_excel
+
+                need_excel(export.path)
         return cls(as_json=as_json, out=out, plot=plot, exports=exports)
 
     def deliver(self, answer: Answer, dataset: xr.Dataset | None = None, *, stopped: int = 0) -> None:

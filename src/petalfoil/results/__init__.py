@@ -13,7 +13,8 @@ In the order data flows:
 - ``tables``   an answer as tables of text
 - ``dataset``  records to ``xarray.Dataset``: one point, or a curve of points
 - ``motion``   what the histories of a motion tell: positions once per revolution, spectra of the whirl
-- ``export``   coefficients for other programs: CSV
+- ``spreadsheet`` any result for other programs: CSV, Excel
+- ``export``   coefficients for other programs: CSV, XLTRC2
 - ``ross``     coefficients as bearing elements of ROSS
 - ``atomic``   a file is replaced whole or left alone
 - ``seal``     proof that a file is what was written

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from petalfoil.errors import StoreError
+from petalfoil.errors import StoreError, UsageError
 from petalfoil.results.atomic import replacing
 
 if TYPE_CHECKING:
@@ -41,6 +42,39 @@ def write_csv(ds: xr.Dataset, path: str | Path) -> None:
             parts = [point[name].values[f][i, j] for name in ("stiffness", "damping") for i, j in ENTRIES]
             numbers = [where[0], frequency, *where[1:], *parts]
             lines.append(",".join(repr(float(number)) for number in numbers))
+    write_text("\n".join(lines) + "\n", path)
+
+
+def write_xltrc(ds: xr.Dataset, path: str | Path) -> None:
+    """Write synchronous coefficients over speed as XLTRC2 takes them into a table of user coefficients.
+
+    One line for each speed, separated by tabs: speed [rpm], stiffness [N/m], damping [N s/m]. They tell the response to
+    unbalance. They do not tell stability: a rotor in a gas film becomes unstable in a whirl at about half speed.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of ``coefficients``; every speed must be among the whirl frequencies.
+    path : str or Path
+        Where to.
+
+    Raises
+    ------
+    UsageError
+        A speed is not among the whirl frequencies.
+    StoreError
+        The file cannot be written.
+    """
+    units = (("K", "N/m"), ("C", "N-s/m"))
+    heads = [f"{letter}{AXIS[i]}{AXIS[j]} ({unit})" for letter, unit in units for i, j in ENTRIES]
+    lines = ["\t".join(["Speed (rpm)", *heads])]
+    for point in sorted(converged_points(ds), key=lambda one: float(one["speed"])):
+        speed, frequencies = float(point["speed"]), point["whirl_frequency"].values.tolist()
+        if speed not in frequencies:
+            raise UsageError(f"{speed:g} rad/s is not among the whirl frequencies: leave them to their default")
+        own = frequencies.index(speed)
+        parts = [float(point[name].values[own][i, j]) for name in ("stiffness", "damping") for i, j in ENTRIES]
+        lines.append("\t".join(repr(number) for number in (speed * 30.0 / math.pi, *parts)))
     write_text("\n".join(lines) + "\n", path)
 
 

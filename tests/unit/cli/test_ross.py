@@ -107,3 +107,19 @@ def test_a_stored_result_of_another_kind_has_no_table(cli, loads, case, tmp_path
     shown = cli("show", str(out), "--ross", str(tmp_path / "k.toml"))
     assert (shown.exit_code, shown.stdout) == (2, "")
     assert "--ross: a result of balance has nothing for such a file" in shown.stderr
+
+
+def test_xltrc_gets_synchronous_coefficients_over_speed(cli, loads, case, tmp_path: Path) -> None:
+    path = tmp_path / "bearing.txt"
+    assert cli("coefficients", case, *SPEEDS, "--xltrc", str(path)).exit_code == 0
+    head, *lines = [line.split("\t") for line in path.read_text(encoding="utf-8").splitlines()]
+    assert head[:3] == ["Speed (rpm)", "Kxx (N/m)", "Kxy (N/m)"]
+    assert len(lines) == 5
+    assert float(lines[0][0]) == pytest.approx(100.0 * 30.0 / np.pi)
+    assert float(lines[1][2]) == 1e6 * (200.0 + 200.0 + 1.0)
+
+
+def test_xltrc_gets_no_other_whirl(cli, loads, case, tmp_path: Path) -> None:
+    result = cli("coefficients", case, *AXES, "--xltrc", str(tmp_path / "bearing.txt"))
+    assert result.exit_code == 2
+    assert "not among the whirl frequencies" in result.stderr
