@@ -22,6 +22,7 @@ from petalfoil.dynamics.natural_modes import PEAK, Mode, natural_modes
 from petalfoil.dynamics.rotor_motion import Inertia
 from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.equilibrium.run_context import running
+from petalfoil.equilibrium.small_motion import Motion
 from tests.cases import case
 
 Complex = NDArray[np.complex128]
@@ -32,7 +33,7 @@ def plain(grid: tuple[int, int], e: tuple[float, float] = (0.0, 0.0)) -> Case:
     return case("plain_journal", **sizes, **{"operation.eccentricity": e})
 
 
-def at(bearing: Case, load: float = 0.0) -> SmallMotion:
+def at(bearing: Case, load: float = 0.0) -> Motion:
     """Small motions under a load along -y, or at the case's eccentricity."""
     answer = operating_point(bearing, (0.0, -load) if load else None).answer
     return elastic(bearing, answer)
@@ -211,7 +212,7 @@ OPERATORS = {
 def test_modes_are_the_eigenvalues_of_the_whole_operator(name: str) -> None:
     """Each found mode is one, with its participation; and each one in which the rotor takes part is found."""
     bearing, load, masses = OPERATORS[name]
-    motion = at(bearing, load)
+    motion = SmallMotion.about(operating_point(bearing, (0.0, -load)).answer)
     Z = whirl_impedance(motion)
     for mass in masses:
         inertia = mass * bearing.operation.speed**2

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Annotated, Any
 
@@ -13,7 +13,7 @@ from petalfoil.analysis.arguments import TURNING_ONLY, Flag, Load, Name, Quantit
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.declaration import Export, analysis
 from petalfoil.analysis.evaluation import Evaluation
-from petalfoil.analysis.impedance import Array, cycle_impedance, elastic, impedances, sliding_at
+from petalfoil.analysis.impedance import Array, Slopes, cycle_impedance, elastic_and_sliding, impedances
 from petalfoil.analysis.operating_point import OperatingPoint, Vector, at, operating_point
 from petalfoil.analysis.records import effort, failed_record, geometry, position, record_of
 from petalfoil.analysis.runs import Points
@@ -244,10 +244,11 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
     At the case's eccentricity, or under a load where one is given. Those of
     one bearing: of two (rotor.span) each carries half of the load. Force on
     the journal: dF = -(K + i W C) de for a whirl de exp(i W t). Petals with
-    friction stick, or rub in cycles of the --amplitude. Where petals lie on
-    each other along stretches, stiffness is known to several per cent, small
-    damping to half of it: compare two grids. With --tilt the slopes of the
-    journal's axis and the moments about the bearing's centre are added.
+    friction stick, or rub in cycles of the --amplitude. Where contacts of the
+    slopes are at nodes and petals lie on each other along stretches,
+    stiffness is known to several per cent, small damping to half of it. With
+    --tilt the slopes of the journal's axis and the moments about the
+    bearing's centre are added.
 
     Example: petalfoil coefficients case.toml --frequency "4000 rad/s, 8000 rad/s"
 
@@ -333,11 +334,11 @@ def point(case: Case, asked: Asked, load: Vector | None) -> Record:
     speed = case.operation.speed
     found = operating_point(whole_length(case) if asked.tilt else case, load)
     answer = free_to_tilt(case, found.answer) if asked.tilt else held(case, found.answer)
-    motion, sliding = elastic(case, answer), sliding_at(case, answer)
+    motion, sliding = elastic_and_sliding(case, answer)
     if asked.amplitude is None or sliding is None:
         pairs = impedances(motion, asked.frequencies, speed)
     else:
-        free, rubs = replace(motion, sticking=None), (sliding, asked.amplitude)
+        free, rubs = motion.frictionless, (sliding, asked.amplitude)
         pairs = [cycle_impedance(free, frequency, speed, rubs) for frequency in asked.frequencies]
     cost = effort(current_run().seconds)
     return record_of(
@@ -345,6 +346,7 @@ def point(case: Case, asked: Asked, load: Vector | None) -> Record:
         case,
         *state_parts(case, found),
         Amplitudes(asked.amplitude),
+        Slopes.of(motion),
         Outcome(residual=found.answer.residual),
         cost,
         fields=dict(blocks(case, pairs)),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,10 +11,13 @@ from petalfoil.case import Case
 from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
 from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.equilibrium.linear_response import SmallMotion
+from petalfoil.equilibrium.point_contacts import near_nodes
+from petalfoil.equilibrium.point_response import PointMotion
 from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.small_motion import Motion
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
-from petalfoil.system.friction import friction_of
+from petalfoil.system.friction import friction_at_points, friction_of
 
 Array = NDArray[np.float64]
 
@@ -23,20 +28,44 @@ FEW = 3
 """Most frequencies that are solved for one by one: a reduced model costs three factorisations and its basis."""
 
 
+@dataclass(frozen=True)
+class Slopes:
+    """Where the contacts of stiffness and damping are; None where the wall has none."""
+
+    contact_slopes: str | None
+
+    @classmethod
+    def of(cls, motion: Motion) -> Slopes:
+        """Those of small motions."""
+        return cls(motion.contact_slopes if motion.problem.layout.n_wall else None)
+
+
 def sliding_at(case: Case, answer: Solution) -> SlidingContacts | None:
-    """Contacts that slide under load, if petals have friction."""
+    """Contacts at nodes that slide under load, if petals have friction."""
     friction = friction_of(case, answer.problem.layout)
-    return None if friction is None else SlidingContacts.at(friction, answer)
+    return None if friction is None else SlidingContacts.at(friction, answer.lam)
 
 
-def elastic(case: Case, answer: Solution) -> SmallMotion:
-    """Small motions about `answer`, if the bearing deflects there; petals with friction stick.
+def elastic(case: Case, answer: Solution) -> Motion:
+    """Small motions about `answer`, petals with friction stick; see `elastic_and_sliding`."""
+    return elastic_and_sliding(case, answer)[0]
+
+
+def elastic_and_sliding(case: Case, answer: Solution) -> tuple[Motion, SlidingContacts | None]:
+    """Small motions about `answer`, petals with friction stick; and the contacts under load that would slide.
+
+    Where they are found, contacts are points with places of their own; else those of the nodes of the answer.
 
     Raises
     ------
     ConvergenceError
         The pack is bottomed out: the journal cannot move without bending what has no clearance to bend.
     """
+    points, friction = near_nodes(answer), friction_of(case, answer.problem.layout)
+    if points is not None:
+        friction = friction and friction_at_points(friction, points.equations)
+        at_points = None if friction is None else SlidingContacts.at(friction, points.equations.state.points.reaction)
+        return PointMotion(points, at_points and at_points.sticking(points.equations.n)), at_points
     sliding = sliding_at(case, answer)
     motion = SmallMotion.about(answer, None if sliding is None else sliding.sticking(len(answer.x)))
     if not motion.contacts.constraints.determinate:
@@ -45,10 +74,10 @@ def elastic(case: Case, answer: Solution) -> SmallMotion:
             history=current_run().history,
             advice="lower the load, or ask `balance` what part of it solid contact carries",
         )
-    return motion
+    return motion, sliding
 
 
-def impedances(motion: SmallMotion, frequencies: Array, speed: float) -> list[tuple[Array, Array]]:
+def impedances(motion: Motion, frequencies: Array, speed: float) -> list[tuple[Array, Array]]:
     """`K` [N/m] and `C` [N s/m] at whirl frequencies [rad/s], each (2, 2): by a reduced model where it is cheaper."""
     if len(frequencies) <= FEW:
         return [impedance(motion, frequency, speed) for frequency in frequencies]
@@ -58,7 +87,7 @@ def impedances(motion: SmallMotion, frequencies: Array, speed: float) -> list[tu
     return [(one.real, one.imag / (nu * speed)) for one, nu in zip(Z, ratios, strict=True)]
 
 
-def impedance(motion: SmallMotion, frequency: float, speed: float) -> tuple[Array, Array]:
+def impedance(motion: Motion, frequency: float, speed: float) -> tuple[Array, Array]:
     """`K` [N/m] and `C` [N s/m] (E5) at one whirl frequency [rad/s], each (d, d); one factorisation.
 
     At a frequency of zero, `C` is the limit of small ones.
@@ -70,7 +99,7 @@ def impedance(motion: SmallMotion, frequency: float, speed: float) -> tuple[Arra
 
 
 def cycle_impedance(
-    motion: SmallMotion, frequency: float, speed: float, rubs: tuple[SlidingContacts, float]
+    motion: Motion, frequency: float, speed: float, rubs: tuple[SlidingContacts, float]
 ) -> tuple[Array, Array]:
     """The same where contacts rub in a whirl of an amplitude [m]; `motion` is without their friction.
 

@@ -15,6 +15,7 @@ from petalfoil.analysis.campbell import BRANCHES, CRITICAL, Branches
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.coefficients import state_parts
 from petalfoil.analysis.declaration import analysis
+from petalfoil.analysis.impedance import Slopes
 from petalfoil.analysis.operating_point import OperatingPoint, Vector, applied_load, at, operating_point
 from petalfoil.analysis.records import branch, effort, failed_record, record_of
 from petalfoil.analysis.rotor_on_bearings import RotorOnBearings, whole_length
@@ -26,6 +27,7 @@ from petalfoil.case import Case
 from petalfoil.dynamics.critical_mass import Whirl
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.dynamics.natural_modes import Mode
+from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.grid import Grid
@@ -131,11 +133,12 @@ def stability(  # noqa: PLR0913 - the options of the verb
 
     At the case's eccentricity, or under a load where one is given; with
     --speeds or --loads as a table over load and speed. Petals with friction
-    stick, as in the smallest motions. Where petals lie on each other along
-    stretches, frequencies are known to several per cent, small damping to
-    half of it: compare two grids. Of a rotor in two bearings (rotor.span)
-    load and masses are those of the whole rotor, and it may tilt. With
-    --speeds and --mass as a Campbell diagram: natural modes over speed.
+    stick, as in the smallest motions. Where contacts of the slopes are at
+    nodes and petals lie on each other along stretches, frequencies are known
+    to several per cent, small damping to half of it. Of a rotor in two
+    bearings (rotor.span) load and masses are those of the whole rotor, and it
+    may tilt. With --speeds and --mass as a Campbell diagram: natural modes
+    over speed.
 
     Example: petalfoil stability case.toml --load "20 N" --mass "2 kg"
 
@@ -178,7 +181,8 @@ def point(case: Case, load: Vector | None, mass: float | None, progress: Progres
         whirl = rotor.whirl(impedance, speed)
         modes = None if math.isnan(rotor.mass) else rotor.modes(impedance, speed)
         threshold, ended = threshold_speed(rotor, load, whirl)
-        parts = (Rotor(rotor.mass, threshold), *whirl_parts(case, found, whirl, ended), effort(run.seconds))
+        slopes = Slopes.of(impedance.motion)
+        parts = (Rotor(rotor.mass, threshold), *whirl_parts(case, found, whirl, ended), slopes, effort(run.seconds))
         fields, coords = ({}, {}) if modes is None else mode_fields(modes, speed, tilts=case.bearings > 1)
         return record_of("stability", case, *parts, fields=fields, coords=coords)
 
@@ -220,8 +224,9 @@ def _points(
             here = part(progress, row * len(cases) + column, len(loads) * len(cases))
             with running(here, "stability") as run:
                 try:
-                    found, whirl = _followed(line, case, rotor)
-                    parts = (*whirl_parts(case, found, whirl, ""), effort(run.seconds))
+                    found, whirl, impedance = _followed(line, case, rotor)
+                    slopes = Slopes.of(impedance.motion)
+                    parts = (*whirl_parts(case, found, whirl, ""), slopes, effort(run.seconds))
                     record = record_of("stability", case, *parts)
                 except ConvergenceError as failure:
                     line.known = None
@@ -250,10 +255,10 @@ def _campbell(
                     impedance = rotor.impedance(found.answer)
                     whirl = rotor.whirl(impedance, speed)
                 else:
-                    found, whirl = _followed(line, case, rotor)
-                    impedance = rotor.impedance(found.answer)
+                    found, whirl, impedance = _followed(line, case, rotor)
                 fields, _ = mode_fields(rotor.modes(impedance, speed), speed, tilts=case.bearings > 1)
-                parts = (RotorMass(mass), *whirl_parts(case, found, whirl, ""), effort(run.seconds))
+                slopes = Slopes.of(impedance.motion)
+                parts = (RotorMass(mass), *whirl_parts(case, found, whirl, ""), slopes, effort(run.seconds))
                 coords: dict[str, Array] = {"mode": np.arange(1, BRANCHES + 1)}
                 placed = branches.placed(fields, speed)
                 record = record_of("stability", case, *parts, fields=dict(placed), coords=coords)
@@ -264,9 +269,10 @@ def _campbell(
         yield record
 
 
-def _followed(line: SpeedLine, case: Case, rotor: RotorOnBearings) -> tuple[OperatingPoint, Whirl]:
-    """The balance at the case's speed and its critical mass."""
+def _followed(line: SpeedLine, case: Case, rotor: RotorOnBearings) -> tuple[OperatingPoint, Whirl, Impedance]:
+    """The balance at the case's speed, its critical mass, and the impedance about it."""
     answer = line.at(case.operation.speed)
-    whirl = rotor.whirl(rotor.impedance(answer), case.operation.speed)
+    impedance = rotor.impedance(answer)
+    whirl = rotor.whirl(impedance, case.operation.speed)
     known = branch(leading_eigenvalue(answer), case, 1, answer.solution_path)
-    return OperatingPoint(answer, known, (AppliedLoad.of(line.load),)), whirl
+    return OperatingPoint(answer, known, (AppliedLoad.of(line.load),)), whirl, impedance

@@ -13,6 +13,7 @@ import numpy as np
 
 from petalfoil.case.definitions import Case
 from petalfoil.case.measured_shape import row_errors
+from petalfoil.case.sections import ModelKind
 from petalfoil.units.writing import format_quantity
 
 Scalars = Mapping[str, float | int | bool | str]
@@ -202,6 +203,13 @@ def _of_answer(case: Case, scalars: Scalars) -> Iterator[str]:
         yield (
             "solution_path: the foil pack has bottomed out, journal, petals and bushing touch as a solid stack, whose "
             "own stiffness is not modelled; reduce the load, or enlarge the pack's clearance"
+        )
+    at_nodes = "at nodes" in str(scalars.get("contact_slopes", ""))
+    if at_nodes and case.petals is not None and case.model.kind is ModelKind.TWO_D:
+        yield (
+            "contact_slopes: no equilibrium with contact points was found, stiffness and damping are those of contacts "
+            "at nodes: known to several per cent where petals lie on each other along stretches; compare two grids "
+            "(--error)"
         )
 
 

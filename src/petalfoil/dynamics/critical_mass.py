@@ -14,7 +14,7 @@ from scipy.optimize import brentq, linear_sum_assignment
 
 from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.dynamics.rotor_motion import Inertia
-from petalfoil.equilibrium.linear_response import SmallMotion
+from petalfoil.equilibrium.small_motion import Motion
 
 Complex = NDArray[np.complex128]
 
@@ -40,7 +40,7 @@ class Whirl:
     ratio: float
 
 
-def whirl_impedance(motion: SmallMotion) -> Impedance:
+def whirl_impedance(motion: Motion) -> Impedance:
     """The impedance over the whirl ratios of `SCAN`."""
     return Impedance.over(motion, SCAN.tolist())
 
@@ -78,13 +78,13 @@ class Balance:
         return np.asarray(1.0 / np.where(inverse == 0.0, np.finfo(float).tiny, inverse), dtype=np.complex128)
 
 
-def whirls_at_any_mass(motion: SmallMotion) -> bool:
+def whirls_at_any_mass(motion: Motion) -> bool:
     """Whether a rotor of any mass whirls at half the speed: the film is even all round, and no wall deflects.
 
     In the frame that turns at half the speed the two surfaces of such a film move equally fast in opposite directions:
     nothing is dragged into it, and it exerts no force.
     """
-    H = motion.linearized.film.H
+    H = motion.film_thickness
     return motion.problem.layout.n_wall == 0 and bool(np.ptp(H) <= EVEN * np.max(H))
 
 

@@ -17,9 +17,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.linear_response import LinearResponse
 from petalfoil.equilibrium.run_context import current_run
-from petalfoil.equilibrium.solution import Solution
+from petalfoil.equilibrium.small_motion import Response
 from petalfoil.errors import ConvergenceError
 from petalfoil.physics.dry_friction import Friction, equivalent_stiffness
 from petalfoil.system.friction import against_slip, friction_tangent, slips
@@ -63,12 +62,12 @@ class SlidingContacts:
     limit: Array
 
     @classmethod
-    def at(cls, friction: Friction, solution: Solution) -> SlidingContacts:
-        """Those of an equilibrium."""
-        normal = friction.normal(solution.lam)
+    def at(cls, friction: Friction, lam: Array) -> SlidingContacts:
+        """Those of an equilibrium with the reactions `lam` (m,)."""
+        normal = friction.normal(lam)
         kept = np.flatnonzero(normal > 0.0)
         slip, share = friction.slip[kept], friction.reaction_share[kept]
-        stick = friction.in_step(solution.lam).stiffness[kept]
+        stick = friction.in_step(lam).stiffness[kept]
         law = Friction(friction.coefficient, stick, slip, share, friction.width)
         return cls(law, law.coefficient * normal[kept])
 
@@ -89,14 +88,14 @@ class FrictionCycle:
     ----------
     sliding : SlidingContacts
         The contacts.
-    response : LinearResponse
+    response : Response
         Linear response without friction.
     amplitude : float
         Of the journal, over the reference length [1].
     """
 
     sliding: SlidingContacts
-    response: LinearResponse
+    response: Response
     amplitude: float
 
     def force_gradient(self) -> Complex:
@@ -108,7 +107,7 @@ class FrictionCycle:
             Slips and friction did not agree.
         """
         compliance = self.compliance()
-        units = self.response.tangent.units
+        units = self.response.units
         n, columns = len(units), []
         for unit, force in zip(units.T, self.response.force_gradient.T, strict=True):
             slip = self.settled(slips(self.sliding.friction, unit), compliance)
@@ -118,15 +117,13 @@ class FrictionCycle:
 
     def compliance(self) -> Complex:
         """`R`, slips against unit friction forces, (k, k)."""
-        friction, tangent = self.sliding.friction, self.response.tangent.tangent
-        n, count = self.response.motion.problem.layout.n, friction.slip.shape[0]
+        friction, n = self.sliding.friction, len(self.response.units)
+        count = friction.slip.shape[0]
         out = np.zeros((count, count), dtype=complex)
         for first in range(0, count, AT_ONCE):
             unit_forces = np.eye(min(AT_ONCE, count - first), count, first)
-            pushes = [tangent.constraints.gather(against_slip(friction, force, n)) for force in unit_forces]
-            forces = np.column_stack(pushes)
-            moved = [tangent.constraints.spread(column) for column in tangent.factor.solve(forces.astype(complex)).T]
-            out[:, first : first + AT_ONCE] = slips(friction, np.column_stack(moved))
+            forces = np.column_stack([against_slip(friction, force, n) for force in unit_forces])
+            out[:, first : first + AT_ONCE] = slips(friction, self.response.moved(forces))
         return out
 
     def settled(self, free: Complex, compliance: Complex) -> Complex:

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.dynamics.rotor_motion import Inertia
-from petalfoil.equilibrium.linear_response import LinearResponse, SmallMotion
 from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.small_motion import Motion, Response
 from petalfoil.solvers.reduced_model import ReducedModel, reduce_system
 
 Complex = NDArray[np.complex128]
@@ -29,7 +29,7 @@ class Impedance:
 
     Attributes
     ----------
-    motion : SmallMotion
+    motion : Motion
         Small motions about the equilibrium.
     model : ReducedModel
         Their reduced model.
@@ -37,12 +37,12 @@ class Impedance:
         Largest error of the model, over the largest entry of the impedance [1].
     """
 
-    motion: SmallMotion
+    motion: Motion
     model: ReducedModel
     error: float
 
     @classmethod
-    def over(cls, motion: SmallMotion, ratios: Sequence[float]) -> Impedance:
+    def over(cls, motion: Motion, ratios: Sequence[float]) -> Impedance:
         """For whirl `ratios`, checked at the first and the last; one real factorisation and two complex ones."""
         model = reduce_system(motion.moved_system(current_run().probe_solver), [1j * nu for nu in ratios])
         error = max(model_error(motion, model, 1j * nu) for nu in (ratios[0], ratios[-1]))
@@ -81,12 +81,12 @@ class Impedance:
         return np.asarray(-gradient * scales.force / scales.length, dtype=np.complex128)
 
 
-def factorised(motion: SmallMotion, s: complex) -> LinearResponse:
+def factorised(motion: Motion, s: complex) -> Response:
     """The response from the equations themselves; one factorisation."""
     return motion.growing(s, current_run().probe_solver)
 
 
-def model_error(motion: SmallMotion, model: ReducedModel, s: complex) -> float:
+def model_error(motion: Motion, model: ReducedModel, s: complex) -> float:
     """Error of the force gradient at `s` over its largest entry; one factorisation."""
     exact = factorised(motion, s).force_gradient
     return float(np.max(np.abs(model.at(s) - exact)) / np.max(np.abs(exact)))

@@ -10,7 +10,11 @@
 `under_load.py`            the journal's position under a load
 `friction_path.py`         equilibria with friction between petals, one after another
 `parameter_response.py`    how an equilibrium follows a parameter of its case
-`linear_response.py`       the response to a small motion of the journal
+`small_motion.py`          what is asked of the response to a small motion of the journal
+`linear_response.py`       that response, contacts at nodes
 `travelling_contacts.py`   contacts of that response that move between nodes
+`contact_sets.py`          contact points and stretches: from active nodes, and corrected by signs
+`point_contacts.py`        equilibria with contact points as unknowns
+`point_response.py`        the response about these
 =========================  ====================================================================
 """

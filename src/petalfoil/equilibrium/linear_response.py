@@ -13,14 +13,15 @@ adds `i` times its loss to `J` (B5), for frequencies above zero.
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.equilibrium.small_motion import AT_NODES
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.travelling_contacts import TravellingContacts
 from petalfoil.solvers.problem import Border
@@ -66,6 +67,21 @@ class SmallMotion:
         """The derivative of the discrete equations: contacts stay at their nodes."""
         problem = solution.problem
         return cls(problem, problem.linearize(solution.x), TravellingContacts.at_nodes(solution), sticking)
+
+    @property
+    def contact_slopes(self) -> str:
+        """Where its contacts are, for people."""
+        return AT_NODES
+
+    @property
+    def film_thickness(self) -> Array:
+        """Film over the reference length [1]."""
+        return self.linearized.film.H
+
+    @property
+    def frictionless(self) -> Self:
+        """The same, petals sliding freely on each other."""
+        return replace(self, sticking=None)
 
     @cached_property
     def steady(self) -> sp.csc_array:
@@ -168,6 +184,18 @@ class LinearResponse:
     def force_gradient(self) -> Values:
         """`dF/de` of film and contacts on the journal, (n_position, n_position), over unit of force and length [1]."""
         return np.asarray(self.tangent.gradient - self.motion.contacts.gradient)
+
+    @property
+    def units(self) -> Values:
+        """Change of the unknowns by a unit of each coordinate of the journal, (n, n_position)."""
+        return self.tangent.units
+
+    def moved(self, forces: Values) -> Values:
+        """Change of the unknowns by forces on them, the journal held in place; (n, k) each."""
+        constraints, factor = self.tangent.tangent.constraints, self.tangent.tangent.factor
+        pushes = np.column_stack([constraints.gather(force) for force in forces.T])
+        moved = factor.solve(pushes.astype(self.units.dtype))
+        return np.column_stack([constraints.spread(column) for column in moved.T])
 
     def forced(self, force: Values) -> tuple[Values, Values]:
         """Change of the unknowns (n,) and force on the journal held in place (n_position,), by forces (n,) on them."""

@@ -4,6 +4,7 @@
 `pitch.py`       division of one pitch, and the nodes of a petal
 `quadrature.py`  weights that turn nodal values into integrals
 `axial.py`       axial nodes: one station (2-D), half the length or the whole length (3-D)
+`hermite.py`     cubic elements with continuous slopes
 `pack.py`        nodes of all petals; which nodes face the film, the bushing and the neighbouring petal
 `strips.py`      film strips and their pressure unknowns
 ===============  ======================================================================================

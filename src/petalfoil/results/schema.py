@@ -295,6 +295,7 @@ SCALARS: dict[str, Variable] = {
     "converged": _run("", "the state satisfies the equations to tolerance", "converged", DataType.BOOL),
     "status": _run("", "how the run ended", "status", DataType.STR),
     "solution_path": _run("", "how the equilibrium was reached", "solution_path", DataType.STR),
+    "contact_slopes": _run("", "contacts of stiffness and damping", "contact_slopes", DataType.STR),
     "known_equilibria": _run("1", "equilibria known at this position", "N_eq", DataType.INT),
     "jump": _run("", "this point left the branch of the point before", "jump", DataType.BOOL),
     "journal_radius": _geometry("m", "radius of the journal", "R_j"),

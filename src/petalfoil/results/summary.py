@@ -99,6 +99,7 @@ _SHOWN: dict[str, Shown] = {
     "growth_rate": Shown("growth rate", "1/s"),
     "growth_frequency": Shown("growth frequency", "Hz", 0.5 / math.pi),
     "solution_path": Shown("solution path"),
+    "contact_slopes": Shown("contacts of the slopes"),
     "known_equilibria": Shown("known equilibria"),
     "jump": Shown("jump"),
     "cells_per_pitch": Shown("cells per pitch"),

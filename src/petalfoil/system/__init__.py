@@ -7,6 +7,7 @@
 `film_rows.py`         the film's equations
 `coupled.py`           film and wall together, at one speed and journal position
 `foil_pack.py`         the wall alone under a given pressure: a convex programme
+`point_equations.py`   film and petals with contact points as unknowns
 `loaded.py`            the journal's position unknown, a load given
 `friction.py`          friction between petals, and a problem with it
 `time_step.py`         an implicit step in time: the film stores gas

@@ -20,6 +20,7 @@ from petalfoil.case import Case
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.problem import ContactProblem, Linearized
 from petalfoil.system.bearing_layout import BearingLayout
+from petalfoil.system.point_equations import PointEquations
 
 Array = NDArray[np.float64]
 
@@ -210,3 +211,11 @@ def friction_of(case: Case, layout: BearingLayout) -> Friction | None:
         return None
     width, none = surface.friction_width / layout.scales.length, np.zeros(wall.slip.shape[0])
     return Friction(surface.petal_friction, none, wall.slip, wall.reaction_share, width)
+
+
+def friction_at_points(friction: Friction, equations: PointEquations) -> Friction:
+    """The same friction at contact points: a gap for each, on the journal without slip."""
+    points = equations.state.points
+    on_petals = sp.diags_array((points.every_curve >= equations.whole.pack.mesh.count).astype(np.float64))
+    slip = equations.whole.pack.slip(points)
+    return replace(friction, stiffness=np.zeros(slip.shape[0]), slip=slip, reaction_share=sp.csr_array(on_petals))

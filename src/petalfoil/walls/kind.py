@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from petalfoil.case import Case, WallTable
 from petalfoil.walls.base import Wall, WallState
+from petalfoil.walls.element_pack import ElementPack
 
 Array = NDArray[np.float64]
 Fields = dict[str, Array]
@@ -43,6 +44,10 @@ class WallKind(ABC):
     @abstractmethod
     def build(self, case: Case) -> Wall:
         """Discretise the wall of `case` on the grid it asks for."""
+
+    def elements(self, case: Case, wall: Wall) -> ElementPack | None:
+        """The same wall with continuous slopes, where the kind has it: contacts then are points between nodes."""
+        return None
 
     def can(self, capability: Capability) -> bool:
         """Whether the wall has the capability."""

@@ -18,6 +18,7 @@ from petalfoil.physics.forces import node_area
 from petalfoil.physics.shell import PetalShell, bending_stress
 from petalfoil.walls.base import Wall, WallState, axial_grid
 from petalfoil.walls.elasticity import Elasticity
+from petalfoil.walls.element_pack import ElementPack, element_pack
 from petalfoil.walls.kind import Capability, Fields, Scalars, WallKind
 
 Array = NDArray[np.float64]
@@ -100,6 +101,14 @@ class PetalWall(WallKind):
             slip=slip,
             reaction_share=reaction_share,
         )
+
+    def elements(self, case: Case, wall: Wall) -> ElementPack | None:
+        """The pack in Hermite elements, where it is 2-D."""
+        if not wall.film.axial.is_2d:
+            return None
+        (petals, package), mesh = petals_of(case), build_mesh(case)
+        arm = 0.5 * petals.total_thickness / package.metric_radius
+        return element_pack(build_shell(case, mesh), mesh, wall, arm)
 
     def fields(self, case: Case, wall: Wall, state: WallState) -> Fields:
         """Deflection, radii, contact pressures and bending stress."""

@@ -1,0 +1,264 @@
+"""Which contact points and stretches there are: from active nodes, and corrected by the signs of reactions and gaps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.physics.gap_curves import ContactPoints, Facing, sampled
+from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
+from petalfoil.system.point_equations import PointEquations, PointLayout
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+MEETING = 0.03
+"""Travelling points this near to each other become one, in elements."""
+
+SHORT_STRETCH = 0.25
+"""Runs of active nodes up to this long are one point, in elements."""
+
+SPACING = 1.0
+"""Spacing of the points of a stretch, in elements: as many as the elements have values."""
+
+BRIDGED = 1.6
+"""Travelling points up to this far apart, in elements, are the ends of a stretch if the gap between them is below
+zero."""
+
+SAMPLES = 8
+"""Gaps looked at per element."""
+
+OVERLAP = 2e-4
+"""A gap this far below zero gains a contact, in units of the reference film (2 nm)."""
+
+SAG = 1.0 / 96.0
+"""A gap within a stretch may be below zero by this part of the compliance times the nearest reaction: that reaction is
+spread over the stretch, and a clamped beam sags by 1/384 of it under an even load, by 1/192 under a single one."""
+
+PULL = 2e-5
+"""A reaction that pulls is zero if without it the gap would open by less than this between contacts an element away, in
+units of the reference film (0.2 nm): what is smaller decides nothing."""
+
+SPANS = 1.0 / 24.0
+"""Deflection of a clamped beam of two elements under a load in its middle, over the compliance of one."""
+
+
+@dataclass
+class Contact:
+    """A travelling point, and the points of the stretch that begins there.
+
+    Attributes
+    ----------
+    curve, position, reaction
+        Of the travelling point.
+    inner : list of float
+        Reactions of the points up to the next travelling point; none where no stretch begins.
+    """
+
+    curve: int
+    position: float
+    reaction: float
+    inner: list[float]
+
+
+def listed(points: ContactPoints) -> list[Contact]:
+    """The contacts one by one, in their order."""
+    parts = np.split(points.reaction, points.ends[1:]) if len(points.curve) else []
+    return [
+        Contact(int(curve), float(position), float(part[0]), part[1:].tolist())
+        for curve, position, part in zip(points.curve, points.position, parts, strict=True)
+    ]
+
+
+def packed(contacts: Iterable[Contact]) -> ContactPoints:
+    """The same in arrays, in their order along the curves."""
+    rows = sorted(contacts, key=lambda contact: (contact.curve, contact.position))
+    reactions = [[contact.reaction, *contact.inner] for contact in rows]
+    return ContactPoints(
+        np.array([contact.curve for contact in rows], dtype=np.intp),
+        np.array([contact.position for contact in rows], dtype=np.float64),
+        np.array([len(contact.inner) for contact in rows], dtype=np.intp),
+        np.array([value for part in reactions for value in part], dtype=np.float64),
+    )
+
+
+def merged(points: ContactPoints) -> ContactPoints:
+    """Travelling points that meet become one, at the centroid of their reactions."""
+    if not np.any((np.diff(points.curve) == 0) & (np.diff(points.position) < MEETING)):
+        return points
+    kept: list[Contact] = []
+    for contact in listed(points):
+        last = kept[-1] if kept else None
+        if last is None or last.curve != contact.curve or contact.position - last.position >= MEETING:
+            kept.append(contact)
+            continue
+        both = last.reaction + sum(last.inner) + contact.reaction
+        share = float(np.clip(contact.reaction / both, 0.0, 1.0)) if both > 0.0 else 0.5
+        last.position += share * (contact.position - last.position)
+        last.reaction, last.inner = both, contact.inner
+    return packed(kept)
+
+
+# ------------------------------------------------------------------------------------------ corrected by signs
+
+
+def revised(equations: PointEquations) -> ContactPoints | None:
+    """Other contacts, where the signs ask for them; None where they are right."""
+    points = equations.state.points
+    inward = np.where(points.position > 0.0, 1.0, -1.0) * equations.gaps.slope[points.ends]
+    released = (equations.travels == 0.0) & (inward > RESIDUAL_TOLERANCE) & (equations.idle[points.ends] == 0.0)
+    fresh = overlapping(equations)
+    pulling = points.reaction < -least_pull(equations)
+    if not released.any() and not fresh and not pulling.any():
+        return None
+    contacts = listed(replace(points, reaction=np.where(pulling, points.reaction, np.maximum(points.reaction, 0.0))))
+    for k in np.flatnonzero(released):
+        contacts[k].position += 2.0 * MEETING if contacts[k].position == 0.0 else -2.0 * MEETING
+    return packed(without_pulling(with_fresh(contacts, fresh)))
+
+
+def least_pull(equations: PointEquations) -> Array:
+    """Pull of each point below which it is zero, (j,)."""
+    points, curves = equations.state.points, equations.whole.curves
+    element, _ = curves.locate(points.every_curve, points.every_position)
+    return np.asarray(PULL / (SPANS * curves.compliance[element]))
+
+
+def without_pulling(contacts: list[Contact]) -> list[Contact]:
+    """Without reactions that pull: a stretch ends before them, and begins again behind them."""
+    left: list[Contact] = []
+    for k, contact in enumerate(contacts):
+        ahead = contacts[k + 1].position if contact.inner else contact.position
+        values = [contact.reaction, *contact.inner]
+        places = np.linspace(contact.position, ahead, len(values) + 1)[:-1] if contact.inner else [contact.position]
+        # the stretch that this one continues, if the point before still bears
+        begin: Contact | None = None
+        for place, value in zip(places, values, strict=True):
+            if value < 0.0:
+                begin = None
+            elif begin is None:
+                begin = Contact(contact.curve, float(place), value, [])
+                left.append(begin)
+            else:
+                begin.inner.append(value)
+        if begin is not None and begin.inner and not reaches(contacts, k):
+            closed(left, begin, float(places[-1]))
+    return [settled(left, k) for k in range(len(left))]
+
+
+def reaches(contacts: list[Contact], k: int) -> bool:
+    """Whether the stretch that begins at contact `k` still has an end."""
+    return k + 1 < len(contacts) and contacts[k + 1].reaction >= 0.0
+
+
+def closed(left: list[Contact], begin: Contact, place: float) -> None:
+    """End the stretch of `begin` at its last point."""
+    left.append(Contact(begin.curve, place, begin.inner.pop(), []))
+
+
+def settled(left: list[Contact], k: int) -> Contact:
+    """A contact whose stretch has lost its end has none."""
+    here, ahead = left[k], left[k + 1] if k + 1 < len(left) else None
+    if here.inner and (ahead is None or ahead.curve != here.curve):
+        return Contact(here.curve, here.position, here.reaction, [])
+    return here
+
+
+def with_fresh(contacts: list[Contact], fresh: list[tuple[int, float, int]]) -> list[Contact]:
+    """With contacts at further places: one more point in a stretch, a stretch between two points, or a point."""
+    new: list[Contact] = []
+    for curve, place, before in fresh:
+        if before >= 0 and bridges(contacts, before):
+            contacts[before].inner.append(0.0)
+        else:
+            new.append(Contact(curve, place, 0.0, []))
+    return [*contacts, *new] if not new else sorted([*contacts, *new], key=lambda one: (one.curve, one.position))
+
+
+def bridges(contacts: list[Contact], k: int) -> bool:
+    """Whether a point between contact `k` and the next makes a stretch of them, or belongs to the one there is."""
+    if k + 1 >= len(contacts) or contacts[k + 1].curve != contacts[k].curve:
+        return False
+    return bool(contacts[k].inner) or contacts[k + 1].position - contacts[k].position <= 2.0 * BRIDGED
+
+
+def overlapping(equations: PointEquations) -> list[tuple[int, float, int]]:
+    """Lowest places where gaps are below zero: curve, position, number of the travelling point before it or -1."""
+    points, curves = equations.state.points, equations.whole.curves
+    curve, position, gap = sampled(curves, points, equations.nodal_gaps, SAMPLES)
+    gap = gap + sagging(equations, curve, position)
+    bushing = np.array([facing is Facing.BUSHING for facing in curves.facing])
+    low = (gap < -OVERLAP) & ~(bushing[curve] & (position < 0.5))
+    before = np.concatenate([[np.inf], np.where(np.diff(curve) == 0, gap[:-1], np.inf)])
+    after = np.concatenate([np.where(np.diff(curve) == 0, gap[1:], np.inf), [np.inf]])
+    found: dict[tuple[int, int], tuple[int, float, int]] = {}
+    for k in np.flatnonzero(low & (gap <= before) & (gap <= after)):
+        on, at = int(curve[k]), float(position[k])
+        near = np.abs(points.every_position[points.every_curve == on] - at)
+        if len(near) and near.min() < 0.5 / SAMPLES:
+            continue
+        mine = np.flatnonzero((points.curve == on) & (points.position < at))
+        last = int(mine[-1]) if len(mine) else -1
+        found.setdefault((last, on) if last >= 0 else (-1 - int(k), on), (on, at, last))
+    return list(found.values())
+
+
+def sagging(equations: PointEquations, curve: Index, position: Array) -> Array:
+    """How far gaps may be below zero because reactions of a stretch are spread between its points; (sample,)."""
+    points, curves = equations.state.points, equations.whole.curves
+    out = np.zeros(len(curve))
+    element, _ = curves.locate(curve, position)
+    for k in np.flatnonzero(points.inner):
+        inside = (curve == points.curve[k]) & (position > points.position[k]) & (position < points.position[k + 1])
+        own = points.reaction[points.ends[k] : points.ends[k + 1] + 1]
+        out[inside] = SAG * curves.compliance[element[inside]] * float(np.max(own[1:-1], initial=0.0))
+    return out
+
+
+# ------------------------------------------------------------------------------------------ from contacts at nodes
+
+
+def from_active_nodes(whole: PointLayout, lam: Array, active: Mask) -> ContactPoints:
+    """Contact points from the reactions (m,) of active nodes (m,)."""
+    contacts: list[Contact] = []
+    phi, n = whole.pack.elements.phi, whole.pack.mesh.count
+    for kind, nodes in enumerate(whole.pack.nodes.values()):
+        lines = whole.layout.wall.contacts.lines[kind]
+        place = np.interp(lines.phi, phi, np.arange(len(phi), dtype=np.float64)) - nodes.start
+        for line in range(n):
+            number = lines.number[line]
+            for run in runs(active[number]):
+                contacts += of_run(kind * n + line, place[run], lam[number[run]], place[-1])
+    return packed(contacts)
+
+
+def runs(active: Mask) -> list[Index]:
+    """Runs of neighbouring active nodes."""
+    at = np.flatnonzero(active)
+    return np.split(at, np.flatnonzero(np.diff(at) > 1) + 1) if len(at) else []
+
+
+def of_run(curve: int, place: Array, lam: Array, end: float) -> list[Contact]:
+    """A point where a run of active nodes is short, else a stretch with a point at each end."""
+    total = float(lam.sum())
+    if len(place) <= 2 or place[-1] - place[0] <= SHORT_STRETCH:
+        at = float(place @ lam / total) if total > 0.0 else float(place.mean())
+        at_end = place[-1] == end and lam[-1] >= 0.5 * total
+        return [Contact(curve, end if at_end else at, total, [])]
+    first, last = centroid(place[:2], lam[:2]), end if place[-1] == end else centroid(place[-2:], lam[-2:])
+    count = max(round((last - first) / SPACING) - 1, 0)
+    spread = float(lam[2:-2].sum()) / max(count, 1)
+    return [
+        Contact(curve, first, float(lam[:2].sum()), [spread] * count),
+        Contact(curve, last, float(lam[-2:].sum()), []),
+    ]
+
+
+def centroid(place: Array, lam: Array) -> float:
+    """Centroid of two reactions."""
+    total = float(lam.sum())
+    return float(place @ lam / total) if total > 0.0 else float(place.mean())

@@ -1,0 +1,144 @@
+"""Linear response of film and petals about an equilibrium with contact points (model, question 6).
+
+The unknowns are those of the equilibrium, reactions and places of the points included. With its tangent `J`, what the
+film stores `S`, and the derivatives `F_e`, `S_e` by the journal's position,
+
+    (J + s S) dX = -(F_e + s S_e) de ,     dF = R dX                                                   (E16)
+
+in `exp(s tau)`. Contacts stay closed while their points travel. Petals that stick to each other add to `J`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from petalfoil.equilibrium.point_contacts import PointContacts
+from petalfoil.equilibrium.small_motion import AT_POINTS
+from petalfoil.solvers.reduced_model import MovedSystem
+from petalfoil.solvers.sparse_lu import LinearSolver
+from petalfoil.system.coupled import CoupledProblem
+
+Array = NDArray[np.float64]
+Values = NDArray[Any]
+"""Real at zero frequency, complex otherwise."""
+
+
+@dataclass(frozen=True)
+class PointMotion:
+    """The system about one equilibrium with contact points, whatever the frequency.
+
+    Attributes
+    ----------
+    contacts : PointContacts
+        The equilibrium.
+    sticking : (n, n) sparse or None
+        What friction between petals that stick adds to the tangent (E11).
+    """
+
+    contacts: PointContacts
+    sticking: sp.csc_array | None = None
+
+    @property
+    def problem(self) -> CoupledProblem:
+        """Speed and position."""
+        return self.contacts.equations.problem
+
+    @property
+    def contact_slopes(self) -> str:
+        """Where its contacts are, for people."""
+        return AT_POINTS
+
+    @property
+    def film_thickness(self) -> Array:
+        """Film over the reference length [1]."""
+        return self.contacts.equations.film_thickness
+
+    @property
+    def loss(self) -> None:
+        """Petals lose energy by friction alone."""
+        return
+
+    @property
+    def frictionless(self) -> Self:
+        """The same, petals sliding freely on each other."""
+        return replace(self, sticking=None)
+
+    @cached_property
+    def steady(self) -> sp.csc_array:
+        """`J`, friction included."""
+        tangent = self.contacts.equations.steady
+        return tangent if self.sticking is None else sp.csc_array(tangent + self.sticking)
+
+    @cached_property
+    def forcing(self) -> tuple[Array, Array]:
+        """`F_e` and `S_e`, (n, n_position) each."""
+        steady = self.contacts.equations.forcing()
+        return steady, self.contacts.equations.forcing(1.0) - steady
+
+    def moved_system(self, solver: LinearSolver) -> MovedSystem:
+        """The same for a reduced model; one factorisation."""
+        rows = self.contacts.equations.force_rows
+        none = np.zeros((len(rows), len(rows)))
+        return MovedSystem(
+            solve=solver.factor(self.steady).solve,
+            S=self.contacts.equations.stored,
+            forcing=self.forcing,
+            force=(rows.T, np.zeros_like(rows.T)),
+            direct=(none, none),
+        )
+
+    def respond(self, nu: float, solver: LinearSolver) -> PointResponse:
+        """The response at whirl ratio `nu`; one factorisation."""
+        return self.growing(1j * nu, solver)
+
+    def growing(self, s: complex, solver: LinearSolver) -> PointResponse:
+        """The response to a motion in `exp(s tau)`; one factorisation."""
+        steady, stored = self.forcing
+        matrix = sp.csc_array(self.steady + s * self.contacts.equations.stored) if s else self.steady
+        solve = solver.factor(matrix).solve
+        return PointResponse(self, solve, solve(-(steady + s * stored) if s else -steady))
+
+
+@dataclass(frozen=True)
+class PointResponse:
+    """Response to the journal's displacement at one state and frequency.
+
+    Attributes
+    ----------
+    motion : PointMotion
+        The state.
+    solve : callable
+        Unknowns from right sides, (n,) or (n, k).
+    units : (n, n_position) array
+        Change of the unknowns by a unit of each coordinate of the journal.
+    """
+
+    motion: PointMotion
+    solve: Callable[[Values], Values]
+    units: Values
+
+    @property
+    def force_gradient(self) -> Values:
+        """`dF/de` of film and contacts on the journal, (n_position, n_position), over unit of force and length [1]."""
+        return np.asarray(self.motion.contacts.equations.force_rows @ self.units)
+
+    def moved(self, forces: Values) -> Values:
+        """Change of the unknowns by forces on them, the journal held in place; (n, k) each."""
+        return self.solve(forces.astype(self.units.dtype))
+
+    def forced(self, force: Values) -> tuple[Values, Values]:
+        """Change of the unknowns (n,) and force on the journal held in place (n_position,), by forces (n,) on them."""
+        change = self.solve(force)
+        return change, np.asarray(self.motion.contacts.equations.force_rows @ change)
+
+    def slope(self) -> Values:
+        """Derivative of `dF/de` by `s` [1]: with the same factor, from (E16) differentiated."""
+        rates = self.motion.contacts.equations.stored @ self.units + self.motion.forcing[1]
+        return np.asarray(self.motion.contacts.equations.force_rows @ self.solve(-rates))

@@ -1,0 +1,79 @@
+"""What is asked of the linear response of film, wall and contacts to a small motion of the journal.
+
+Two kinds answer: contacts at nodes (`linear_response.py`) and contact points with places of their own
+(`point_response.py`).
+"""
+
+from __future__ import annotations
+
+from typing import Any, Protocol, Self
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from petalfoil.solvers.reduced_model import MovedSystem
+from petalfoil.solvers.sparse_lu import LinearSolver
+from petalfoil.system.coupled import CoupledProblem
+
+Array = NDArray[np.float64]
+Values = NDArray[Any]
+"""Real at zero frequency, complex otherwise."""
+
+AT_POINTS = "contact points on petals with continuous slopes"
+AT_NODES = "contacts at nodes, isolated ones moved between them"
+"""Where the contacts of a linear response are."""
+
+
+class Response(Protocol):
+    """Response to the journal's displacement at one state and frequency."""
+
+    @property
+    def units(self) -> Values:
+        """Change of the unknowns, deflections first, by a unit of each coordinate of the journal, (n, n_position)."""
+
+    @property
+    def force_gradient(self) -> Values:
+        """`dF/de` of film and contacts on the journal, (n_position, n_position), over unit of force and length [1]."""
+
+    def moved(self, forces: Values) -> Values:
+        """Change of the unknowns by forces on them, the journal held in place; (n, k) each."""
+
+    def forced(self, force: Values) -> tuple[Values, Values]:
+        """Change of the unknowns (n,) and force on the journal held in place (n_position,), by forces (n,) on them."""
+
+    def slope(self) -> Values:
+        """Derivative of `dF/de` by `s` [1]."""
+
+
+class Motion(Protocol):
+    """The system about one equilibrium, whatever the frequency."""
+
+    @property
+    def problem(self) -> CoupledProblem:
+        """Speed and position."""
+
+    @property
+    def contact_slopes(self) -> str:
+        """Where its contacts are, for people."""
+
+    @property
+    def film_thickness(self) -> Array:
+        """Film over the reference length [1]."""
+
+    @property
+    def loss(self) -> sp.csc_array | None:
+        """What a wall that loses energy adds to the tangent, times `i`, (n, n)."""
+
+    @property
+    def frictionless(self) -> Self:
+        """The same, petals sliding freely on each other."""
+
+    def moved_system(self, solver: LinearSolver) -> MovedSystem:
+        """The same for a reduced model; one factorisation."""
+
+    def respond(self, nu: float, solver: LinearSolver) -> Response:
+        """The response at whirl ratio `nu`; one factorisation."""
+
+    def growing(self, s: complex, solver: LinearSolver) -> Response:
+        """The response to a motion in `exp(s tau)`; one factorisation."""

@@ -1,0 +1,48 @@
+"""Cubic Hermite elements: values and slopes at nodes make a curve with a continuous slope.
+
+On an element of length `h`, with `t` in [0, 1], a curve is
+
+    w(t) = H_0(t) w_0 + H_1(t) h w_0' + H_2(t) w_1 + H_3(t) h w_1'                                     (S5)
+
+so that `dw/dt = h w'`. The element of fourth order in the value of a bent beam, third in its slope.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+COEFFICIENTS = np.array([[1, 0, -3, 2], [0, 1, -2, 1], [0, 0, 3, -2], [0, 0, -1, 1]], dtype=np.float64)
+"""Row `k` holds the powers of `t` in `H_k`."""
+
+
+def basis(t: Array, derivative: int = 0) -> Array:
+    """`H_0 ... H_3` at places `t` (k,) of an element, or a derivative of them by `t`; (k, 4)."""
+    coefficients = COEFFICIENTS
+    for _ in range(derivative):
+        coefficients = coefficients[:, 1:] * np.arange(1, coefficients.shape[1])
+    powers = np.asarray(t)[:, None] ** np.arange(coefficients.shape[1])
+    return np.asarray(powers @ coefficients.T)
+
+
+def rows(element: Index, t: Array, length: Array, derivative: int = 0) -> sp.csr_array:
+    """Weights of nodal (value, slope) pairs in a curve at places `t` (k,) of elements (k,); (k, 2 nodes).
+
+    `length` (n_element,) is that of the elements; element `e` lies between the nodes `e` and `e + 1`. A derivative is
+    by `t`.
+    """
+    weights = basis(t, derivative)
+    weights[:, 1::2] *= length[element][:, None]
+    columns = 2 * element[:, None] + np.arange(4)
+    where = (np.repeat(np.arange(len(element)), 4), columns.ravel())
+    return sp.csr_array((weights.ravel(), where), shape=(len(element), 2 * len(length) + 2))
+
+
+def located(angle: Array, nodes: Array) -> tuple[Index, Array]:
+    """Element and place in it of each `angle` between the first and the last of the `nodes`."""
+    element = np.clip(np.searchsorted(nodes, angle, side="right") - 1, 0, len(nodes) - 2)
+    return element, (angle - nodes[element]) / np.diff(nodes)[element]

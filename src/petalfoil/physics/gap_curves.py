@@ -1,0 +1,212 @@
+"""Gaps between petals of Hermite elements as curves, and contact points that lie anywhere on them (K10)-(K12).
+
+A curve is the gap of a petal toward the journal, the bushing or the petal below, along the angle where they face each
+other. On every element it is a cubic, linear in the unknowns `w` of the petals and in the journal's displacement `e`:
+
+    p(t) = sum_k H_k(t) (rest + by_e e + by_w w)_k                                                     (K10)
+
+A point load bends its own element further (S7), so that with reactions `lam_d` at `t_d` on one element the gap is
+
+    p(t) + sum_d C b(t, t_d) lam_d ,   C the point compliance, that of both petals between petals        (K11)
+
+At a contact point this gap vanishes, and so does its slope, except at the end of a curve.                (K12)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from petalfoil.mesh import hermite
+from petalfoil.physics.petal_elements import (
+    clamped_beam,
+    clamped_beam_bend,
+    clamped_beam_slope,
+    clamped_beam_twist,
+)
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+
+class Facing(Enum):
+    """What a petal faces along a curve."""
+
+    JOURNAL = "journal"
+    BUSHING = "bushing"
+    PETAL = "petal"
+
+
+@dataclass(frozen=True)
+class GapCurves:
+    """All curves. Positions on a curve are counted in elements from its first node.
+
+    Attributes
+    ----------
+    facing : tuple of Facing
+        What each curve is about.
+    first : (n_curve,) int array
+        First node of each curve; its elements follow, and the next curve has nodes of its own.
+    elements : (n_curve,) int array
+        Elements of each curve.
+    angle : (n_node - 1,) array
+        Angle of the element behind each node, 1 between curves [rad].
+    compliance : (n_node - 1,) array
+        `C` of each element, in units of gap over reaction.
+    rest : (2 n_node,) array
+        Nodal (value, slope) of the gaps of undeflected petals round a centred journal.
+    by_e : (2 n_node, d) array
+        Their derivative by the journal's displacement.
+    by_w : (2 n_node, n) sparse
+        Their derivative by the unknowns of the petals.
+    """
+
+    facing: tuple[Facing, ...]
+    first: Index
+    elements: Index
+    angle: Array
+    compliance: Array
+    rest: Array
+    by_e: Array
+    by_w: sp.csr_array
+
+    def locate(self, curve: Index, position: Array) -> tuple[Index, Array]:
+        """Element and place in it of positions on curves."""
+        inside = np.clip(np.floor(position).astype(np.intp), 0, self.elements[curve] - 1)
+        return self.first[curve] + inside, position - inside
+
+    def rows(self, curve: Index, position: Array, derivative: int = 0) -> sp.csr_array:
+        """Weights of the nodal gaps in the gap at positions on curves, or in a derivative by the place in the element.
+
+        Shape (k, 2 n_node).
+        """
+        return hermite.rows(*self.locate(curve, position), self.angle, derivative)
+
+    def nodal(self, w: Array, e: Array) -> Array:
+        """Nodal (value, slope) of all gaps, (2 n_node,)."""
+        gaps: Array = self.rest + self.by_e @ e + self.by_w @ w
+        return gaps
+
+
+@dataclass(frozen=True)
+class ContactPoints:
+    """Contacts on gap curves: points that travel, and stretches along which two petals lie on each other.
+
+    A stretch has a travelling point at each end, and in between points that divide it evenly. These move with the ends,
+    so that an end never passes one of them.
+
+    Attributes
+    ----------
+    curve, position : (k,) array
+        Curve and position of each travelling point, in their order along the curves.
+    inner : (k,) int array
+        Points between each travelling point and the next one: a stretch; zero elsewhere.
+    reaction : (j,) array
+        Reactions of all points, those of a stretch between its ends.
+    """
+
+    curve: Index
+    position: Array
+    inner: Index
+    reaction: Array
+
+    @classmethod
+    def none(cls) -> ContactPoints:
+        """No contact."""
+        place, value = np.zeros(0, dtype=np.intp), np.zeros(0)
+        return cls(place, value, place, value)
+
+    @cached_property
+    def ends(self) -> Index:
+        """Numbers of the travelling points among all points, (k,)."""
+        return np.arange(len(self.curve)) + np.cumsum(self.inner) - self.inner
+
+    @cached_property
+    def spread(self) -> Array:
+        """Derivative of all positions by those of the travelling points, (j, k)."""
+        k = len(self.curve)
+        before = np.repeat(np.arange(k), self.inner + 1)
+        part = (np.arange(len(before)) - self.ends[before]) / (self.inner[before] + 1.0)
+        out = np.zeros((len(before), k))
+        out[np.arange(len(before)), before] = 1.0 - part
+        shared = np.flatnonzero(part > 0.0)
+        out[shared, before[shared] + 1] = part[shared]
+        return out
+
+    @cached_property
+    def every_curve(self) -> Index:
+        """Curve of every point, (j,)."""
+        return np.repeat(self.curve, self.inner + 1)
+
+    @cached_property
+    def every_position(self) -> Array:
+        """Position of every point, (j,)."""
+        out: Array = self.spread @ self.position
+        return out
+
+
+@dataclass(frozen=True)
+class PointGaps:
+    """Gap and its derivatives at all contact points, reactions' own bending included (K11).
+
+    Attributes
+    ----------
+    value, slope : (j,) array
+        `p` and its derivative by the place in the element.
+    bend, bend_slope : (j, j) array
+        Derivatives of values and slopes by the reactions.
+    value_by_place, slope_by_place : (j, j) array
+        Derivatives of values and slopes by the places.
+    """
+
+    value: Array
+    slope: Array
+    bend: Array
+    bend_slope: Array
+    value_by_place: Array
+    slope_by_place: Array
+
+
+def point_gaps(curves: GapCurves, points: ContactPoints, nodal: Array) -> PointGaps:
+    """Gaps at all points, from nodal gaps (2 n_node,)."""
+    element, t = curves.locate(points.every_curve, points.every_position)
+    lam, C = points.reaction, curves.compliance[element]
+    value, slope, curvature = (hermite.rows(element, t, curves.angle, k) @ nodal for k in range(3))
+    same = element[:, None] == element[None, :]
+    s, load = np.broadcast_to(t[:, None], same.shape), np.broadcast_to(t[None, :], same.shape)
+    b, b_s, b_ss, b_st = (
+        np.where(same, C[:, None] * part(s, load), 0.0)
+        for part in (clamped_beam, clamped_beam_slope, clamped_beam_bend, clamped_beam_twist)
+    )
+    own = np.eye(len(t), dtype=bool)
+    others = np.where(own, 0.0, lam[None, :])
+    # by the place of another point: b(t, t_d) changes with t_d, and b is symmetric
+    value_by_place, slope_by_place = b_s.T * others, b_st * others
+    # by its own place: d b(t, t)/dt = 2 b_s(t, t), d b_s(t, t)/dt = u (1 - 2 t)^2 - u^2, u = t (1 - t)
+    u = t * (1.0 - t)
+    np.fill_diagonal(value_by_place, slope + (b_s * others).sum(axis=1) + 2.0 * np.diag(b_s) * lam)
+    turn = C * lam * (u * (1.0 - 2.0 * t) ** 2 - u**2)
+    np.fill_diagonal(slope_by_place, curvature + (b_ss * others).sum(axis=1) + turn)
+    return PointGaps(value + b @ lam, slope + b_s @ lam, b, b_s, value_by_place, slope_by_place)
+
+
+def sampled(curves: GapCurves, points: ContactPoints, nodal: Array, per_element: int) -> tuple[Index, Array, Array]:
+    """Gaps along all curves, reactions' own bending included: curve, position, gap of every sample, curve by curve."""
+    count = curves.elements * per_element
+    curve = np.repeat(np.arange(len(count)), count)
+    number = np.arange(len(curve)) - np.repeat(np.cumsum(count) - count, count)
+    position = (number + 0.5) / per_element
+    element, t = curves.locate(curve, position)
+    gap = hermite.rows(element, t, curves.angle) @ nodal
+    at_element, at = curves.locate(points.every_curve, points.every_position)
+    first = np.searchsorted(element, at_element)
+    for start, place, lam, C in zip(first, at, points.reaction, curves.compliance[at_element], strict=True):
+        own = slice(start, start + per_element)
+        gap[own] += C * lam * clamped_beam(t[own], np.full(per_element, place))
+    return curve, position, gap

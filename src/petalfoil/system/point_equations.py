@@ -1,0 +1,280 @@
+"""Film and petals of Hermite elements with contact points as unknowns.
+
+Unknowns are the petals' `w`, the film's pressures `P`, the reactions `lam` of all contact points and the places `t` of
+those that travel. With `n`, `n'` the derivative of gap and slope at a point by `w`,
+
+    wall     K w - A (P - 1) - n^T lam = 0                                                             (C6)
+    film     net outflow of each cell = 0 ,  h = contact film thickness + gap toward the journal
+    points   p + sum_d C b lam_d = 0                                                                   (C7)
+    ends     p' + sum_d C b_s lam_d = 0    at points that travel, not at the end of a curve             (C8)
+
+Without stretches these are the stationary points of `E(w) - sum lam p - 1/2 sum lam lam_d C b` beside the film. The
+tangent has exact second derivatives, `-lam n'` among them: it is that of the equilibrium itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from petalfoil.physics.gap_curves import ContactPoints, GapCurves, PointGaps, point_gaps
+from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
+from petalfoil.system.bearing_layout import BearingLayout
+from petalfoil.system.coupled import WALL_ROUNDING, CoupledProblem
+from petalfoil.system.film_rows import FilmState
+from petalfoil.walls.element_pack import ElementPack
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class PointLayout:
+    """What stays the same while speed, position and contacts change, over the units of the problem.
+
+    Attributes
+    ----------
+    pack : ElementPack
+        The petals.
+    layout : BearingLayout
+        Film, units and forces, those of the nodal pack.
+    """
+
+    pack: ElementPack
+    layout: BearingLayout
+
+    @property
+    def n_wall(self) -> int:
+        """Unknowns of the petals."""
+        return self.pack.n_unknown
+
+    @property
+    def n_film(self) -> int:
+        """Pressures."""
+        return self.layout.wall.film.n_unknown
+
+    @cached_property
+    def stiffness(self) -> sp.csr_array:
+        """`K` [1]."""
+        return sp.csr_array(self.pack.stiffness * (self.layout.scales.length / self.layout.scales.force))
+
+    @cached_property
+    def stiffness_size(self) -> sp.csr_array:
+        """Magnitudes of the entries of `K` [1]."""
+        return sp.csr_array(abs(self.stiffness))
+
+    @cached_property
+    def curves(self) -> GapCurves:
+        """The gap curves [1]."""
+        scales, curves = self.layout.scales, self.pack.curves
+        return replace(
+            curves,
+            rest=curves.rest / scales.length,
+            compliance=curves.compliance * (scales.force / scales.length),
+        )
+
+    @property
+    def journal_entries(self) -> int:
+        """Nodal (value, slope) of the gaps toward the journal, which come first."""
+        return 2 * int(self.curves.first[self.pack.mesh.count])
+
+    @cached_property
+    def film_by_w(self) -> sp.csr_array:
+        """Derivative of the film thickness by the petals' unknowns, (film nodes, n_wall)."""
+        return sp.csr_array(self.pack.film_rows @ self.curves.by_w)
+
+    @cached_property
+    def film_by_e(self) -> Array:
+        """Derivative of the film thickness by the journal's displacement, (film nodes, d)."""
+        return np.asarray(self.pack.film_rows @ self.curves.by_e)
+
+    @cached_property
+    def push(self) -> sp.csr_array:
+        """`A`: generalised forces on the petals from the pressure unknowns, (n_wall, n_film)."""
+        wall, scales = self.layout.wall, self.layout.scales
+        unknown = wall.film.unknown.ravel()
+        nodes = np.flatnonzero(unknown >= 0)
+        area = wall.load_area.ravel()[nodes] * scales.pressure / scales.force
+        shape = (len(unknown), self.n_film)
+        nodal = sp.coo_array((area, (nodes, unknown[nodes])), shape=shape).tocsr()
+        return sp.csr_array(self.film_by_w.T @ nodal)
+
+
+@dataclass(frozen=True)
+class PointState:
+    """Unknowns: deflections `w` (n_wall,), pressures `P` (n_film,), contacts."""
+
+    w: Array
+    P: Array
+    points: ContactPoints
+
+
+@dataclass(frozen=True)
+class PointEquations:
+    """The equations at one state.
+
+    Attributes
+    ----------
+    whole : PointLayout
+        What stays the same.
+    problem : CoupledProblem
+        Speed and journal position.
+    state : PointState
+        The unknowns.
+    """
+
+    whole: PointLayout
+    problem: CoupledProblem
+    state: PointState
+
+    @property
+    def n(self) -> int:
+        """All unknowns."""
+        points = self.state.points
+        return self.whole.n_wall + self.whole.n_film + len(points.reaction) + len(points.position)
+
+    @cached_property
+    def nodal_gaps(self) -> Array:
+        """Nodal (value, slope) of all gap curves."""
+        gaps = self.whole.curves.nodal(self.state.w, self.problem.displacement)
+        gaps[: self.whole.journal_entries : 2] -= self.problem.closing
+        return gaps
+
+    @cached_property
+    def film_thickness(self) -> Array:
+        """At every film node, (strip, node, axial) [1]."""
+        layout = self.whole.layout
+        H: Array = self.whole.pack.floor / layout.scales.length + self.whole.pack.film_rows @ self.nodal_gaps
+        return H.reshape(layout.wall.film.shape)
+
+    @cached_property
+    def film(self) -> FilmState:
+        """The film's rows."""
+        layout = self.whole.layout
+        pressure = layout.balance.nodal_pressure(self.state.P)
+        return layout.film_rows.at(pressure, self.film_thickness, self.problem.bearing_number)
+
+    @cached_property
+    def gaps(self) -> PointGaps:
+        """Gaps at the travelling points."""
+        return point_gaps(self.whole.curves, self.state.points, self.nodal_gaps)
+
+    @cached_property
+    def travels(self) -> Array:
+        """1 for a travelling point, 0 where it is at an end of its curve, (k,)."""
+        points = self.state.points
+        inside = (points.position > 0.0) & (points.position < self.whole.curves.elements[points.curve])
+        return inside.astype(np.float64)
+
+    @cached_property
+    def idle(self) -> Array:
+        """1 for a point at a root, which bears on the bushing without a reaction; (j,)."""
+        points, n = self.state.points, self.whole.pack.mesh.count
+        on_bushing = (points.every_curve >= n) & (points.every_curve < 2 * n)
+        return (on_bushing & (points.every_position <= 0.0)).astype(np.float64)
+
+    @cached_property
+    def _weights(self) -> tuple[sp.csr_array, sp.csr_array]:
+        """Weights of the nodal gaps in the gaps at all points, and in their slopes."""
+        at = self.state.points.every_curve, self.state.points.every_position
+        return self.whole.curves.rows(*at), self.whole.curves.rows(*at, 1)
+
+    @cached_property
+    def by_w(self) -> tuple[sp.csr_array, sp.csr_array]:
+        """`n`, `n'` of all points."""
+        value, slope = (sp.csr_array(weights @ self.whole.curves.by_w) for weights in self._weights)
+        return value, slope
+
+    @cached_property
+    def by_e(self) -> tuple[Array, Array]:
+        """The same by the journal's displacement."""
+        value, slope = (np.asarray(weights @ self.whole.curves.by_e) for weights in self._weights)
+        return value, slope
+
+    @cached_property
+    def residual(self) -> tuple[Array, Array, Array, Array]:
+        """Wall, film, gaps of all points, slopes of the travelling ones."""
+        (n, _), points, state, gaps = self.by_w, self.state.points, self.state, self.gaps
+        elastic = self.whole.stiffness @ state.w - self.whole.push @ (state.P - 1.0)
+        wall = elastic - n.T @ points.reaction
+        value = np.where(self.idle > 0.0, points.reaction, gaps.value)
+        return wall, self.film.residual, value, gaps.slope[points.ends] * self.travels
+
+    @property
+    def scaled(self) -> Array:
+        """Residuals over their row scales: ambient pressure on a node, the flows of a cell, the reference film.
+
+        A row of the wall is not compared with less than the rounding of its `K w`.
+        """
+        wall, film, value, slope = self.residual
+        rounding = WALL_ROUNDING * np.finfo(float).eps * (self.whole.stiffness_size @ np.abs(self.state.w))
+        scale = np.maximum(1.0, rounding / RESIDUAL_TOLERANCE)
+        return np.concatenate([wall / scale, film / self.film.row_scale, value, slope])
+
+    @cached_property
+    def steady(self) -> sp.csc_array:
+        """The tangent."""
+        (n, n_slope), gaps, points = self.by_w, self.gaps, self.state.points
+        acts, free, ends = 1.0 - self.idle, self.travels, points.ends
+        travel = points.spread * free  # positions of all points by those that travel
+        moved = (n_slope.T @ sp.diags_array(points.reaction)) @ travel
+        by_P, by_w = self._film_tangent
+        bend = acts[:, None] * gaps.bend + np.diag(self.idle)
+        bend_slope = free[:, None] * gaps.bend_slope[ends]
+        value_by_place = acts[:, None] * (gaps.value_by_place @ travel)
+        slope_by_place = free[:, None] * (gaps.slope_by_place[ends] @ travel) + np.diag(1.0 - free)
+        acting, travelling = sp.diags_array(acts) @ n, sp.diags_array(free) @ n_slope[ends]
+        blocks = [
+            [self.whole.stiffness, -self.whole.push, -n.T, sp.csr_array(-moved)],
+            [by_w, by_P, None, None],
+            [acting, None, sp.csr_array(bend), sp.csr_array(value_by_place)],
+            [travelling, None, sp.csr_array(bend_slope), sp.csr_array(slope_by_place)],
+        ]
+        return sp.csc_array(sp.block_array(blocks, format="csc"))
+
+    @cached_property
+    def _film_tangent(self) -> tuple[sp.csr_array, sp.csr_array]:
+        """Derivatives of the film's rows by pressures and by the petals' unknowns."""
+        rows, (by_P, by_H) = self.whole.layout.film_rows, self.film.tangent
+        n, nodes = self.whole.n_film, self.film_thickness.size
+        pressure = sp.coo_array((by_P, (rows.by_pressure.rows, rows.by_pressure.cols)), shape=(n, n))
+        film = sp.coo_array((by_H, (rows.by_film.rows, rows.by_film.cols)), shape=(n, nodes))
+        return pressure.tocsr(), sp.csr_array(film.tocsr() @ self.whole.film_by_w)
+
+    @cached_property
+    def stored(self) -> sp.csc_array:
+        """Derivative of what the film stores, in the place of the tangent."""
+        rows, (by_P, by_H) = self.whole.layout.film_rows, self.film.storage
+        n, nodes, n_wall = self.whole.n_film, self.film_thickness.size, self.whole.n_wall
+        at_P, at_H = rows.storage_by_pressure, rows.storage_by_film
+        pressure = sp.coo_array((by_P, (at_P.rows, at_P.cols)), shape=(n, n)).tocsr()
+        film = sp.coo_array((by_H, (at_H.rows, at_H.cols)), shape=(n, nodes)).tocsr() @ self.whole.film_by_w
+        extra = self.steady.shape[0] - n_wall - n
+        top, bottom = sp.csr_array((n_wall, self.steady.shape[0])), sp.csr_array((extra, self.steady.shape[0]))
+        middle = sp.hstack([film, pressure, sp.csr_array((n, extra))])
+        return sp.csc_array(sp.vstack([top, middle, bottom], format="csc"))
+
+    def forcing(self, rate: float = 0.0) -> Array:
+        """Derivative of the rows by the journal's displacement, with `rate` times that of what the film stores."""
+        moved = [self.film.moved(column, rate) for column in self.whole.film_by_e.T]
+        none = np.zeros((self.whole.n_wall, len(moved)))
+        value, slope = self.by_e
+        slopes = slope[self.state.points.ends] * self.travels[:, None]
+        return np.concatenate([none, np.column_stack(moved), value, slopes])
+
+    @property
+    def force_rows(self) -> Array:
+        """Derivative of the force on the journal by the unknowns, (d, n)."""
+        (value, slope), points = self.by_e, self.state.points
+        film = self.whole.layout.border.row_derivative
+        travel = (slope.T * points.reaction) @ (points.spread * self.travels)
+        return np.concatenate([np.zeros((len(film), self.whole.n_wall)), film, value.T, travel], axis=1)
+
+    @property
+    def force(self) -> Array:
+        """Force of film and contacts on the journal over the unit of force, (d,)."""
+        film: Array = self.whole.layout.border.row_derivative @ (self.state.P - 1.0)
+        return film + self.by_e[0].T @ self.state.points.reaction
