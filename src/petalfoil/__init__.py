@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from petalfoil.analysis.balance import balance
+    from petalfoil.analysis.capacity import capacity
     from petalfoil.analysis.check import check
     from petalfoil.analysis.coefficients import coefficients
     from petalfoil.analysis.converge import converge
@@ -56,6 +57,7 @@ __all__ = [
     "UsageError",
     "__version__",
     "balance",
+    "capacity",
     "check",
     "coefficients",
     "converge",

@@ -32,6 +32,7 @@ VERBS: dict[str, Callable[[Case], xr.Dataset]] = {
     "curve": lambda of: petalfoil.curve(of, "0 um : 10 um : 2"),
     "static": petalfoil.static,
     "balance": lambda of: petalfoil.balance(of, "30 N"),
+    "capacity": lambda of: petalfoil.capacity(of, contact_fraction=0.2),
     "liftoff": lambda of: petalfoil.liftoff(of, "30 N"),
     "runup": lambda of: petalfoil.runup(of, "30 N", to="20000 rpm", points=3),
     "coefficients": lambda of: petalfoil.coefficients(of, load="30 N"),

@@ -32,7 +32,6 @@ WORDS = {
     "(smallest|thinnest|least) films?( thickness)?": "minimum film thickness",
     "(largest|highest) (absolute )?pressures?": "peak pressure",
     "(largest|highest) (bending )?stress": "maximum bending stress",
-    "load capacity(?! at)": "bearing force; load capacity is the largest load at a stated minimum film thickness",
     "(gas )?content(?![-=:])": "gas inventory; stopping criterion",
     "defects?( of)?": "mass-balance error, energy-balance error, residual",
     # foil pack
@@ -91,7 +90,6 @@ WORDS = {
 
 NAMES = {
     "Moving|Course|Slid|Rubbed|Rubbing": "TimeState, SpeedSchedule, FrictionState, FrictionStep",
-    "load_capacity": "bearing_force",
     "film_floor": "contact_film_thickness",
     "(min|smallest)_film(?!_)": "min_film_thickness",
     "contact_share": "contact_fraction",

@@ -17,6 +17,7 @@ NAMES = {
     "UsageError",
     "__version__",
     "balance",
+    "capacity",
     "check",
     "coefficients",
     "converge",

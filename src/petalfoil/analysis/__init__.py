@@ -5,6 +5,7 @@
 `curve.py`             the load characteristic along a displacement
 `static.py`            the foil pack at zero speed: preload, static characteristic, starting torque
 `balance.py`           the position of the journal under a load
+`capacity.py`          the largest load within limits of film, contact or stress
 `liftoff.py`           speeds of lift-off and touchdown
 `runup.py`             from rest to speed under a load, and back
 `coefficients.py`      stiffness and damping over whirl frequency
@@ -34,6 +35,7 @@ What they share:
 `displacements.py`     the journal displaced point by point
 `hysteresis.py`        the same at rest, with friction between petals
 `speeds.py`            a load followed over speed
+`load_limit.py`        the largest load in one direction that keeps to limits
 `crossings.py`         speeds at which the contact fraction crosses a limit
 `variation.py`         a case at values of one of its parameters
 `derivatives.py`       exact derivatives of the results of an equilibrium

@@ -31,6 +31,7 @@ from petalfoil.solvers.contact_newton import ActiveContacts, contact_newton
 from petalfoil.solvers.interior_point import InteriorOptions, InteriorStep, contact_set, interior_point
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, Border, ContactProblem, PrimalDualPoint
 from petalfoil.solvers.sparse_lu import SingularMatrixError
+from petalfoil.solvers.tangent import BorderedTangent
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.damped import DampedBalance
 from petalfoil.system.loaded import LoadedProblem, load_scale
@@ -52,6 +53,9 @@ BALANCING = ContactOptions(steps=1, rounded=1e-6)
 
 WARM = replace(BALANCING, tangents=8)
 """Active contacts that lead on from a neighbour do so in a few steps."""
+
+RELOADED = replace(WARM, borrow=True, steps=8)
+"""The tangent of a neighbour at the same speed serves as long as its steps contract."""
 
 MOST_FILMS = 10.0
 """Longest move of the journal in a step, in reference films (100 um for petals, ten clearances for a plain bore)."""
@@ -171,6 +175,20 @@ def from_neighbour(known: Solution, problem: CoupledProblem, load: Array) -> Sol
         return None
 
 
+def reloaded(known: Solution, load: Array) -> Solution | None:
+    """The balance of a load near that of `known`, at its speed: the last tangent foretells the state and serves on.
+
+    None where it does not lead there.
+    """
+    if known.contacts is None or known.load is None:
+        return None
+    tangent = known.contacts.tangent
+    de = np.linalg.solve(tangent.gradient, known.load - load)
+    moved = known.problem.at(displacement=known.problem.displacement + de)
+    x = predicted(known, moved, tangent.units @ de)
+    return newton(moved, (x, known.active), load, RELOADED, tangent)
+
+
 # ---------------------------------------------------------------------------------------------- Newton
 
 
@@ -214,12 +232,16 @@ class LoadedEquations(ContactEquations):
 
 
 def newton(
-    problem: CoupledProblem, start: tuple[Array, Mask], load: Array, options: ContactOptions = BALANCING
+    problem: CoupledProblem,
+    start: tuple[Array, Mask],
+    load: Array,
+    options: ContactOptions = BALANCING,
+    tangent: BorderedTangent | None = None,
 ) -> Solution | None:
     """Newton from unknowns and active contacts, and from the position of `problem`; None if it fails."""
     (x, active), run = start, current_run()
     begin = x, problem.displacement, active
-    contacts, outcome = contact_newton(LoadedEquations(problem, load), begin, run.film_solver, options)
+    contacts, outcome = contact_newton(LoadedEquations(problem, load), begin, run.film_solver, options, tangent)
     run.note("contacts", outcome=outcome.value)
     return None if contacts is None else polished(problem, contacts, load)
 

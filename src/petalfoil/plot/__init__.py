@@ -14,6 +14,7 @@ In the order data flows:
 - ``assembly``     the foil pack as it is assembled (`package`)
 - ``characteristics`` against displacement: `curve`, `load_characteristic`, `static`, `hysteresis`
 - ``speed_sweeps`` over the speed under a load (`runup`), lift-off over the load (`liftoff`)
+- ``load_capacity`` load capacity over speed and direction (`capacity`)
 - ``dynamic_coefficients`` stiffness and damping over whirl frequency (`coefficients`)
 - ``stability_maps`` stability of a rigid rotor (`stability`)
 - ``campbell_diagram`` its natural modes over speed (`campbell`)
@@ -53,6 +54,7 @@ if TYPE_CHECKING:
     from petalfoil.plot.grid_convergence import convergence
     from petalfoil.plot.histories import orbit_energy, orbit_histories
     from petalfoil.plot.journal_orbit import orbit, orbit_path
+    from petalfoil.plot.load_capacity import capacity
     from petalfoil.plot.section import cross_section, operating_point
     from petalfoil.plot.spectra import orbit_spectrum, orbit_waterfall
     from petalfoil.plot.speed_sweeps import liftoff, runup
@@ -73,6 +75,7 @@ _MODULES = {
     "generic": ("quantities",),
     "grid_convergence": ("convergence",),
     "histories": ("orbit_energy", "orbit_histories"),
+    "load_capacity": ("capacity",),
     "journal_orbit": ("orbit", "orbit_path"),
     "figure_registry": ("register", "summary"),
     "section": ("cross_section", "operating_point"),
@@ -89,6 +92,7 @@ _HOME = {name: module for module, names in _MODULES.items() for name in names}
 __all__ = [
     "animate",
     "campbell",
+    "capacity",
     "coefficients",
     "convergence",
     "cross_section",

@@ -20,6 +20,7 @@ FIGURES: dict[str, Draw | str] = {
     "static": "characteristics:static",
     "converge": "grid_convergence:convergence",
     "runup": "speed_sweeps:runup",
+    "capacity": "load_capacity:capacity",
     "liftoff": "speed_sweeps:liftoff",
     "coefficients": "dynamic_coefficients:coefficients",
     "stability": "stability_maps:stability",

@@ -111,6 +111,9 @@ COORDINATES: dict[str, Variable] = {
     "column": Variable(
         ("column",), "1", "direction of the displacement: 0 along x, 1 along y", "j", DataType.INT, Role.GEOMETRY
     ),
+    "load_orientation": Variable(
+        ("load_orientation",), "rad", "direction of the load, from x toward y", "psi", role=Role.GEOMETRY
+    ),
     "mode": Variable(("mode",), "1", "number of the natural mode, by frequency", "k", DataType.INT, Role.GEOMETRY),
     "load": Variable(("load",), "N", "size of the load on the journal", "|load|", role=Role.GEOMETRY),
     "z": Variable(("z",), "m", "distance along the bearing axis", "z", role=Role.GEOMETRY),

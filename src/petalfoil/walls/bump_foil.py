@@ -74,6 +74,10 @@ class BumpFoilWall(WallKind):
             loss=sp.csr_array(foil.loss_factor * springs) if foil.loss_factor else None,
         )
 
+    def pitch(self, case: Case) -> float | None:
+        """The whole circle where a top foil that bends has its seam [rad]."""
+        return 2.0 * np.pi if bump_foil_of(case).top_foil_thickness else None
+
     def loses_energy(self, case: Case) -> bool:
         """By its loss factor."""
         return bump_foil_of(case).loss_factor > 0.0

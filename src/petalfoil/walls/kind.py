@@ -40,6 +40,8 @@ class WallKind(ABC):
     """Definition of the case table that asks for this wall; None for the wall of a case without one."""
     capabilities: ClassVar[frozenset[Capability]] = frozenset()
     """What it can do beyond bounding a film."""
+    has_stress: ClassVar[bool] = False
+    """Whether `scalars` has a `max_bending_stress`."""
 
     @abstractmethod
     def build(self, case: Case) -> Wall:
@@ -62,6 +64,10 @@ class WallKind(ABC):
         if len(touching):
             fields["journal_contact_pressure"] = whole(touching.reshape(wall.film.shape))
         return fields
+
+    def pitch(self, case: Case) -> float | None:
+        """Angle by which the wall repeats round the shaft [rad]; None where it is the same all round."""
+        return None
 
     def loses_energy(self, case: Case) -> bool:
         """Whether its stiffness has an imaginary part, whatever the frequency (B5)."""

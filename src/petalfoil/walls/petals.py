@@ -70,6 +70,7 @@ class PetalWall(WallKind):
     name: ClassVar[str] = "petal"
     table: ClassVar[type[Petals]] = Petals
     capabilities: ClassVar[frozenset[Capability]] = frozenset(Capability)
+    has_stress: ClassVar[bool] = True
 
     def build(self, case: Case) -> Wall:
         """Discretise the pack of `case`."""
@@ -109,6 +110,10 @@ class PetalWall(WallKind):
         (petals, package), mesh = petals_of(case), build_mesh(case)
         arm = 0.5 * petals.total_thickness / package.metric_radius
         return element_pack(build_shell(case, mesh), mesh, wall, arm)
+
+    def pitch(self, case: Case) -> float | None:
+        """Angle between neighbouring roots [rad]."""
+        return petals_of(case)[0].pitch
 
     def fields(self, case: Case, wall: Wall, state: WallState) -> Fields:
         """Deflection, radii, contact pressures and bending stress."""

@@ -1,0 +1,346 @@
+"""`capacity`: the largest load carried within stated limits, over speed and over its direction to the petals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Annotated
+
+import numpy as np
+
+from petalfoil.analysis.arguments import Direction, Quantity, Speed, Speeds, Whole
+from petalfoil.analysis.balance import carrier
+from petalfoil.analysis.classic_method import newton_only
+from petalfoil.analysis.declaration import analysis
+from petalfoil.analysis.fields import all_fields
+from petalfoil.analysis.load_limit import Capacity, Limits, LoadRay, largest_load
+from petalfoil.analysis.operating_point import at
+from petalfoil.analysis.records import asked_position, effort, geometry, position, record_of
+from petalfoil.analysis.runs import Points
+from petalfoil.analysis.session import part
+from petalfoil.case import Case
+from petalfoil.equilibrium.run_context import Progress, current_run, running
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.errors import ConvergenceError, UsageError
+from petalfoil.results.layout import ArrayTable, Point, Series, at_speed
+from petalfoil.results.parts import Outcome
+from petalfoil.results.record import Array, Record
+from petalfoil.results.schema import DataType, Role, Shown, Variable
+from petalfoil.walls import wall_kind
+
+DOWN = -math.pi / 2.0
+"""Direction of a weight, along -y [rad]."""
+FIRST = 0.1
+"""First load that is looked at, over ambient pressure times length times diameter."""
+LBF, INCH, KRPM = 4.4482216152605, 0.0254, 1e3 * math.pi / 30.0
+"""Pound-force [N], inch [m] and a thousand revolutions per minute [rad/s]."""
+
+MinFilm = Annotated[
+    float | None,
+    Quantity(
+        unit="m",
+        option="min-film",
+        help='Least minimum film thickness: "5 um"; above the contact film thickness.',
+        above=0.0,
+    ),
+]
+Fraction = Annotated[
+    float | None,
+    Quantity(unit="1", metavar="FRACTION", help="Largest contact fraction.", above=0.0, below=1.0),
+]
+Stress = Annotated[
+    float | None, Quantity(unit="Pa", help='Largest maximum bending stress of the petals: "800 MPa".', above=0.0)
+]
+Orientations = Annotated[
+    int,
+    Whole(metavar="COUNT", help="Directions of the load over one pitch, from --direction on.", at_least=1),
+]
+
+_GIVEN = {"role": Role.GIVEN}
+RESULTS = {
+    "load_capacity": Variable((), "N", "largest load within the limits", "W_c", shown=Shown("load capacity", "N")),
+    "load_direction": Variable(
+        (), "rad", "direction of the load, from x toward y", "psi", role=Role.GIVEN,
+        shown=Shown("load direction", "deg", 180.0 / math.pi),
+    ),
+    "load_coefficient": Variable(
+        (), "N s m-3", "load capacity over L D^2 omega", "C_W", shown=Shown("load coefficient", "N s/m³")
+    ),
+    "load_coefficient_imperial": Variable(
+        (), "lbf in-3 krpm-1", "load capacity over L D^2 omega, in the unit of the literature", "D_W",
+        shown=Shown("load coefficient", "lbf/(in³ krpm)"),
+    ),
+    "limited_by": Variable(
+        (), "", "result that reaches its limit at the load capacity", "", DataType.STR, shown=Shown("limited by")
+    ),
+    "min_film_limit": Variable((), "m", "least minimum film thickness allowed", "h_lim", role=Role.GIVEN),
+    "contact_fraction_allowed": Variable((), "1", "largest contact fraction allowed", "s_lim", role=Role.GIVEN),
+    "stress_limit": Variable((), "Pa", "largest maximum bending stress allowed", "sigma_lim", role=Role.GIVEN),
+    "least_load_capacity": Variable(
+        (), "N", "least load capacity of all directions looked at", "min W_c", shown=Shown("least load capacity", "N")
+    ),
+    "least_capacity_direction": Variable(
+        (), "rad", "direction of the least load capacity", "psi_min",
+        shown=Shown("  in direction", "deg", 180.0 / math.pi),
+    ),
+    "capacity_over_direction": Variable(
+        ("load_orientation",), "N", "load capacity in each direction; nan where none was found", "W_c"
+    ),
+}  # fmt: skip
+COLUMNS = {
+    "speed": "speed",
+    "load_capacity": "load\ncapacity",
+    "limited_by": "limited\nby",
+    "load_coefficient_imperial": "load\ncoefficient",
+    "min_film_thickness": "min. film",
+    "contact_fraction": "contact\nfraction",
+    "least_load_capacity": "least",
+    "least_capacity_direction": "in\ndirection",
+}
+TABLE = ArrayTable(
+    dim="load_orientation",
+    columns={
+        "direction\ndeg": lambda record, k: math.degrees(float(record.coords["load_orientation"][k])),
+        "load capacity\nN": lambda record, k: float(record.fields["capacity_over_direction"][k]),
+    },
+)
+OVER = ("load_orientation", "capacity_over_direction")
+
+
+@dataclass(frozen=True)
+class Asked:
+    """Limits, and the directions of the load [rad]."""
+
+    limits: Limits
+    directions: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Given:
+    """What was asked: direction of the load and limits."""
+
+    load_direction: float
+    min_film_limit: float | None
+    contact_fraction_allowed: float | None
+    stress_limit: float | None
+
+    @classmethod
+    def of(cls, asked: Asked) -> Given:
+        """Limits and the first direction."""
+        limits = asked.limits
+        return cls(
+            load_direction=float(asked.directions[0]),
+            min_film_limit=limits.min_film_thickness,
+            contact_fraction_allowed=limits.contact_fraction,
+            stress_limit=limits.max_stress,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Carried:
+    """The largest load, its coefficient, and what limits it."""
+
+    load_capacity: float
+    load_coefficient: float
+    load_coefficient_imperial: float
+    limited_by: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Least:
+    """The direction of least capacity."""
+
+    least_load_capacity: float
+    least_capacity_direction: float
+
+
+@dataclass
+class Search:
+    """The searches of one bearing, each from the state of the one before.
+
+    Attributes
+    ----------
+    case : Case
+        The bearing.
+    asked : Asked
+        Limits and directions.
+    known : dict
+        State at the capacity by direction, of the speed before.
+    loads : dict
+        The last two speeds [rad/s] and capacities [N] by direction.
+    """
+
+    case: Case
+    asked: Asked
+    known: dict[float, Solution] = field(default_factory=dict)
+    loads: dict[float, list[tuple[float, float]]] = field(default_factory=dict)
+
+    def at(self, speed: float) -> list[Capacity]:
+        """The capacity in each direction at a speed [rad/s]."""
+        here, found = at(self.case, speed, (0.0, 0.0)), []
+        beside: tuple[float, Solution] | None = None
+        for angle in map(float, self.asked.directions):
+            start = (self.guess(angle, speed), self.known[angle]) if angle in self.known else beside
+            direction = (round(math.cos(angle), 15), round(math.sin(angle), 15))
+            ray = LoadRay(here, direction, self.asked.limits, None if start is None else start[1])
+            capacity = largest_load(ray, FIRST * ray.unit if start is None else start[0])
+            if capacity.at is not None:
+                beside = capacity.at.size, capacity.at.found.answer
+                self.known[angle] = beside[1]
+                self.loads[angle] = [*self.loads.get(angle, [])[-1:], (speed, beside[0])]
+            found.append(capacity)
+        return found
+
+    def guess(self, angle: float, speed: float) -> float:
+        """The capacity at a speed by the power law of the last two [N]."""
+        *earlier, (before, size) = self.loads[angle]
+        exponent = 0.0
+        if earlier and earlier[0][0] != before:
+            exponent = math.log(size / earlier[0][1]) / math.log(before / earlier[0][0])
+        return size * float((speed / before) ** min(max(exponent, -2.0), 2.0))
+
+
+@analysis(
+    Point(lists=OVER, table=TABLE),
+    Series(columns=COLUMNS, lists=OVER, at=at_speed),
+    excludes={"speed": ("speeds",)},
+    results=RESULTS,
+)
+def capacity(  # noqa: PLR0913 - the options of the verb
+    case: Case,
+    *,
+    min_film_thickness: MinFilm = None,
+    contact_fraction: Fraction = None,
+    max_stress: Stress = None,
+    direction: Direction = DOWN,
+    orientations: Orientations = 1,
+    speed: Speed = None,
+    speeds: Speeds = None,
+    progress: Progress | None = None,
+) -> Record | Points:
+    """Find the largest load that is carried within limits, over speed and direction.
+
+    The load grows until the film is as thin as --min-film, or solid contact
+    carries --contact-fraction, or the petals are bent by --max-stress: the
+    first limit that is reached counts. The load coefficient is the load over
+    L D^2 times speed, the rule of thumb of the literature. --orientations
+    turns the load over one pitch and names the direction of least capacity.
+
+    Example: petalfoil capacity case.toml --min-film "5 um" --speeds "20000 rpm : 60000 rpm : 5"
+
+    Raises
+    ------
+    UsageError
+        No limit is given, or one that says nothing of this bearing; the shaft does not turn.
+    """
+    newton_only(case)
+    limits = Limits(min_film_thickness=min_film_thickness, contact_fraction=contact_fraction, max_stress=max_stress)
+    check_limits(case, limits)
+    turn = list(speeds) if speeds is not None else [at(case, speed).operation.speed]
+    if not all(omega > 0.0 for omega in turn):
+        raise UsageError("a load capacity needs a turning shaft: give speeds above zero")
+    search = Search(case, Asked(limits, directions_of(case, direction, orientations)))
+    if speeds is None:
+        with running(progress, "capacity") as run:
+            record = point(search, turn[0])
+            if not record.converged:
+                raise ConvergenceError(str(record.scalars["status"]), history=run.history, advice=ADVICE)
+            return record
+    return Points(partial(_points, search, turn, progress), len(turn))
+
+
+ADVICE = "allow a thinner film or more contact, or raise the speed; `balance` tells the state under a small load"
+
+
+def check_limits(case: Case, limits: Limits) -> None:
+    """Refuse limits that say nothing.
+
+    Raises
+    ------
+    UsageError
+        There is none; the film cannot be thinner than the one asked for; nothing is bent.
+    """
+    if limits == Limits():
+        raise UsageError("a load capacity needs a limit: give --min-film, --contact-fraction or --max-stress")
+    floor = case.surface.contact_film_thickness
+    if limits.min_film_thickness is not None and limits.min_film_thickness <= floor:
+        raise UsageError(
+            f"a film of {1e6 * limits.min_film_thickness:g} um is no limit: surfaces touch at "
+            f"surface.contact_film_thickness, {1e6 * floor:g} um; give a thicker one, or --contact-fraction"
+        )
+    if limits.max_stress is not None and not wall_kind(case).has_stress:
+        raise UsageError(f"a stress is no limit here: the {wall_kind(case).name} wall of this case reports none")
+
+
+def directions_of(case: Case, first: float, count: int) -> Array:
+    """Directions of the load over one pitch, (count,) [rad].
+
+    Raises
+    ------
+    UsageError
+        The wall is the same all round.
+    """
+    pitch = wall_kind(case).pitch(case)
+    if pitch is None and count > 1:
+        raise UsageError(
+            f"the {wall_kind(case).name} wall of this case is the same in all directions: leave --orientations out"
+        )
+    return np.asarray(first + (pitch or 0.0) * np.arange(count) / count)
+
+
+def _points(
+    search: Search, speeds: list[float], progress: Progress | None, done: Sequence[Record] = ()
+) -> Iterator[Record]:
+    for number, speed in enumerate(speeds[len(done) :], len(done)):
+        with running(part(progress, number, len(speeds)), f"capacity at {speed:.6g} rad/s"):
+            record = point(search, speed)
+        yield record
+
+
+def point(search: Search, speed: float) -> Record:
+    """The record of one speed."""
+    asked, found = search.asked, search.at(speed)
+    here, first = at(search.case, speed, (0.0, 0.0)), found[0]
+    over = np.array([math.nan if one.at is None else one.at.size for one in found])
+    parts: tuple[object, ...] = (*geometry(here), Given.of(asked), effort(current_run().seconds))
+    if len(found) > 1 and not np.all(np.isnan(over)):
+        least = int(np.nanargmin(over))
+        parts += (
+            Least(least_load_capacity=float(over[least]), least_capacity_direction=float(asked.directions[least])),
+        )
+    if first.at is None:
+        ended = Outcome(converged=False, status=f"not converged: {first.status}", residual=math.nan)
+        parts += (asked_position(here), ended)
+    else:
+        parts += (*carried(here, first), Outcome(status=first.status, residual=first.at.found.answer.residual))
+    return record_of(
+        "capacity",
+        here,
+        *parts,
+        fields={"capacity_over_direction": over},
+        coords={"load_orientation": asked.directions},
+    )
+
+
+def carried(case: Case, capacity: Capacity) -> tuple[object, ...]:
+    """The largest load and the state under it."""
+    loaded = capacity.at
+    assert loaded is not None
+    bearing, found = case.bearing, loaded.found
+    coefficient = loaded.size / (case.bearings * bearing.length * (2.0 * bearing.journal_radius) ** 2)
+    coefficient /= case.operation.speed
+    return (
+        position(case, found.answer),
+        found.forces(),
+        found.film(),
+        wall_kind(case).scalars(all_fields(found)),
+        carrier(found.contact_fraction),
+        Carried(
+            load_capacity=loaded.size,
+            load_coefficient=coefficient,
+            load_coefficient_imperial=coefficient * INCH**3 * KRPM / LBF,
+            limited_by=loaded.limit if capacity.status == "converged" else "",
+        ),
+    )

@@ -1,0 +1,88 @@
+"""Load capacity over speed, and over the direction of the load to the petals."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from petalfoil.errors import ConvergenceError
+from petalfoil.plot import style
+
+RPM = 30.0 / np.pi
+
+
+def capacity(ds: xr.Dataset) -> Figure:
+    """Draw the load capacity over speed, its coefficient, and the capacity over the direction of the load.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `capacity`, of one speed or several.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Up to three axes: what there is only one value of is left out.
+
+    Raises
+    ------
+    ConvergenceError
+        No load capacity was found.
+    """
+    points = ds if "point" in ds.dims else ds.expand_dims("point")
+    points = points.isel(point=np.flatnonzero(points["converged"].to_numpy()))
+    if not points.sizes["point"]:
+        raise ConvergenceError("there is no load capacity to draw")
+    turned = points.sizes["load_orientation"] > 1
+    over_speed = points.sizes["point"] > 1 or not turned
+    columns = 2 * over_speed + turned
+    fig = style.figure(5.0 * columns, 4.4)
+    axes = list(np.atleast_1d(fig.subplots(1, columns)))
+    if over_speed:
+        _over_speed(axes[0], axes[1], points)
+    if turned:
+        _over_direction(axes[-1], points)
+    style.set_title(fig, ds, *_limits(points))
+    return fig
+
+
+def _over_speed(left: Axes, right: Axes, points: xr.Dataset) -> None:
+    krpm = points["speed"].to_numpy() * RPM * 1e-3
+    left.plot(krpm, points["load_capacity"].to_numpy(), "o-", color=style.BLUE, label="in the direction given")
+    if "least_load_capacity" in points:
+        least = points["least_load_capacity"].to_numpy()
+        left.plot(krpm, least, "s--", color=style.VERMILLION, label="least of all directions")
+        style.legend(left)
+    right.plot(krpm, points["load_coefficient_imperial"].to_numpy(), "o-", color=style.BLUE)
+    for ax, label in ((left, "load capacity [N]"), (right, "load coefficient [lbf/(in³ krpm)]")):
+        _finish(ax, "speed [krpm]", label)
+
+
+def _over_direction(ax: Axes, points: xr.Dataset) -> None:
+    angle = np.degrees(points["load_orientation"].to_numpy())
+    for number in range(points.sizes["point"]):
+        point = points.isel(point=number)
+        label = f"{float(point['speed']) * RPM * 1e-3:.4g} krpm"
+        ax.plot(angle, point["capacity_over_direction"].to_numpy(), "o-", markersize=4, label=label)
+    _finish(ax, "direction of the load, from x toward y [deg]", "load capacity [N]")
+    style.legend(ax)
+
+
+def _finish(ax: Axes, x: str, y: str) -> None:
+    ax.set_xlabel(x, fontsize=style.LABEL)
+    ax.set_ylabel(y, fontsize=style.LABEL)
+    ax.set_ylim(0.0, 1.1 * ax.get_ylim()[1])
+    ax.grid(visible=True, color=style.PALE)
+
+
+def _limits(points: xr.Dataset) -> list[str]:
+    """The limits in words."""
+    units = {
+        "min_film_limit": ("film over {:.4g} µm", 1e6),
+        "contact_fraction_allowed": ("contact under {:.3g} %", 1e2),
+    }
+    units["stress_limit"] = ("stress under {:.4g} MPa", 1e-6)
+    first = points.isel(point=0)
+    return [text.format(factor * float(first[name])) for name, (text, factor) in units.items() if name in first]

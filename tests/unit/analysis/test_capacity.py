@@ -1,0 +1,134 @@
+"""The largest load within limits: the limit holds there and fails beyond, warm speeds are cheap, refusals."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import petalfoil
+from petalfoil import plot
+from petalfoil.case import Case
+from petalfoil.errors import ConvergenceError, UsageError
+from tests.cases import case
+from tests.random_packages import random_case
+
+PLAIN = case("plain_journal", **{"model.cells_per_pitch": 32, "model.axial_cells": 8})
+BUMPS = case("bump_foil", **{"model.cells_per_pitch": 32, "model.axial_cells": 8})
+PETALS = case("paper_n8", **{"model.cells_per_pitch": 32})
+
+LIMITS = {
+    "film of a plain bore": (PLAIN, {"min_film_thickness": 5e-6}, "min_film_thickness", 5e-6),
+    "film over bumps": (BUMPS, {"min_film_thickness": 5e-6}, "min_film_thickness", 5e-6),
+    "film under petals": (PETALS, {"min_film_thickness": 4e-6}, "min_film_thickness", 4e-6),
+    "contact on bumps": (BUMPS, {"contact_fraction": 0.02}, "contact_fraction", 0.02),
+}
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_the_limit_holds_at_the_answer_and_fails_beyond(name: str) -> None:
+    bearing, limit, result, allowed = LIMITS[name]
+    found = petalfoil.capacity(bearing, **limit)
+    assert str(found["limited_by"].item()) == result
+    assert float(found[result]) == pytest.approx(allowed, rel=1.1e-6)
+    assert float(found["residual"]) <= 1e-8
+    load = float(found["load_capacity"])
+    at, beyond = (petalfoil.balance(bearing, factor * load) for factor in (1.0, 1.01))
+    assert float(at[result]) == pytest.approx(allowed, rel=2e-6)
+    worse = 1.0 if result == "contact_fraction" else -1.0
+    assert worse * (float(beyond[result]) - allowed) > 1e-4 * allowed
+
+
+def test_the_first_limit_counts() -> None:
+    stress = float(petalfoil.balance(PETALS, "20 N")["max_bending_stress"])
+    both = petalfoil.capacity(PETALS, min_film_thickness=4e-6, max_stress=stress)
+    assert float(both["load_capacity"]) == pytest.approx(20.0, rel=1e-4)
+    assert str(both["limited_by"].item()) == "max_bending_stress"
+    film = petalfoil.capacity(PETALS, min_film_thickness=4e-6, max_stress=2.0 * stress)
+    assert str(film["limited_by"].item()) == "min_film_thickness"
+    assert float(film["load_capacity"]) > 21.0
+
+
+@pytest.mark.parametrize("bearing", [PLAIN, BUMPS, PETALS], ids=["plain", "bumps", "petals"])
+def test_warm_speeds_take_six_factorisations_at_most(bearing: Case) -> None:
+    speed = bearing.operation.speed
+    found = petalfoil.capacity(bearing, min_film_thickness=4e-6, speeds=list(speed * np.linspace(0.9, 1.0, 5)))
+    assert np.all(np.diff(found["load_capacity"]) > 0.0)
+    assert int(found["factorizations"][1:].max()) <= 6
+    assert plot.capacity(found).axes
+    assert set(str(name) for name in found["limited_by"].to_numpy()) == {"min_film_thickness"}
+
+
+def test_the_load_coefficient_is_the_load_over_projected_area_and_surface_speed() -> None:
+    found = petalfoil.capacity(BUMPS, min_film_thickness=5e-6)
+    volume, speed = 50e-3 * 50e-3**2, BUMPS.operation.speed
+    assert float(found["load_coefficient"]) == pytest.approx(float(found["load_capacity"]) / (volume * speed))
+    pounds, krpm = float(found["load_capacity"]) / 4.4482216, speed * 30.0 / math.pi / 1e3
+    expected = pounds / (volume / 0.0254**3) / krpm
+    assert float(found["load_coefficient_imperial"]) == pytest.approx(expected, rel=1e-6)
+
+
+def test_turning_the_load_is_turning_the_petals_back() -> None:
+    turned = petalfoil.capacity(PETALS, min_film_thickness=4e-6, orientations=3)
+    angles = turned["load_orientation"].to_numpy()
+    assert angles == pytest.approx(-math.pi / 2.0 + math.pi / 12.0 * np.arange(3))
+    over = turned["capacity_over_direction"].to_numpy()
+    assert float(turned["load_capacity"]) == over[0]
+    assert float(turned["least_load_capacity"]) == over.min() < over.max()
+    assert float(turned["least_capacity_direction"]) == angles[over.argmin()]
+    back = petalfoil.capacity(PETALS.replace(**{"petals.first_root": -math.pi / 12.0}), min_film_thickness=4e-6)
+    assert float(back["load_capacity"]) == pytest.approx(over[1], rel=1e-5)
+    assert plot.capacity(turned).axes
+
+
+def test_a_bearing_that_keeps_to_no_limit_says_so() -> None:
+    with pytest.raises(ConvergenceError, match="no load keeps to the limits: min_film_thickness"):
+        petalfoil.capacity(PLAIN, min_film_thickness=26e-6)
+    series = petalfoil.capacity(PLAIN, min_film_thickness=26e-6, speeds=[1e3, 2e3])
+    assert not series["converged"].any()
+    assert np.all(np.isnan(series["capacity_over_direction"]))
+
+
+def test_a_limit_that_is_not_reached_bounds_the_load_from_below() -> None:
+    endless = petalfoil.capacity(PETALS, max_stress="90 GPa")
+    assert "beyond it" in str(endless["status"].item()) or "no limit is reached" in str(endless["status"].item())
+    assert str(endless["limited_by"].item()) == ""
+    assert float(endless["max_bending_stress"]) < 90e9
+
+
+@pytest.mark.parametrize(
+    ("bearing", "arguments", "words"),
+    [
+        (PLAIN, {}, "needs a limit: give --min-film, --contact-fraction or --max-stress"),
+        (PLAIN, {"min_film_thickness": "0.5 um"}, "surfaces touch at surface.contact_film_thickness, 1 um"),
+        (PLAIN, {"max_stress": "1 GPa"}, "the rigid wall of this case reports none"),
+        (PLAIN, {"min_film_thickness": "5 um", "orientations": 4}, "is the same in all directions"),
+        (PLAIN, {"min_film_thickness": "5 um", "speed": 0.0}, "needs a turning shaft"),
+    ],
+)
+def test_what_says_nothing_is_refused(bearing: Case, arguments: dict[str, object], words: str) -> None:
+    with pytest.raises(UsageError, match=words):
+        petalfoil.capacity(bearing, **arguments)
+
+
+def found_or_bounded(seed: int, least: float = 1.5e-6) -> str:
+    """How the search on a random bearing ended; the state that it gives keeps to the limit."""
+    bearing = random_case(np.random.default_rng(seed), **{"model.cells_per_pitch": 16})
+    (record,) = petalfoil.capacity.records(bearing, min_film_thickness=least, speeds=[bearing.operation.speed])
+    if not record.converged:
+        assert "no load keeps to the limits" in str(record.scalars["status"])
+        return "none"
+    film = float(record.scalars["min_film_thickness"])
+    assert film >= least * (1.0 - 1.1e-6)
+    assert float(record.scalars["residual"]) <= 1e-8
+    if str(record.scalars["limited_by"]):
+        assert film == pytest.approx(least, rel=1.1e-6)
+        return "found"
+    return str(record.scalars["status"])
+
+
+@pytest.mark.slow
+def test_random_bearings_are_found_or_bounded() -> None:
+    ended = [found_or_bounded(seed) for seed in range(20)]
+    assert ended.count("found") >= 4
