@@ -37,19 +37,3 @@ def reaction_balance(answer: Solution) -> float:
     error = wall.free_motions.T @ loads + unit * (wall.support @ w + wall.support @ answer.state.low_order)
     scale = abs(wall.free_motions.T) @ parts
     return float(np.max(np.abs(error) / np.maximum(scale, np.finfo(float).tiny), initial=0.0))
-
-
-def side_leakage(answer: Solution, fluxes: Fluxes) -> float:
-    """Gas that leaves at both ends, pressure times volume a second, over `p_a^2 h_ref^3 / (12 mu)` [1].
-
-    Gas that enters again where the film is below ambient pressure is not subtracted. In a film that runs on all round
-    the difference is nothing. A 2-D film has no ends.
-    """
-    balance = answer.problem.layout.balance
-    axial, unknown = balance.mesh.axial, balance.mesh.unknown
-    leaving = -balance.outflow(fluxes)
-    ends = leaving[..., [0] if axial.half else [0, -1]]
-    shared = unknown[:, -1, unknown.shape[2] // 2] >= 0  # the film runs on over the edge: two halves of one cell
-    ends[:, -1] += np.roll(ends[:, 0], -1, axis=0)
-    ends[:, -1] *= shared[:, None]
-    return float(np.maximum(ends[:, 1:], 0.0).sum())

@@ -17,6 +17,7 @@ from petalfoil.analysis.classic_method import is_classic, typical_steps
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.displacements import CHARACTERISTIC, displaced
 from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.analysis.heat_results import with_heat
 from petalfoil.analysis.operating_point import OperatingPoint, at_position, relaxed
 from petalfoil.analysis.records import asked_position, branch, effort, failed_record, solution_record
 from petalfoil.analysis.resume import is_same
@@ -110,6 +111,7 @@ def _point(case: Case, problem: CoupledProblem, before: Solution | None) -> Oper
     if before is None or is_classic(case):
         found = relaxed(case, problem, before) if is_classic(case) else at_position(case)
         return replace(found, branch=replace(found.branch, jump=False))
-    answer, jump = advance(before, problem)
+    answer, jump = advance(before, problem.at(temperatures=before.problem.temperatures))
+    answer = with_heat(case, answer)
     rate = leading_eigenvalue(answer)
     return OperatingPoint(answer, branch(rate, case, 2 if jump else 1, answer.solution_path, jump))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.analysis.balances import mass_balance, reaction_balance, side_leakage
+from petalfoil.analysis.balances import mass_balance, reaction_balance
 from petalfoil.analysis.extremes import highest, lowest
 from petalfoil.case import Case
 from petalfoil.equilibrium.solution import Solution
@@ -52,8 +52,13 @@ class Evaluation:
         lam = answer.lam[contacts.journal] * scales.force
         touching = lam.reshape(*film.theta.shape, -1).sum(axis=2) if len(lam) else np.zeros(film.theta.shape)
         P, H = problem.pressure(answer.x), problem.film(answer.x)
-        rows = problem.layout.film_rows.at(P, H, problem.bearing_number)
+        rows = problem.layout.film_rows.at(P, H, problem.film_number)
         return cls(case, answer, rows, P * scales.pressure, H * scales.length, touching)
+
+    @property
+    def viscosity(self) -> float:
+        """Viscosity of the gas in the film [Pa s]."""
+        return self.case.gas.viscosity * self.answer.problem.viscosity_ratio
 
     @property
     def normal_force(self) -> float:
@@ -106,7 +111,7 @@ class Evaluation:
             film,
             radius,
             (self.pressure, self.film_thickness),
-            (case.gas.viscosity, omega * radius),
+            (self.viscosity, omega * radius),
             case.slip_length * case.gas.ambient_pressure,
         )
         torque += case.surface.friction_coefficient * radius * self.normal_force
@@ -138,8 +143,11 @@ class Evaluation:
     def _leakage(self) -> float:
         """Mass flow out of both ends [kg/s] (J5)."""
         scales, gas = self.answer.problem.layout.scales, self.case.gas
-        unit = scales.pressure**2 * scales.length**3 / (12.0 * gas.viscosity)  # of pressure times volume flow
-        return side_leakage(self.answer, self.rows.fluxes) * unit * gas.ambient_density / gas.ambient_pressure
+        unit = scales.pressure**2 * scales.length**3 / (12.0 * self.viscosity)  # of pressure times volume flow
+        warm = self.answer.problem.temperatures
+        temperature = gas.temperature if warm is None else warm.film
+        leakage = self.answer.problem.layout.balance.side_leakage(self.rows.fluxes)
+        return leakage * unit / (gas.gas_constant * temperature)
 
 
 def whole_film(film: FilmMesh, field: Array) -> tuple[Array, Array, Array]:

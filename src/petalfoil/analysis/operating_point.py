@@ -11,13 +11,16 @@ import numpy as np
 
 from petalfoil.analysis.classic_method import by_classic, newton_only
 from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.analysis.heat_results import with_heat
 from petalfoil.analysis.records import branch
 from petalfoil.analysis.speeds import SpeedLine
+from petalfoil.analysis.thermal_limit import beyond_thermal_limit
 from petalfoil.case import Case, ModelKind
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.equilibrium.branches import distinct, probe
 from petalfoil.equilibrium.cold_start import BARRIERS, attempt, by_barriers, solve_cold
 from petalfoil.equilibrium.continuation import ascend, settle
+from petalfoil.equilibrium.heated import ThermalRunawayError
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold
@@ -114,6 +117,7 @@ def under_load(case: Case, load: Vector) -> tuple[Solution, Branch]:
         found = balance_cold(problem, load_of(case, load, problem.layout))
     except ConvergenceError as failure:
         raise beyond_capacity(problem, load, failure) from failure
+    found = in_heat(case, found, load)
     rate = leading_eigenvalue(found)
     alone = branch(rate, case, 1, found.solution_path)
     if not rate.real > 0.0:
@@ -127,6 +131,20 @@ def under_load(case: Case, load: Vector) -> tuple[Solution, Branch]:
     if other.real > 0.0:
         return found, alone
     return risen, branch(other, case, 2, "followed from rest under the load; another balance is unstable")
+
+
+def in_heat(case: Case, found: Solution, load: Vector | None) -> Solution:
+    """The equilibrium with its heat network; an error that tells the speed where it has no steady temperature.
+
+    Raises
+    ------
+    ThermalRunawayError
+        There is none.
+    """
+    try:
+        return with_heat(case, found)
+    except ThermalRunawayError as failure:
+        raise beyond_thermal_limit(case, load, failure) from failure
 
 
 def beyond_capacity(problem: CoupledProblem, load: Vector, failure: ConvergenceError) -> ConvergenceError:
@@ -192,6 +210,9 @@ def at_position(case: Case) -> OperatingPoint:
         rates = [leading_eigenvalue(found[0])]
     if rates[0].real > 0.0:
         found, rates, path = settled(found, rates, path)
+    if case.heat is not None:
+        found = [in_heat(case, found[0], None), *found[1:]]
+        rates = [leading_eigenvalue(found[0]), *rates[1:]]
     return OperatingPoint(found[0], branch(rates[0], case, max(known, distinct(found)), path or found[0].solution_path))
 
 

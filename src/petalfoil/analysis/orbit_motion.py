@@ -21,6 +21,7 @@ from petalfoil.dynamics.adaptive_steps import MarchOptions, march
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.equilibrium.run_context import RunContext, new_run
+from petalfoil.errors import UsageError
 from petalfoil.results.motion import figures_of, tilt_figures
 from petalfoil.results.parts import Outcome
 from petalfoil.results.record import Record
@@ -112,6 +113,11 @@ class Orbit:
             No equilibrium was found to start from.
         """
         newton_only(case)
+        if case.heat is not None:
+            raise UsageError(
+                "a motion in time is shorter than any warm-up: leave [heat] out, and give shaft.temperature and "
+                "bushing.temperature as `balance` finds them"
+            )
         run, schedule = new_run(), request.schedule(case)
         if restart is None:
             with run.active():

@@ -8,12 +8,14 @@ import numpy as np
 
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.fields import all_fields, coordinates
+from petalfoil.analysis.heat_results import heat_results
 from petalfoil.case import Case, warnings_of
 from petalfoil.equilibrium.run_context import HistoryRow, RunContext, current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.results.parts import Branch, Effort, Geometry, Outcome, Position, scalars_of
 from petalfoil.results.record import Array, Record
 from petalfoil.system.build import lever_of
+from petalfoil.system.temperatures import Temperatures
 from petalfoil.walls import wall_kind
 
 
@@ -21,7 +23,8 @@ def solution_record(analysis: str, found: Evaluation, *parts: object) -> Record:
     """The record of an equilibrium: its film, forces, balances and fields, and what its analysis adds."""
     case, answer = found.case, found.answer
     fields = all_fields(found)
-    film = (found.forces(), found.film(), found.balances(), wall_kind(case).scalars(fields))
+    hot = heat_results(case, answer)
+    film = (found.forces(), found.film(), found.balances(), wall_kind(case).scalars(fields), *([hot] if hot else []))
     return record_of(
         analysis,
         case,
@@ -88,18 +91,19 @@ def position(case: Case, answer: Solution) -> Position:
     if case.operation.moment is not None:
         a_x, a_y = e[2:] / lever_of(case)
         tilt = (float(a_x), float(a_y))
-    return position_at(case, e, tilt)
+    return position_at(case, e, tilt, answer.problem.temperatures)
 
 
-def position_at(case: Case, e: Array, tilt: tuple[float, float] | None) -> Position:
+def position_at(case: Case, e: Array, tilt: tuple[float, float] | None, warm: Temperatures | None = None) -> Position:
     """The displacement `e` [m] and the `tilt` [rad] at the speed of the case, and the growth there."""
     speed, (tilt_x, tilt_y) = case.operation.speed, tilt or (None, None)
+    growth = case.growth if warm is None else case.growth_at(warm.shaft, warm.bushing)
     return Position(
         speed=speed,
         eccentricity_x=float(e[0]),
         eccentricity_y=float(e[1]),
-        shaft_growth=None if case.shaft is None else case.growth.journal(speed),
-        bushing_growth=None if case.bushing is None else case.growth.bushing,
+        shaft_growth=None if case.shaft is None else growth.journal(speed),
+        bushing_growth=None if case.bushing is None else growth.bushing,
         tilt_x=tilt_x,
         tilt_y=tilt_y,
     )

@@ -92,7 +92,9 @@ def in_both(pair: CoupledProblem, answer: Solution) -> Solution:
     """
     one, both, run = answer.problem, pair.layout.unknowns, current_run()
     problem = pair.at(
-        bearing_number=one.bearing_number, displacement=np.append(one.displacement, np.zeros_like(one.displacement))
+        bearing_number=one.bearing_number,
+        displacement=np.append(one.displacement, np.zeros_like(one.displacement)),
+        temperatures=one.temperatures,
     )
     x = both.join({name: np.tile(answer.x[one.layout.unknowns[name]], 2) for name in both.sizes})
     active = np.tile(answer.active, 2)[by_kind(one.layout.wall.contacts)]

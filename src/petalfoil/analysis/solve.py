@@ -80,7 +80,7 @@ def point(case: Case, progress: Progress | None = None) -> Record:
             found = relaxed(case, build_problem(case))
         else:
             found = operating_point(case, None)
-        place = position(case, found.answer) if loaded else asked_position(case)
+        place = position(case, found.answer) if loaded or case.heat is not None else asked_position(case)
         own = (place, path_told(found), *found.loaded, effort(run.seconds))
         return solution_record("solve", Evaluation.of(case, found.answer), *own)
 

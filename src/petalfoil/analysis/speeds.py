@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.analysis.heat_results import network_in_time, warm_up_step, with_heat
 from petalfoil.analysis.resume import is_same
 from petalfoil.case import Case
 from petalfoil.equilibrium.solution import Solution
@@ -18,6 +19,7 @@ from petalfoil.results.record import Record
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.loaded import load_of
+from petalfoil.system.temperatures import Temperatures
 
 Array = NDArray[np.float64]
 
@@ -35,18 +37,25 @@ class SpeedLine:
         The bearing.
     load : (x, y)
         Load on the rotor [N]: two bearings carry half of it each.
+    known : Solution or None
+        The last balance.
+    temperatures : Temperatures or None
+        The last temperatures of a heat network: those before the next step of a warm-up.
     """
 
     case: Case
     load: tuple[float, float]
     known: Solution | None = None
+    temperatures: Temperatures | None = None
     base: CoupledProblem = field(init=False)
 
     def __post_init__(self) -> None:
         self.base = build_problem(self.case.replace(**{"operation.eccentricity": (0.0, 0.0)}))
 
-    def at(self, speed: float) -> Solution:
+    def at(self, speed: float, after: float | None = None) -> Solution:
         """The balance at `speed` [rad/s], followed from the last one.
+
+        With a heat network its temperatures are steady, or those `after` a time [s] in which they began from the last.
 
         Raises
         ------
@@ -56,10 +65,16 @@ class SpeedLine:
         scales, R_j = self.base.layout.scales, self.case.bearing.journal_radius
         number = scales.bearing_number(self.case.gas.viscosity, speed, R_j)
         problem, load = self.base.at(bearing_number=number), load_of(self.case, self.load, self.base.layout)
+        warm = self.temperatures
         if self.known is None:
-            self.known = balance_cold(problem, load)
+            found = balance_cold(problem.at(temperatures=warm), load)
         else:
-            self.known = rebalance(self.known, problem, load)
+            found = rebalance(self.known, problem.at(temperatures=warm), load)
+        if after is None:
+            self.known = with_heat(self.case, found)
+        else:
+            self.known = warm_up_step(self.case, found, warm or network_in_time(self.case).cold, after)
+        self.temperatures = self.known.problem.temperatures
         return self.known
 
     def climb(self, speed: float) -> Solution:
@@ -95,7 +110,7 @@ class SpeedLine:
                 found = self.known = None
         if found is None:
             return False
-        x, y = found.problem.displacement * self.base.layout.scales.length
+        x, y = found.problem.displacement[:2] * self.base.layout.scales.length
         return is_same(last, {"eccentricity_x": float(x), "eccentricity_y": float(y)})
 
     def contact_fraction(self, speed: float) -> float:

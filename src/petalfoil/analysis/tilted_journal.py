@@ -54,7 +54,8 @@ def held(case: Case, answer: Solution) -> Solution:
 
 def at_same_state(problem: CoupledProblem, answer: Solution) -> Solution:
     """The solution of `problem` with the unknowns and active contacts of `answer`, at its speed."""
-    run, problem = current_run(), problem.at(bearing_number=answer.problem.bearing_number)
+    one, run = answer.problem, current_run()
+    problem = problem.at(bearing_number=one.bearing_number, temperatures=one.temperatures)
     contacts, outcome = solve_contacts(problem, (answer.x, answer.active), run.film_solver)
     run.note("contacts", outcome=outcome.value)
     found = from_contacts(problem, contacts, answer.solution_path)

@@ -12,6 +12,7 @@ In the order data flows:
 - `bump_foil_table`: the table of a bump foil.
 - `gas`: the table of the gas.
 - `rotor`: the table of the rotor.
+- `heat`: the table of the heat network, and the gas as it warms up.
 - `growth`: the tables of shaft and bushing, and how they grow.
 - `wall_tables`: base and registry of the tables that describe a wall.
 - `free_shape`: radius of a free petal bent to an arc.
@@ -32,6 +33,7 @@ from petalfoil.case.definitions import Case
 from petalfoil.case.free_shape import arc_radius, chordal_tilt
 from petalfoil.case.gas import Gas
 from petalfoil.case.growth import Bushing, Growth, Shaft
+from petalfoil.case.heat import Heat, HotGas
 from petalfoil.case.package import Package, package_of
 from petalfoil.case.parameters import Parameter, parameter_of, parameters_of, with_values
 from petalfoil.case.petal_table import Mount, Petals
@@ -49,6 +51,8 @@ __all__ = [
     "Feet",
     "Gas",
     "Growth",
+    "Heat",
+    "HotGas",
     "Method",
     "Model",
     "ModelKind",

@@ -14,7 +14,8 @@ from petalfoil.case import toml
 from petalfoil.case.bump_foil_table import BumpFoil
 from petalfoil.case.definition import Definition
 from petalfoil.case.gas import Gas
-from petalfoil.case.growth import Bushing, Growth, Shaft, growth_problems
+from petalfoil.case.growth import REFERENCE_TEMPERATURE, Bushing, Growth, Shaft, growth_problems
+from petalfoil.case.heat import Heat, heat_problems
 from petalfoil.case.package import Package, bearing_problems, package_of, package_problems
 from petalfoil.case.petal_table import Petals
 from petalfoil.case.problems import Problem, refusal
@@ -60,6 +61,7 @@ class Case(Definition):
     petals: Petals | None = None
     bump_foil: BumpFoil | None = None
     gas: Gas
+    heat: Heat | None = None
     surface: Surface = Field(default_factory=Surface)
     operation: Operation
     rotor: Rotor | None = None
@@ -127,6 +129,12 @@ class Case(Definition):
     def growth(self) -> Growth:
         """How shaft and bushing have grown (G5); nothing without their tables."""
         return Growth.of(self.shaft, self.bushing, (self.bearing.journal_radius, self.bearing.bushing_radius))
+
+    def growth_at(self, shaft: float, bushing: float) -> Growth:
+        """Growth with the mean temperatures of shaft and bushing [K] in place of those of the case."""
+        journal = None if self.shaft is None else self.shaft.model_copy(update={"temperature": shaft})
+        bore = None if self.bushing is None else self.bushing.model_copy(update={"temperature": bushing})
+        return Growth.of(journal, bore, (self.bearing.journal_radius, self.bearing.bushing_radius))
 
     @property
     def grown_bearing(self) -> Bearing:
@@ -218,7 +226,8 @@ class Case(Definition):
         problems = list(self._geometry_problems())
         kind: type[DefinitionError] = PackageError
         if not problems:
-            problems, kind = [*self._grid_problems(), *self._tilt_problems()], DefinitionError
+            problems = [*self._grid_problems(), *self._tilt_problems(), *self._heat_problems()]
+            kind = DefinitionError
         if problems:
             raise refusal(kind, problems)
         return self
@@ -264,6 +273,15 @@ class Case(Definition):
                 f"{cells} cells cannot be halved at the plane of symmetry; allowed: an even number, or symmetry = false"
             )
             yield Problem("model.axial_cells", text, cells, "an even number")
+
+    def _heat_problems(self) -> Iterator[Problem]:
+        if self.heat is None:
+            return
+        self.heat.of_gas(self.gas)  # refuses a gas whose heat conductivity is not known
+        warm = {"shaft.temperature": self.shaft, "bushing.temperature": self.bushing}
+        given = {key: part is not None and part.temperature != REFERENCE_TEMPERATURE for key, part in warm.items()}
+        others = {"model.slip": self.model.slip, "classic": self.model.method is Method.CLASSIC}
+        yield from heat_problems(self.heat, given | others)
 
     def _tilt_problems(self) -> Iterator[Problem]:
         """Yield why a journal cannot tilt: no length, the paper's method, two bearings, or two ways to say it."""

@@ -5,6 +5,7 @@ CoolProp is loaded when a name is used, which takes most of a second.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import cache
 from importlib import import_module
@@ -92,6 +93,23 @@ def gas_constant(name: str) -> float:
     """Specific gas constant [J/(kg K)]."""
     state = _state(fluid_of(name))
     return float(state.gas_constant() / state.molar_mass())
+
+
+def heat_properties(name: str, T: float, p: float) -> tuple[float, float]:
+    """Heat capacity at constant pressure [J/(kg K)] and Prandtl number [1] at a state that the checks let through."""
+    state = _state(fluid_of(name))
+    try:
+        state.update(_library().PT_INPUTS, p, T)
+        return float(state.cpmass()), float(state.cpmass() * state.viscosity() / state.conductivity())
+    except FAILURES:
+        allowed = "numbers (heat.gas_heat_capacity, heat.prandtl_number, heat.viscosity_exponent)"
+        text = f"CoolProp finds no heat conductivity of {name} at {_K(T)} and {_Pa(p)}; allowed: {allowed}"
+        raise refuse(VALUE_PROBLEM, text, allowed) from None
+
+
+def viscosity_exponent(name: str, T: float, p: float, factor: float) -> float:
+    """Exponent of the power law that the viscosity follows from a temperature [K] to `factor` times it [1]."""
+    return math.log(viscosity(name, factor * T, p) / viscosity(name, T, p)) / math.log(factor)
 
 
 # ---------------------------------------------------------------------------------------------- the library

@@ -100,6 +100,13 @@ class Growth:
             bushing=0.0 if bushing is None else thermal_growth(bushing, bushing_radius, bushing.temperature),
         )
 
+    @staticmethod
+    def by_kelvin(shaft: Shaft | None, bushing: Bushing | None, radii: tuple[float, float]) -> tuple[float, float]:
+        """Growth of journal and bushing by a kelvin [m/K]; zero without their tables."""
+        parts = zip((shaft, bushing), radii, strict=True)
+        journal, bore = (0.0 if part is None else part.expansion * radius for part, radius in parts)
+        return journal, bore
+
     def journal(self, speed: float) -> float:
         """Growth of the journal at an angular velocity [rad/s], (G5) [m]."""
         return self.thermal + self.centrifugal * speed**2

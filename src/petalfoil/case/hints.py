@@ -73,7 +73,7 @@ _EXPLAINED = (
     (r"wear", "Wear is not modelled."),
     (
         r"heat|therm|conductivity|cooling|(wall|inlet)_temperature",
-        "Heat is not modelled: the gas is isothermal at gas.temperature; temperatures of shaft and bushing are given.",
+        "Heat is a network of conductances between film, shaft, pack and bushing: see the keys of [heat].",
     ),
 )
 """Patterns of keys that no other key stands for, and what is modelled in their place; the first that fits counts."""

@@ -44,8 +44,8 @@ def predict(known: Solution, problem: CoupledProblem) -> Array:
     before = known.problem.linearize(known.x)
     follow = constraints.close(moved[constraints.held])
     force = before.matrix(np.zeros(len(moved))) @ follow + before.slack_derivative(moved)
-    if problem.bearing_number != known.problem.bearing_number:
-        faster = known.problem.at(bearing_number=problem.bearing_number)
+    if problem.film_number != known.problem.film_number or problem.bearing_number != known.problem.bearing_number:
+        faster = known.problem.at(bearing_number=problem.bearing_number, temperatures=problem.temperatures)
         grown = known.problem.gaps(known.x) - faster.gaps(known.x)  # counted in `moved`: the film stays as it is
         force = force + faster.linearize(known.x, grown).residual - before.residual
     return np.asarray(follow + tangent.step(force))

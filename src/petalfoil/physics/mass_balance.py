@@ -96,6 +96,20 @@ class FilmBalance:
         """
         return self._add_up([(flux.value, -flux.value) for flux in fluxes])
 
+    def side_leakage(self, fluxes: tuple[Flux, Flux]) -> float:
+        """Gas that leaves at both ends, pressure times volume a second, over `p_a^2 h_ref^3 / (12 mu)` [1].
+
+        Gas that enters again where the film is below ambient pressure is not subtracted. In a film that runs on all
+        round the difference is nothing. A 2-D film has no ends.
+        """
+        axial, unknown = self.mesh.axial, self.mesh.unknown
+        leaving = -self.outflow(fluxes)
+        ends = leaving[..., [0] if axial.half else [0, -1]]
+        shared = unknown[:, -1, unknown.shape[2] // 2] >= 0  # the film runs on over the edge: two halves of one cell
+        ends[:, -1] += np.roll(ends[:, 0], -1, axis=0)
+        ends[:, -1] *= shared[:, None]
+        return float(np.maximum(ends[:, 1:], 0.0).sum())
+
     def row_scale(self, fluxes: tuple[Flux, Flux]) -> Array:
         """Sum of the magnitudes of the flows in each balance, (n_unknown,) [1]: the scale of its residual."""
         return self._collect(self._add_up([(flux.scale, flux.scale) for flux in fluxes]))

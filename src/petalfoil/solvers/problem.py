@@ -83,11 +83,17 @@ class Border:
         `R` by the unknowns in `columns`.
     columns : slice
         These unknowns.
+    reaction_derivative : (d, m) array or None
+        What the rows of `b` read of the reactions in place of `A^T lam`.
+    forcing : (n, d) array or None
+        Derivative of the equations by `b` beside that through the gaps.
     """
 
     gap_derivative: Array
     row_derivative: Array
     columns: slice
+    reaction_derivative: Array | None = None
+    forcing: Array | None = None
 
     @property
     def size(self) -> int:
@@ -96,7 +102,8 @@ class Border:
 
     def rows(self, change: NDArray[Any], reactions: NDArray[Any]) -> NDArray[Any]:
         """`R dx + A^T dlam`, (d,), from changes of the unknowns (n,) and of all reactions (m,)."""
-        out: NDArray[Any] = self.row_derivative @ change[self.columns] + self.gap_derivative.T @ reactions
+        by_reactions = self.gap_derivative.T if self.reaction_derivative is None else self.reaction_derivative
+        out: NDArray[Any] = self.row_derivative @ change[self.columns] + by_reactions @ reactions
         return out
 
 

@@ -160,6 +160,8 @@ class BorderedTangent:
         """The tangent of equations linearised at a point."""
         columns = [linearized.slack_derivative(column) for column in border.gap_derivative.T]
         forcing = np.column_stack(columns) if columns else np.zeros((tangent.matrix.shape[0], 0))
+        if border.forcing is not None:
+            forcing = forcing + border.forcing
         return cls.of(tangent, border, forcing)
 
     @classmethod

@@ -9,13 +9,14 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.case import Case
+from petalfoil.case import Case, HotGas
 from petalfoil.physics.forces import film_force_rows, node_area
 from petalfoil.physics.mass_balance import FilmBalance
 from petalfoil.solvers.problem import Border
 from petalfoil.sparsity import SparseRows, add_up
 from petalfoil.system.film_rows import FilmRows
 from petalfoil.system.scales import Scales
+from petalfoil.system.temperatures import Temperatures
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE, BlockEntries, BlockPattern, ExtraField, Unknowns
 from petalfoil.walls.base import Wall
 from petalfoil.walls.tilting import tilt_columns
@@ -75,9 +76,27 @@ class BearingLayout:
         """Bearing number of a speed of 1 rad/s [s]."""
         return self.scales.bearing_number(self.case.gas.viscosity, 1.0, self.balance.radius)
 
-    def closing(self, bearing_number: float) -> float:
+    def speed(self, bearing_number: float) -> float:
+        """Angular velocity at a bearing number of the gas as it enters [rad/s]."""
+        return bearing_number / self._radian
+
+    def closing(self, bearing_number: float, warm: Temperatures | None = None) -> float:
         """What growth takes from the gaps on the journal at a bearing number (G5), over the reference length [1]."""
-        return self.case.growth.closing(bearing_number / self._radian) / self.scales.length
+        growth = self.case.growth if warm is None else self.case.growth_at(warm.shaft, warm.bushing)
+        return growth.closing(self.speed(bearing_number)) / self.scales.length
+
+    @cached_property
+    def hot_gas(self) -> HotGas:
+        """The gas as it warms up.
+
+        Raises
+        ------
+        ValueError
+            The case has no heat network.
+        """
+        if self.case.heat is None:
+            raise ValueError("this case has no [heat]")
+        return self.case.heat.of_gas(self.case.gas)
 
     @cached_property
     def film_rows(self) -> FilmRows:

@@ -8,7 +8,7 @@ gaps   0 <= g(w)  complementary to  lam >= 0       (C3)
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Self
 
@@ -20,6 +20,7 @@ from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, Border
 from petalfoil.sparsity import SparseRows
 from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.film_rows import FilmState
+from petalfoil.system.temperatures import Temperatures
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE, FieldRows
 
 Array = NDArray[np.float64]
@@ -38,20 +39,41 @@ class CoupledProblem:
     layout : BearingLayout
         Mesh, wall and constant entries.
     bearing_number : float
-        `Lam` on the reference film [1].
+        `Lam` on the reference film, with the viscosity of the gas as it enters [1].
     displacement : (n_position,) array
         Journal displacement over the reference length [1].
+    temperatures : Temperatures or None
+        Those of the heat network; None without one. The film has one temperature, which cancels in (F1) but for the
+        viscosity.
     """
 
     layout: BearingLayout
     bearing_number: float
     displacement: Array
+    temperatures: Temperatures | None = field(default=None, kw_only=True)
 
-    def at(self, *, bearing_number: float | None = None, displacement: Array | None = None) -> Self:
-        """The same bearing at another speed or position."""
+    def at(
+        self,
+        *,
+        bearing_number: float | None = None,
+        displacement: Array | None = None,
+        temperatures: Temperatures | None = None,
+    ) -> Self:
+        """The same bearing at another speed, position or with other temperatures."""
         Lam = self.bearing_number if bearing_number is None else bearing_number
         e = self.displacement if displacement is None else displacement
-        return replace(self, bearing_number=Lam, displacement=e)
+        T = self.temperatures if temperatures is None else temperatures
+        return replace(self, bearing_number=Lam, displacement=e, temperatures=T)
+
+    @property
+    def viscosity_ratio(self) -> float:
+        """Viscosity of the gas in the film over that of the gas as it enters [1]."""
+        return 1.0 if self.temperatures is None else self.layout.hot_gas.ratio(self.temperatures.film)
+
+    @property
+    def film_number(self) -> float:
+        """Bearing number with the viscosity of the gas in the film [1]."""
+        return self.bearing_number * self.viscosity_ratio
 
     @property
     def G(self) -> SparseRows:
@@ -76,7 +98,7 @@ class CoupledProblem:
     @property
     def closing(self) -> float:
         """What growth takes from the gaps on the journal at this speed (G5), over the reference length [1]."""
-        return self.layout.closing(self.bearing_number)
+        return self.layout.closing(self.bearing_number, self.temperatures)
 
     def gaps(self, x: Array) -> Array:
         """Gaps over the reference length, (m,) [1]."""
@@ -140,7 +162,7 @@ class CoupledProblem:
         `low_order` (n_wall,) is the part of the deflections below the last digit of `x`: it matters where `K w` loses
         it.
         """
-        film = self.layout.film_rows.at(self.pressure(x), self.film(x, shift), self.bearing_number)
+        film = self.layout.film_rows.at(self.pressure(x), self.film(x, shift), self.film_number)
         return Linearization(self.layout, x, film, low_order)
 
 

@@ -37,7 +37,8 @@ class DampedWall(CoupledProblem):
     @classmethod
     def of(cls, problem: CoupledProblem, damping: float) -> DampedWall:
         """The damped wall of `problem`."""
-        return cls(problem.layout, problem.bearing_number, problem.displacement, damping)
+        T = problem.temperatures
+        return cls(problem.layout, problem.bearing_number, problem.displacement, damping, temperatures=T)
 
     def linearize(self, x: Array, shift: Array | None = None, low_order: Array | None = None) -> DampedLinearization:
         """Residual, its tangent and its row scales at `x`."""

@@ -1,0 +1,224 @@
+"""A bearing with its heat network: film, petals, contacts, temperatures and, under a load, the position in one Newton.
+
+The temperatures are bordered unknowns beside the journal's position. From the equilibrium at other temperatures two or
+three tangents lead on. Where they do not, the friction power is raised from nothing; where it cannot be raised to its
+whole, the bearing has no steady temperature.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.solution import Solution, from_contacts
+from petalfoil.errors import ConvergenceError
+from petalfoil.solvers.contact_equations import (
+    ContactEquations,
+    ContactOptions,
+    ContactState,
+    Correction,
+    Step,
+    StepVerdict,
+)
+from petalfoil.solvers.contact_newton import ActiveContacts, contact_newton
+from petalfoil.solvers.problem import Border
+from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.heat_network import NODES, HeatNetwork
+from petalfoil.system.heat_rows import BALANCE, HeatRows
+from petalfoil.system.loaded import load_scale
+from petalfoil.system.temperatures import Temperatures
+
+Array = NDArray[np.float64]
+
+WARMING = ContactOptions(tangents=12, rounded=1e-6)
+"""Contacts move while the shaft grows."""
+
+MOST_FILMS = 10.0
+"""Longest move of the journal in a step, in reference films."""
+
+WARMEST_STEP = 0.2
+"""Largest change of a temperature in a step, over that of the gas: some 60 K."""
+
+CORRECTIONS = 6
+"""Refinements of a balance; the part of the leakage that the derivative leaves out takes one or two."""
+
+FIRST_PART, LEAST_PART = 0.25, 1.0 / 64.0
+"""First step and least step of the friction power where it is raised from nothing."""
+
+
+class ThermalRunawayError(ConvergenceError):
+    """No steady temperature: what the film loses grows faster with the temperature than what is carried away."""
+
+
+@dataclass(frozen=True)
+class HeatedEquations(ContactEquations):
+    """The variant with the temperatures bordered, under a load also the position.
+
+    Attributes
+    ----------
+    problem : CoupledProblem
+        The bearing at its speed.
+    network : HeatNetwork
+        Its heat balances.
+    load : (n_position,) array or None
+        Load over the unit of force [1]; None where the journal is held.
+    rows : HeatRows or None
+        The heat balances at the last tangent.
+    """
+
+    problem: CoupledProblem
+    network: HeatNetwork
+    load: Array | None
+    rows: HeatRows | None = None
+
+    @property
+    def _at_tangent(self) -> HeatRows:
+        if self.rows is None:
+            raise ValueError("the heat balances are linearised with the first tangent")
+        return self.rows
+
+    @property
+    def n_free(self) -> int:
+        """Coordinates of the position among the bordered unknowns."""
+        return 0 if self.load is None else len(self.load)
+
+    @property
+    def border(self) -> Border:
+        """How position and temperatures enter, as at the last tangent."""
+        return self._at_tangent.border(None if self.load is None else self.problem.border)
+
+    @property
+    def border_stiffness(self) -> Array:
+        """Minus the derivative of forces and balances by position and temperatures, the unknowns held."""
+        rows, k = self._at_tangent, self.n_free
+        stiffness = np.zeros((k + NODES, k + NODES))
+        stiffness[k:, k:] = -rows.by_temperature / rows.scale
+        if k:
+            stiffness[k:, :k] = -rows.by_position / rows.scale
+        return stiffness
+
+    def at(self, b: Array) -> CoupledProblem:
+        """The coupled system at a position and temperatures."""
+        k, unit = self.n_free, self.network.gas.temperature
+        warm = Temperatures(*(float(T) for T in b[k:] * unit))
+        return self.problem.at(displacement=b[:k] if k else None, temperatures=warm)
+
+    def unknowns(self, problem: CoupledProblem) -> Array:
+        """Position and temperatures of a problem as bordered unknowns."""
+        warm = (problem.temperatures or self.network.cold).nodes / self.network.gas.temperature
+        return warm if self.load is None else np.append(problem.displacement, warm)
+
+    def imbalance(self, x: Array, lam: Array, b: Array) -> Array:
+        """Force of film, contacts and load on the journal, and what the nodes gain over the scale of the balances."""
+        problem = self.at(b)
+        rows = HeatRows(self.network, problem, x, lam)
+        gained = rows.residual / (rows if self.rows is None else self.rows).scale
+        if self.load is None:
+            return gained
+        return np.concatenate([problem.journal_force(x, lam) + self.load, gained])
+
+    def renewed(self, state: ContactState, before: ContactState, count: int) -> HeatedEquations:
+        """The same with the heat balances linearised at `state`."""
+        return replace(self, rows=HeatRows(self.network, self.at(state.b), state.x, state.lam))
+
+    def step_length(self, state: ContactState, correction: Correction) -> float:
+        """Pressures stay positive; the journal moves by a few films, the temperatures by some tens of kelvins."""
+        k = self.n_free
+        farthest = MOST_FILMS / max(float(np.linalg.norm(correction.b[:k])), 1e-300)
+        warmest = WARMEST_STEP / max(float(np.max(np.abs(correction.b[k:]))), 1e-300)
+        return min(super().step_length(state, correction), farthest, warmest)
+
+    def balanced(self, x: Array, lam: Array, b: Array) -> bool:
+        """Whether forces and heat balance."""
+        left, k = np.abs(self.imbalance(x, lam, b)), self.n_free
+        forces = True if self.load is None else bool(np.linalg.norm(left[:k]) <= BALANCE * load_scale(self.load))
+        return forces and bool(np.max(left[k:]) <= BALANCE)
+
+    def verdict(self, step: Step, options: ContactOptions) -> StepVerdict:
+        """By the residual; and forces and heat must balance."""
+        verdict = super().verdict(step, options)
+        if verdict is not StepVerdict.CONVERGED or step.after is None:
+            return verdict
+        if self.balanced(step.after.x, step.after.lam, step.after.b):
+            return verdict
+        return StepVerdict.GO_ON if step.number + 1 < options.steps else StepVerdict.RENEW
+
+
+def heated(known: Solution, network: HeatNetwork) -> Solution:
+    """The equilibrium with the temperatures of its heat network, from an equilibrium at other ones.
+
+    Raises
+    ------
+    ThermalRunawayError
+        It has no steady temperature.
+    """
+    found = warmed(known, network)
+    if found is None:
+        found = raised(known, network)
+    return found
+
+
+def warmed(known: Solution, network: HeatNetwork) -> Solution | None:
+    """Newton from `known`; None if it fails."""
+    equations, run = HeatedEquations(known.problem, network, known.load), current_run()
+    begin = known.x, equations.unknowns(known.problem), known.active
+    contacts, outcome = contact_newton(equations, begin, run.film_solver, WARMING)
+    run.note("heat", outcome=outcome.value)
+    if contacts is None:
+        return None
+    return polished(equations, contacts, known.solution_path)
+
+
+def polished(equations: HeatedEquations, contacts: ActiveContacts, path: str) -> Solution | None:
+    """The refined state; position and temperatures follow where it is not in balance. No factorisation."""
+    state, tangent, best = contacts.state, contacts.tangent, None
+    equations = replace(equations, rows=HeatRows(equations.network, equations.at(state.b), state.x, state.lam))
+    b, stiffness = state.b, equations.border_stiffness - tangent.gradient
+    for _ in range(CORRECTIONS):
+        found = from_contacts(equations.at(b), replace(contacts, state=state), path)
+        if found is None:
+            return best
+        best = replace(found, load=equations.load)
+        if equations.balanced(found.x, found.lam, b):
+            return best
+        change = np.linalg.solve(stiffness, equations.imbalance(found.x, found.lam, b))
+        b = b + change
+        state = replace(state, x=found.x + tangent.units @ change, lam=found.lam, b=b)
+    return None
+
+
+def raised(known: Solution, network: HeatNetwork) -> Solution:
+    """The equilibrium with the friction power raised from nothing.
+
+    Raises
+    ------
+    ThermalRunawayError
+        It cannot be raised to its whole.
+    """
+    cold = known.problem.at(temperatures=network.cold)
+    found, part, step = replace(known, problem=cold), 0.0, FIRST_PART
+    while part < 1.0:
+        ahead = min(1.0, part + step)
+        there = warmed(found, replace(network, power=ahead))
+        if there is None and step <= LEAST_PART:
+            raise runaway(found, part)
+        if there is None:
+            step *= 0.5
+            continue
+        found, part, step = there, ahead, min(2.0 * step, 2.0 * FIRST_PART)
+    return found
+
+
+def runaway(found: Solution, part: float) -> ThermalRunawayError:
+    """The error of a bearing that has no steady temperature with more than a part of its friction power."""
+    warm = found.problem.temperatures
+    shaft = "" if warm is None else f", with the shaft at {warm.shaft:.0f} K,"
+    return ThermalRunawayError(
+        f"no steady temperature: the heat balance has one up to {100.0 * part:.0f} % of the friction power{shaft} and "
+        "none beyond: as the shaft grows the film loses more than is carried away",
+        history=current_run().history,
+        advice="lower the speed or the load, widen the clearance, or carry more heat away (the conductances of [heat])",
+    )
