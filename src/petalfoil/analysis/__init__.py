@@ -1,6 +1,7 @@
 """Questions about a case. An analysis stands in the file of its name, which declares arguments, results and layout.
 
-=====================  ============================================================`solve.py`             one position of the journal
+=====================  ===================================================================
+`solve.py`             one position of the journal
 `curve.py`             the load characteristic along a displacement
 `static.py`            the foil pack at zero speed: preload, static characteristic, starting torque
 `balance.py`           the position of the journal under a load
@@ -13,20 +14,24 @@
 `sensitivity.py`       how far a small change of each parameter moves a result
 `converge.py`          one position on finer and finer grids
 `check.py`             what follows from a case without a run
-=====================  ============================================================
+=====================  ===================================================================
+
 How they are declared:
 
-=====================  ============================================================`declaration.py`       the decorator, and what follows from a declaration
+=====================  ===================================================================
+`declaration.py`       the decorator, and what follows from a declaration
 `arguments.py`         kinds of arguments with unit, range and help; those that are shared
 `words.py`             arguments that are words: one of several, lists of names
 `known_verbs.py`       the analyses by name
 `runs.py`              an analysis under way
 `resume.py`            a series that goes on from the points that it wrote
 `session.py`           one BLAS thread, clock, progress
-=====================  ============================================================
+=====================  ===================================================================
+
 What they share:
 
-=====================  ============================================================`operating_point.py`   the equilibrium that an analysis is about
+=====================  ===================================================================
+`operating_point.py`   the equilibrium that an analysis is about
 `displacements.py`     the journal displaced point by point
 `hysteresis.py`        the same at rest, with friction between petals
 `speeds.py`            a load followed over speed
@@ -51,10 +56,11 @@ What they share:
 `classic_method.py`    the paper's own method
 `evaluation.py`        a solution evaluated once, as typed parts
 `extremes.py`          extremes between nodes
-`adapted_stations.py`  stations along the shaft where a coarse solution bends most
 `heat_results.py`      temperatures and where the heat goes
 `thermal_limit.py`     the speed above which no temperature is steady
+`adapted_stations.py`  stations along the shaft where a coarse solution bends most
 `balances.py`          balances of a solution
 `fields.py`            its fields on the mesh
 `records.py`           typed parts to a record
-=====================  ============================================================"""
+=====================  ===================================================================
+"""

@@ -40,7 +40,7 @@ WarmUp = Annotated[
         above=0.0,
     ),
 ]
-Course = tuple[list[tuple[str, float]], float | None]
+SpeedsInTime = tuple[list[tuple[str, float]], float | None]
 """Legs and speeds [rad/s], and in a warm-up the acceleration [rad/s^2]."""
 
 FIRST_STEP = 1e-6
@@ -104,11 +104,11 @@ def runup(
 def _points(
     case: Case,
     load: tuple[float, float],
-    course: Course,
+    in_time: SpeedsInTime,
     progress: Progress | None,
     done: Sequence[Record] = (),
 ) -> Iterator[Record]:
-    way, rate = course
+    way, rate = in_time
     line, before = SpeedLine(at(case, way[0][1], (0.0, 0.0)), load), 0.0
     if done:
         line.regain([speed for _, speed in way[: len(done)]], done[-1])

@@ -61,7 +61,7 @@ _EXPLAINED = (
     (r"overlap", "The overlap follows from petals.arc_length and petals.count."),
     (
         r"tilt|misalign|slope",
-        "Misalignment is not modelled: journal and bushing are parallel; a rotor with a rotor.span tilts.",
+        "The journal's axis is held at operation.tilt, or tilts under operation.moment, or with a rotor.span.",
     ),
     (r"bump|compliant|foundation", "Bump foils stand in the table [bump_foil], in place of [petals]."),
     (

@@ -8,6 +8,7 @@
 `continuation.py`          from a known equilibrium to a neighbour; from rest up to speed
 `branches.py`              whether there is more than one equilibrium at a position
 `under_load.py`            the journal's position under a load
+`heated.py`                the temperatures of a heat network with film, contacts and position
 `friction_path.py`         equilibria with friction between petals, one after another
 `parameter_response.py`    how an equilibrium follows a parameter of its case
 `small_motion.py`          what is asked of the response to a small motion of the journal

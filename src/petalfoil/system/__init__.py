@@ -11,6 +11,9 @@
 `loaded.py`            the journal's position unknown, a load given
 `friction.py`          friction between petals, and a problem with it
 `time_step.py`         an implicit step in time: the film stores gas
+`temperatures.py`      temperatures of film, shaft, pack and bushing
+`heat_network.py`      their heat balances (H3)
+`heat_rows.py`         what film and contacts do to them, and its derivatives
 `damped.py`            a march to rest: the wall resists motion, the film is steady
 `build.py`             from a case to its problem
 =====================  ========================================================================

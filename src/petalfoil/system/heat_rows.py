@@ -113,7 +113,7 @@ class HeatRows:
 
     @property
     def scale(self) -> float:
-        """What they are compared with: the friction power; more where the tolerance would be below their rounding [W]."""
+        """What they are compared with: the friction power, or more where the tolerance would be their rounding [W]."""
         heat, (G, _) = self.film_heat, self.network.paths
         rounding = ROUNDING * float(np.trace(G)) * self.network.gas.temperature
         return max(heat.viscous + heat.rubbing, rounding / BALANCE)
