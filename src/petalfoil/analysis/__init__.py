@@ -52,6 +52,7 @@ What they share:
 `trace.py`             what a motion leaves behind
 `grid_study.py`        nested grids
 `error_bars.py`        the error bars of any answer, from them
+`accuracy.py`          whether they are below an accuracy, and the next finer grid
 `richardson.py`        values on a sequence of grids: limit, order, error bar
 `classic_method.py`    the paper's own method
 `evaluation.py`        a solution evaluated once, as typed parts

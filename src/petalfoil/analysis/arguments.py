@@ -325,5 +325,15 @@ Mass: TypeAlias = Annotated[
         above=0.0,
     ),
 ]
+Accuracy: TypeAlias = Annotated[
+    float | None,
+    Quantity(
+        unit="1",
+        metavar="NUMBER",
+        help='Refine the grid until the error bar of every result is below this, as "1 %"; what misses it is named.',
+        above=0.0,
+        at_most=1.0,
+    ),
+]
 ErrorBars: TypeAlias = Annotated[bool, Flag(help="Add error bars, from a study on the case's grid and two more.")]
 Place: TypeAlias = tuple[float, float] | Literal["balance"] | None

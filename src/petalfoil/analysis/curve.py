@@ -35,7 +35,7 @@ from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 
 
-@analysis(Series(columns=CHARACTERISTIC))
+@analysis(Series(columns=CHARACTERISTIC), error_bars=True)
 def curve(
     case: Case,
     eccentricities: Displacements,

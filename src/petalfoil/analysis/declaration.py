@@ -20,7 +20,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias, get_type_hints
 
 from petalfoil.analysis.adapted_stations import with_stations
-from petalfoil.analysis.arguments import Argument, ErrorBars, StoredResult
+from petalfoil.analysis.arguments import Accuracy, Argument, ErrorBars, StoredResult
 from petalfoil.analysis.error_bars import WithErrorBars
 from petalfoil.analysis.known_verbs import register
 from petalfoil.analysis.resume import asked_for, points_done
@@ -40,8 +40,8 @@ if TYPE_CHECKING:
 Question: TypeAlias = Callable[..., Record | Run]
 Values: TypeAlias = Mapping[str, Any]
 """Arguments by name, SI."""
-ERROR = "error"
-"""The argument that asks for error bars."""
+ERROR, ACCURACY = "error", "accuracy"
+"""The arguments that ask for error bars, and for bars below a limit."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,7 +105,7 @@ class Analysis:
     excludes : mapping
         Arguments that say nothing beside others, with these.
     error_bars : bool
-        Whether it has the argument `error`, which adds error bars from a grid study.
+        Whether it has the arguments `error` and `accuracy`, which add error bars from a grid study.
     """
 
     question: Question
@@ -138,7 +138,7 @@ class Analysis:
     @cached_property
     def arguments(self) -> dict[str, Argument]:
         """The arguments by name, in order, without the case."""
-        hints = {**get_type_hints(self.question, include_extras=True), ERROR: ErrorBars}
+        hints = {**get_type_hints(self.question, include_extras=True), ERROR: ErrorBars, ACCURACY: Accuracy}
         declared = {
             name: [part for part in getattr(hint, "__metadata__", ()) if isinstance(part, Argument)]
             for name, hint in hints.items()
@@ -147,13 +147,17 @@ class Analysis:
 
     @cached_property
     def signature(self) -> inspect.Signature:
-        """The signature of the function, with the argument for error bars before the progress."""
+        """The signature of the function, with the arguments for error bars before the progress."""
         own = inspect.signature(self.question)
         if not self.error_bars:
             return own
-        added = inspect.Parameter(ERROR, inspect.Parameter.KEYWORD_ONLY, default=False, annotation=ErrorBars)
-        *given, progress = own.parameters.values()
-        return own.replace(parameters=[*given, added, progress])
+        added = [
+            inspect.Parameter(ERROR, inspect.Parameter.KEYWORD_ONLY, default=False, annotation=ErrorBars),
+            inspect.Parameter(ACCURACY, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Accuracy),
+        ]
+        given = list(own.parameters.values())
+        last = [parameter for parameter in given if parameter.name == "progress"]
+        return own.replace(parameters=[*(parameter for parameter in given if parameter not in last), *added, *last])
 
     @property
     def _tells_progress(self) -> bool:
@@ -214,23 +218,31 @@ class Analysis:
         """
         if not isinstance(case, Case):
             raise UsageError(f"{shown(case)} is not a Case; Case.load(path) reads one from a file")
-        asked = {name: value for name, value in values.items() if name != ERROR}
+        asked = {name: value for name, value in values.items() if name not in (ERROR, ACCURACY)}
         case = with_stations(case)
         with one_thread():
             begun = self.question(case, **asked, **({"progress": progress} if self._tells_progress else {}))
         run: Run = Single(begun) if isinstance(begun, Record) else begun
         if isinstance(run, Points):
-            defaults = {name: self.default(name) for name in self.arguments if name != ERROR}
+            defaults = {name: self.default(name) for name in self.arguments if name not in (ERROR, ACCURACY)}
             run.asked = asked_for(case, defaults | asked)
         if resume is not None:
             if not isinstance(run, Points) or not callable(run.source):
                 raise UsageError(f"{self.verb} with these arguments is no series of points that could go on")
             run.done.extend(points_done(resume, self.layout_of(resume), self.verb, run.asked))
-        if not values.get(ERROR, False):
+        accuracy = values.get(ACCURACY)
+        if not values.get(ERROR, False) and accuracy is None:
             return run
         if not self._layout(run).takes_error_bars:
             raise UsageError("error bars are for points, not for a table over load and speed: ask for one of each")
-        return WithErrorBars(run, case, lambda other: self._whole(other, asked))
+        continued = [name for name, value in asked.items() if value is not None and self._continues(name)]
+        if continued:
+            raise UsageError(f"error bars need the whole run on every grid: leave {continued[0]} out")
+        return WithErrorBars(run, case, lambda other: self._whole(other, asked), accuracy)
+
+    def _continues(self, name: str) -> bool:
+        """Whether an argument is a result to go on from, which has the grid that it was computed on."""
+        return isinstance(self.arguments[name], StoredResult)
 
     def _whole(self, case: Case, values: Values) -> tuple[Record, ...]:
         """All records of a case."""
@@ -328,7 +340,7 @@ def analysis(
     results : mapping, optional
         Results that it introduces, by name.
     error_bars : bool
-        Whether it has the argument `error`, which adds error bars from a grid study.
+        Whether it has the arguments `error` and `accuracy`, which add error bars from a grid study.
     """
 
     def declared(question: Question) -> Analysis:

@@ -1,22 +1,32 @@
-"""Error bars beside the answer of any analysis: the same question on the case's grid and two more."""
+"""Error bars beside the answer of any analysis: the same question on the case's grid and on two nested with it.
+
+With an accuracy the grids are refined until the bar of every shown result is below it (`accuracy.py`); the answer is
+that of the finest.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
-from petalfoil.analysis.grid_study import array_error_bars, error_bars, grid_of, grid_text, grids, parts
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from petalfoil.analysis.accuracy import finer, remark_on, shortfalls
+from petalfoil.analysis.grid_study import array_error_bars, error_bars, grid_of, grid_text, grids, unknowns
 from petalfoil.analysis.runs import Run
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress
 from petalfoil.errors import ConvergenceError
-from petalfoil.results.record import Array, Record
+from petalfoil.results.record import Record
 from petalfoil.results.schema import FIELDS
 
+Array = NDArray[np.float64]
 Ask = Callable[[Case], tuple[Record, ...]]
 """Answers the question for a case on another grid."""
 Answers = dict[tuple[int, int], tuple[Record, ...] | ConvergenceError]
-"""The records of each other grid, or why it has none."""
+"""The records of each grid, or why it has none."""
 
 
 @dataclass
@@ -31,6 +41,8 @@ class WithErrorBars:
         The bearing.
     ask : callable
         Answers the same question on another grid.
+    accuracy : float or None
+        Error bar over the size of a result that is to be met [1]; None leaves the case's own grid as it is.
     barred : tuple of Record or None
         The records with error bars, once they are known.
     """
@@ -38,7 +50,9 @@ class WithErrorBars:
     run: Run
     case: Case
     ask: Ask
+    accuracy: float | None = None
     barred: tuple[Record, ...] | None = None
+    _answers: Answers = field(default_factory=dict)
 
     @property
     def is_series(self) -> bool:
@@ -50,26 +64,45 @@ class WithErrorBars:
         raise AttributeError("a run with error bars is a series if the run itself is one")
 
     def advance(self) -> Iterator[tuple[float, str]]:
-        """The run itself, then the other grids."""
+        """The run itself, then the other grids; with an accuracy finer ones, as long as it is not met."""
         cases = grids(self.case)
-        own = next(k for k, case in enumerate(cases) if grid_of(case) == grid_of(self.case))
-        spent = [b - a for a, b in zip([0.0, *parts(cases)], parts(cases), strict=False)]
-        done = spent[own]
+        cost = {grid_of(case): unknowns(case) / sum(map(unknowns, cases)) for case in cases}
+        own = done = cost[grid_of(self.case)]
         for part, text in self.run.advance():
-            yield part * done, text
-        answers: Answers = {}
-        for k, case in enumerate(cases):
-            if k != own:
-                answers[grid_of(case)] = self._answer(case)
-                done += spent[k]
-                yield done, grid_text(case)
-        self.barred = tuple(barred(record, number, answers) for number, record in enumerate(self.run.records()))
+            yield part * own, text
+        self._answers[grid_of(self.case)] = self.run.records()
+        case = self.case
+        while True:
+            for other in grids(case):
+                if self._ask(other):
+                    done = min(1.0, done + cost.get(grid_of(other), 0.0))
+                    yield done, grid_text(other)
+            self.barred, ahead = self._with_bars(case), finer(case)
+            if self.accuracy is None or not shortfalls(self.barred, self.accuracy):
+                return
+            if ahead is not None and self._ask(ahead):
+                yield done, grid_text(ahead)
+            if ahead is None or isinstance(self._answers[grid_of(ahead)], ConvergenceError):
+                self.barred = tuple(remark_on(record, self.accuracy) for record in self.barred)
+                return
+            case = ahead
 
-    def _answer(self, case: Case) -> tuple[Record, ...] | ConvergenceError:
+    def _with_bars(self, case: Case) -> tuple[Record, ...]:
+        """The records on the grid of `case`, which has an answer, with their error bars."""
+        records = self._answers[grid_of(case)]
+        if isinstance(records, ConvergenceError):
+            raise records
+        return tuple(barred(record, number, self._answers) for number, record in enumerate(records))
+
+    def _ask(self, case: Case) -> bool:
+        """Answer the question on the grid of `case`; whether that was not done before."""
+        if grid_of(case) in self._answers:
+            return False
         try:
-            return self.ask(case)
+            self._answers[grid_of(case)] = self.ask(case)
         except ConvergenceError as failure:
-            return failure
+            self._answers[grid_of(case)] = failure
+        return True
 
     def records(self, ended: str = "") -> tuple[Record, ...]:
         """The records with their error bars; without them if the run ended before."""
@@ -112,10 +145,30 @@ def field_bars(record: Record, number: int, answers: Answers) -> dict[str, Array
         place = 0 if grid == grid_of(case) else number
         others.append(None if isinstance(answer, ConvergenceError) else answer[place])
     return {
-        f"{name}_error": array_error_bars(
-            own.astype(float),
-            [other.fields[name].astype(float) if other is not None and other.converged else None for other in others],
-        )
+        f"{name}_error": array_error_bars(own.astype(np.float64), [values_of(other, name, record) for other in others])
         for name, own in record.fields.items()
         if f"{name}_error" in FIELDS
     }
+
+
+def values_of(record: Record | None, name: str, own: Record) -> Array | None:
+    """Values of a field on another grid, in the shape of the `own` one; None where that grid has no answer.
+
+    Natural modes belong together whose eigenvalues are nearest; a mode that the other grid does not have is nan.
+    """
+    if record is None or not record.converged:
+        return None
+    values: Array = record.fields[name].astype(np.float64)
+    if FIELDS[name].dims != ("mode",):
+        return values
+    here, there = eigenvalues(own), eigenvalues(record)
+    mine, others = linear_sum_assignment(np.abs(here[:, None] - there[None, :]))
+    matched = np.full(len(here), np.nan)
+    matched[mine] = values[others]
+    return matched
+
+
+def eigenvalues(record: Record) -> NDArray[np.complex128]:
+    """Eigenvalues of the natural modes of a record, (mode,) [1/s]."""
+    growth, frequency = (record.fields[name].astype(np.float64) for name in ("mode_growth_rate", "natural_frequency"))
+    return np.asarray(growth + 1j * frequency, dtype=np.complex128)

@@ -91,7 +91,7 @@ def grids(case: Case, levels: int = 3, coarsest: int | None = None) -> list[Case
             if not _can_be_halved(case, cells, axial):
                 break
             cells, axial = cells // 2, axial // 2
-    return [_on(case, cells * 2**level, axial * 2**level) for level in range(levels)]
+    return [on_grid(case, cells * 2**level, axial * 2**level) for level in range(levels)]
 
 
 def grid_of(case: Case) -> tuple[int, int]:
@@ -141,19 +141,26 @@ def error_bars(own: Record, point: Point, progress: Progress | None = None) -> d
         Neither of the other grids has a solution.
     """
     case = Case.from_toml(own.case_toml)
-    case = _on(case, *grid_of(case))
+    case = on_grid(case, *grid_of(case))
     own = replace(own, case_toml=case.to_toml())
     estimates = table(list(grid_records(grids(case), point, progress, known=own)))
     return {estimate.name: _bar(estimate, float(own.scalars[estimate.name])) for estimate in estimates}
 
 
 def array_error_bars(own: Array, on_grids: Sequence[Array | None]) -> Array:
-    """Error bars of the entries of an array on one of the grids, coarsest first; None where a grid has no answer."""
+    """Error bars of the entries of an array on one of the grids, coarsest first; None where a grid has no answer.
+
+    An entry that fewer than two grids have has none: nan.
+    """
     missing = np.full_like(own, np.nan)
     values = np.stack([missing if array is None else array for array in on_grids])
     bars = np.empty_like(own)
     for entry in np.ndindex(own.shape):
-        counted = _unbroken(values[(slice(None), *entry)])
+        here = values[(slice(None), *entry)]
+        if np.count_nonzero(np.isfinite(here)) < 2:
+            bars[entry] = np.nan
+            continue
+        counted = _unbroken(here)
         bars[entry] = abs(own[entry] - counted[-1]) + richardson([float(v) for v in counted], RATIO).error
     return bars
 
@@ -181,7 +188,8 @@ def _can_be_halved(case: Case, cells: int, axial: int) -> bool:
     return case.model.kind is ModelKind.TWO_D or (axial % step == 0 and axial // 2 >= LEAST_AXIAL)
 
 
-def _on(case: Case, cells: int, axial: int) -> Case:
+def on_grid(case: Case, cells: int, axial: int) -> Case:
+    """The case on `cells` per pitch, and `axial` over the length of a 3-D model."""
     changes: dict[str, object] = {"model.cells_per_pitch": cells}
     if case.model.kind is ModelKind.THREE_D:
         changes["model.axial_cells"] = axial

@@ -76,9 +76,9 @@ def summary(record: Record) -> Iterator[Row]:
         yield Row(label, str(scalars[name]), "")
     paths = Path.journals(time, over, 0.5 * float(scalars.get("span", 0.0)))
     yield Row("largest displacement", number(1e6 * max(float(np.hypot(p.x, p.y).max()) for p in paths)), "µm")
-    yield Row("amplitude, last turns", number(1e6 * float(scalars["amplitude"])), "µm")
+    yield Row("amplitude, last turns", with_bar(record, "amplitude", 1e6), "µm")
     if "tilt_amplitude" in scalars:
-        yield Row("tilt, last turns", number(1e6 * float(scalars["tilt_amplitude"])), "µrad")
+        yield Row("tilt, last turns", with_bar(record, "tilt_amplitude", 1e6), "µrad")
         yield Row("whirl ratio of the tilt", _ratio(float(scalars["tilt_whirl_ratio"])), "")
     yield cell("min_film_thickness", float(over["min_film_thickness"].min()))
     yield cell("contact_fraction", float(over["contact_fraction"].max()))._replace(label="largest contact fraction")
@@ -86,6 +86,12 @@ def summary(record: Record) -> Iterator[Row]:
     for name in ("mass_balance_error", "energy_balance_error"):
         yield Row(name.replace("_balance_", "-balance "), number(float(scalars[name])), "")
     yield Row("time spent", number(float(scalars["wall_time"])), "s")
+
+
+def with_bar(record: Record, name: str, factor: float) -> str:
+    """A scalar times `factor`, and its error bar where it has one."""
+    value, error = float(record.scalars[name]), (record.errors or {}).get(name)
+    return number(factor * value) + ("" if error is None else f" ± {number(factor * error)}")
 
 
 def _ratio(ratio: float) -> str:
@@ -111,6 +117,7 @@ ANIMATION = Export(
     Point(histories=OVER_TIME, rows=summary),
     exports=(ANIMATION,),
     excludes={"initial": ("restart",), "revolutions": ("duration",)},
+    error_bars=True,
 )
 def orbit(  # noqa: PLR0913 - the options of the verb
     case: Case,

@@ -68,7 +68,7 @@ class Leg:
     leg: str
 
 
-@analysis(Series(columns=COLUMNS, legs=("up", "down"), at=at_speed))
+@analysis(Series(columns=COLUMNS, legs=("up", "down"), at=at_speed), error_bars=True)
 def runup(
     case: Case,
     load: Load = None,

@@ -31,24 +31,35 @@ from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.grid import Grid
-from petalfoil.results.layout import ArrayTable, Point, Series, at_speed
+from petalfoil.results.layout import ArrayTable, Cell, Point, Series, at_speed
 from petalfoil.results.parts import AppliedLoad, Outcome
 from petalfoil.results.record import Array, Record
 from petalfoil.results.schema import Variable
-from petalfoil.results.summary import ABSENT, cell
+from petalfoil.results.summary import ABSENT, cell, number
 
 MODES = ("natural_frequency", "mode_growth_rate", "damping_ratio", "participation", "whirl_direction")
 """What is told of each natural mode."""
 TILT = "mode_tilt"
 """The same of a rotor that tilts."""
+MODE_BARS = ("natural_frequency_error", "mode_growth_rate_error", "damping_ratio_error")
+"""Their error bars."""
+
+
+def barred(name: str, record: Record, mode: int, shown_as: str = "") -> Cell:
+    """A number of a natural mode, and its error bar where it has one; `shown_as` gives a scalar with its unit."""
+    bars = record.fields.get(f"{name}_error")
+    found = [float(values[mode]) for values in (record.fields[name], bars) if values is not None]
+    shown = [cell(shown_as, value).value if shown_as else number(value) for value in found]
+    return found[0] if bars is None and not shown_as else " ± ".join(shown)
+
 
 MODE_TABLE = ArrayTable(
     dim="mode",
     columns={
-        "natural\nrpm": lambda record, k: cell("speed", float(record.fields["natural_frequency"][k])).value,
+        "natural\nrpm": lambda record, k: barred("natural_frequency", record, k, "speed"),
         "Hz": lambda record, k: float(record.fields["natural_frequency"][k]) / (2.0 * math.pi),
-        "growth\n1/s": lambda record, k: float(record.fields["mode_growth_rate"][k]),
-        "damping\nratio": lambda record, k: float(record.fields["damping_ratio"][k]),
+        "growth\n1/s": lambda record, k: barred("mode_growth_rate", record, k),
+        "damping\nratio": lambda record, k: barred("damping_ratio", record, k),
         "participation\nof the rotor": lambda record, k: float(record.fields["participation"][k]),
         "forward (+1) or\nbackward (-1)": lambda record, k: float(record.fields["whirl_direction"][k]),
         "cylindrical (0)\nor conical (1)": lambda record, k: (
@@ -112,7 +123,7 @@ class Rotor:
 
 
 @analysis(
-    Point(lists=MODES, histories=(TILT,), table=MODE_TABLE),
+    Point(lists=MODES, histories=(TILT, *MODE_BARS), table=MODE_TABLE),
     GRID,
     Campbell(lists=(*MODES, CRITICAL), histories=(TILT,), table=CAMPBELL_TABLE, at=at_speed),
     excludes={"speed": ("speeds",), "load": ("loads",), "mass": ("loads",)},
@@ -246,9 +257,9 @@ def _campbell(
         branches.regain(next((record for record in reversed(done) if record.converged), done[-1]))
         if line is not None:
             line.regain([case.operation.speed for case in cases[: len(done)]], done[-1])
-    for number, case in enumerate(cases[len(done) :], len(done)):
+    for place, case in enumerate(cases[len(done) :], len(done)):
         speed = case.operation.speed
-        with running(part(progress, number, len(cases)), "stability") as run:
+        with running(part(progress, place, len(cases)), "stability") as run:
             try:
                 if line is None:
                     found = operating_point(at(rotor.case, speed), None)

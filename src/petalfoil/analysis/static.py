@@ -60,7 +60,7 @@ def preload(points: list[dict[str, Any]]) -> dict[str, Any]:
     return {"preload": None, "starting_torque": None}
 
 
-@analysis(Series(columns=CHARACTERISTIC, head=preload))
+@analysis(Series(columns=CHARACTERISTIC, head=preload), error_bars=True)
 def static(
     case: Case,
     eccentricities: Displacements = (0.0,),
