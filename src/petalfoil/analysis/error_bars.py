@@ -16,7 +16,7 @@ from scipy.optimize import linear_sum_assignment
 from petalfoil.analysis.accuracy import finer, remark_on, shortfalls
 from petalfoil.analysis.grid_study import array_error_bars, error_bars, grid_of, grid_text, grids, unknowns
 from petalfoil.analysis.runs import Run
-from petalfoil.case import Case
+from petalfoil.case import Case, warnings_of_errors
 from petalfoil.equilibrium.run_context import Progress
 from petalfoil.errors import ConvergenceError
 from petalfoil.results.record import Record
@@ -133,7 +133,9 @@ def barred(record: Record, number: int, answers: Answers) -> Record:
         errors = error_bars(record, on_grid)
     except ConvergenceError as failure:
         return replace(record, errors={}, remarks=(*record.remarks, f"no error bars: {failure}"))
-    return replace(record, errors=errors, fields={**record.fields, **field_bars(record, number, answers)})
+    told = (*record.warnings, *warnings_of_errors(record.scalars, errors))
+    fields = {**record.fields, **field_bars(record, number, answers)}
+    return replace(record, errors=errors, fields=fields, warnings=told)
 
 
 def field_bars(record: Record, number: int, answers: Answers) -> dict[str, Array]:

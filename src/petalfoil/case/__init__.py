@@ -37,7 +37,7 @@ from petalfoil.case.heat import Heat, HotGas
 from petalfoil.case.package import Package, package_of
 from petalfoil.case.parameters import Parameter, parameter_of, parameters_of, with_values
 from petalfoil.case.petal_table import Mount, Petals
-from petalfoil.case.plausibility import warnings_of
+from petalfoil.case.plausibility import warnings_of, warnings_of_errors
 from petalfoil.case.rotor import Rotor
 from petalfoil.case.sections import Bearing, Edges, Method, Model, ModelKind, Operation, Surface
 from petalfoil.case.wall_tables import WallTable, register_table, unregister_table
@@ -73,5 +73,6 @@ __all__ = [
     "register_table",
     "unregister_table",
     "warnings_of",
+    "warnings_of_errors",
     "with_values",
 ]

@@ -39,6 +39,22 @@ MIN_ROWS = 6
 SCATTER = 6.0
 """Standard deviations by which the worst of some hundred rows misses its neighbours: they scatter as it does."""
 
+MIXED = 3.0
+"""Minimum film thickness over contact film thickness below which peaks of the surfaces touch now and then: the film
+parameter of mixed lubrication."""
+
+TAYLOR = 41.2
+"""Reynolds number of the film over the root of radius over film, from which on vortices form (Taylor 1923)."""
+
+WIDE = 0.1
+"""Error bar over the result above which the result is known to its order of magnitude only."""
+
+JUDGED = (
+    *("bearing_force", "min_film_thickness", "peak_pressure", "friction_torque", "max_bending_stress"),
+    *("critical_mass", "threshold_speed", "liftoff_speed", "starting_torque"),
+)
+"""Results whose error bars are judged: others may vanish, as a force across the load does."""
+
 BOTTOMED_OUT = ("bottomed out",)
 """Words in the solution path of a foil pack that a load has closed to its solid height."""
 
@@ -134,14 +150,12 @@ def warnings_of(case: Case, scalars: Scalars) -> list[str]:
 
 
 def _of_inputs(case: Case, scalars: Scalars) -> Iterator[str]:
-    for usual in USUAL:
-        section, _, name = usual.key.partition(".")
-        table = getattr(case, section)
-        if table is not None:
-            yield from usual.warning(getattr(table, name))
+    yield from _unusual(case)
     yield from CLEARANCE_RATIO.warning(case.bearing.clearance / case.bearing.journal_radius)
     yield from SLENDERNESS.warning(0.5 * case.bearing.length / case.bearing.journal_radius)
     yield from _surface_speed(case, _number(scalars, "speed", case.operation.speed))
+    if not list(_unusual(case)):  # a density that is wrong would be told twice
+        yield from _turbulence(case, scalars)
     yield from _unbalance(case)
     if case.surface.petal_friction > 0.0:
         yield (
@@ -149,6 +163,14 @@ def _of_inputs(case: Case, scalars: Scalars) -> Iterator[str]:
             "the paper's bearing: the damping it gives is no prediction"
         )
     yield from _measured_shape(case)
+
+
+def _unusual(case: Case) -> Iterator[str]:
+    for usual in USUAL:
+        section, _, name = usual.key.partition(".")
+        table = getattr(case, section)
+        if table is not None:
+            yield from usual.warning(getattr(table, name))
 
 
 def _surface_speed(case: Case, speed: float) -> Iterator[str]:
@@ -199,6 +221,8 @@ def _of_answer(case: Case, scalars: Scalars) -> Iterator[str]:
     yield from _stress(case, _number(scalars, "max_bending_stress"))
     yield from _rarefaction(case, _number(scalars, "knudsen_number"))
     yield from _contact(case, scalars)
+    yield from _mixed_lubrication(case, scalars)
+    yield from _pressed_bumps(case, _number(scalars, "max_deflection"))
     if any(words in str(scalars.get("solution_path", "")) for words in BOTTOMED_OUT):
         yield (
             "solution_path: the foil pack has bottomed out, journal, petals and bushing touch as a solid stack, whose "
@@ -244,6 +268,63 @@ def _contact(case: Case, scalars: Scalars) -> Iterator[str]:
             f"contact_fraction: at operating speed solid contact carries {100.0 * fraction:.2g} % of the force on the "
             "journal: it would wear and heat up, which is not modelled; reduce the load, or raise the speed"
         )
+
+
+def _mixed_lubrication(case: Case, scalars: Scalars) -> Iterator[str]:
+    film, floor = _number(scalars, "min_film_thickness"), case.surface.contact_film_thickness
+    speed = _number(scalars, "speed", case.operation.speed)
+    free = not _number(scalars, "contact_fraction", 0.0) > MIN_CONTACT
+    if free and film < MIXED * floor and 0.0 < case.operation.speed <= speed:
+        yield (
+            f"min_film_thickness: {format_quantity(film, 'm')} is under {MIXED:g} times "
+            f"surface.contact_film_thickness, {format_quantity(floor, 'm')}: peaks of the surfaces touch now and then, "
+            "which is not modelled; reduce the load, raise the speed, or take smoother surfaces"
+        )
+
+
+def _turbulence(case: Case, scalars: Scalars) -> Iterator[str]:
+    radius, speed = case.bearing.journal_radius, _number(scalars, "speed", case.operation.speed)
+    film = case.bearing.clearance if case.petals is None else _number(scalars, "min_film_thickness")
+    reynolds = case.gas.ambient_density * speed * radius * film / case.gas.viscosity
+    limit = TAYLOR * math.sqrt(radius / film) if film > 0.0 else math.inf
+    if reynolds > limit:
+        name = "radial clearance" if case.petals is None else "minimum film thickness"
+        yield (
+            f"operation.speed: the Reynolds number of a film of the {name}, {format_quantity(film, 'm')}, is "
+            f"{reynolds:.3g}, above {limit:.3g}, where vortices form and the film becomes turbulent, which is not "
+            "modelled: friction and stiffness would be larger; lower speed or ambient pressure, or a smaller clearance"
+        )
+
+
+def _pressed_bumps(case: Case, deflection: float) -> Iterator[str]:
+    if deflection > case.travel:
+        yield (
+            f"max_deflection: the foil is pressed in by {format_quantity(deflection, 'm')}, more than the height of "
+            f"its bumps, {format_quantity(case.travel, 'm')}: they would lie on the bushing, which is not modelled; "
+            "reduce the load, or take stiffer bumps"
+        )
+
+
+def warnings_of_errors(scalars: Scalars, errors: Mapping[str, float]) -> list[str]:
+    """Return what the error bars of an answer tell against it.
+
+    Parameters
+    ----------
+    scalars : mapping
+        The answer's scalars by name, SI.
+    errors : mapping
+        Their error bars.
+    """
+    wide = {name: errors[name] / abs(_number(scalars, name)) for name in JUDGED if name in errors and scalars.get(name)}
+    told = {name: share for name, share in wide.items() if share > WIDE}
+    if not told:
+        return []
+    worst = max(told, key=lambda name: told[name])
+    more = f" (and those of {', '.join(name for name in told if name != worst)})" if len(told) > 1 else ""
+    return [
+        f"{worst}: its error bar is {100.0 * told[worst]:.2g} % of it{more}, over {100.0 * WIDE:g} %: the grid is too "
+        "coarse for it; raise model.cells_per_pitch and, in 3-D, model.axial_cells, or see `converge`"
+    ]
 
 
 def _number(scalars: Scalars, name: str, default: float = math.nan) -> float:

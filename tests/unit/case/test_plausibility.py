@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import petalfoil
-from petalfoil.case import Case, warnings_of
+from petalfoil.case import Case, warnings_of, warnings_of_errors
 from tests.cases import EXAMPLES, FAULTS, case
 
 PETALS, PLAIN = "paper_n8", "plain_journal"
@@ -53,9 +53,9 @@ INPUTS: dict[str, tuple[str, str, Any, Any]] = {
 @pytest.mark.parametrize("name", INPUTS)
 def test_an_unusual_input_is_warned_of(name: str) -> None:
     example, key, unusual, usual = INPUTS[name]
-    centred = {"operation.eccentricity": (0, 0), "surface.contact_film_thickness": "0.1 um"}
-    only(warnings_of(case(example, **centred, **{key: unusual}), {}), key)
-    assert warnings_of(case(example, **centred, **{key: usual}), {}) == []
+    slow = {"operation.speed": "10 rpm", "operation.eccentricity": (0, 0), "surface.contact_film_thickness": "0.1 um"}
+    only(warnings_of(case(example, **{**slow, key: unusual}), {}), key)
+    assert warnings_of(case(example, **{**slow, key: usual}), {}) == []
 
 
 def test_a_speed_in_rpm_is_told_how_to_be_written() -> None:
@@ -83,6 +83,13 @@ def test_the_answer_s_own_speed_counts() -> None:
 ANSWERS: dict[str, tuple[str, str, dict[str, Any], dict[str, Any]]] = {
     "stress": ("max_bending_stress", PETALS, {"max_bending_stress": 2.01e9}, {"max_bending_stress": 1.99e9}),
     "Knudsen": ("knudsen_number", PLAIN, {"knudsen_number": 0.101}, {"knudsen_number": 0.099}),
+    "mixed lubrication": (
+        "min_film_thickness", PETALS, {"min_film_thickness": 2.99e-6}, {"min_film_thickness": 3.01e-6},
+    ),
+    "a thin film on the way to speed": (
+        "min_film_thickness", PLAIN, {"min_film_thickness": 1.1e-6}, {"min_film_thickness": 1.1e-6, "speed": 2000.0},
+    ),
+    "pressed bumps": ("max_deflection", "bumps", {"max_deflection": 201e-6}, {"max_deflection": 199e-6}),
     "contact": (
         "contact_fraction", PETALS, {"contact_fraction": 0.02, "speed": 8000.0}, {"contact_fraction": 5e-4},
     ),
@@ -95,8 +102,46 @@ ANSWERS: dict[str, tuple[str, str, dict[str, Any], dict[str, Any]]] = {
 @pytest.mark.parametrize("name", ANSWERS)
 def test_an_implausible_answer_is_warned_of(name: str) -> None:
     key, example, implausible, plausible = ANSWERS[name]
-    only(warnings_of(case(example), implausible), key)
-    assert warnings_of(case(example), plausible) == []
+    one = bumps() if example == "bumps" else case(example)
+    only(warnings_of(one, implausible), key)
+    assert warnings_of(one, plausible) == []
+
+
+def bumps() -> Case:
+    """A bump foil whose bumps are 200 um high."""
+    strip = {"bump_pitch": "4 mm", "bump_half_length": "1.5 mm", "bump_half_angle": 2.0 * math.atan(0.2 / 1.5)}
+    metal = {"thickness": "0.1 mm", "youngs_modulus": "210 GPa", "poisson_ratio": 0.3}
+    return case("bump_foil", bump_foil={**strip, **metal})
+
+
+def test_a_turbulent_film_is_warned_of() -> None:
+    """At a pressure that the surface speed of 52 m/s makes turbulent: Re = 84 p / bar, vortices from 1303 on."""
+    dense, less = (case(PLAIN, **{"gas.ambient_pressure": pressure}) for pressure in ("16 bar", "15 bar"))
+    assert "the Reynolds number of a film of the radial clearance" in only(warnings_of(dense, {}), "operation.speed")
+    assert warnings_of(less, {}) == []
+
+
+def test_a_turbulent_film_under_petals_is_warned_of() -> None:
+    dense = case(PETALS, **{"gas.ambient_pressure": "10 bar"})
+    told = only(warnings_of(dense, {"min_film_thickness": 60e-6}), "operation.speed")
+    assert "of the minimum film thickness, 60 µm" in told
+    assert warnings_of(dense, {"min_film_thickness": 10e-6}) == []
+
+
+def test_a_wide_error_bar_is_warned_of() -> None:
+    scalars = {"bearing_force": 10.0, "force_x": 1e-9, "min_film_thickness": 4e-6, "status": "converged"}
+    (told,) = warnings_of_errors(scalars, {"bearing_force": 1.01, "force_x": 1.0, "min_film_thickness": 1e-6})
+    assert told.startswith("min_film_thickness: its error bar is 25 % of it (and those of bearing_force), over 10 %")
+    assert warnings_of_errors(scalars, {"bearing_force": 0.99, "force_x": 1.0, "min_film_thickness": 1e-8}) == []
+    assert warnings_of_errors({"bearing_force": 0.0}, {"bearing_force": 1.0}) == []
+
+
+def test_error_bars_of_a_coarse_grid_are_told_with_the_answer() -> None:
+    coarse = case(PETALS, **{"model.cells_per_pitch": 8, "operation.eccentricity": ("0 um", "-200 um")})
+    told = petalfoil.solve(coarse, error=True).attrs.get("warnings", "")
+    fine = petalfoil.solve(coarse.replace(**{"model.cells_per_pitch": 64}), error=True).attrs.get("warnings", "")
+    assert "error bar" in told
+    assert "error bar" not in fine
 
 
 def test_contact_at_rest_is_no_matter_for_a_warning() -> None:
@@ -173,13 +218,17 @@ def scalars_of(answer: Any) -> dict[str, Any]:
     return {name: variable.item() for name, variable in answer.data_vars.items() if not variable.dims}
 
 
+MEANT = {"rig": ["min_film_thickness"]}
+"""The rig ran just above its lift-off speed, on films of a few times its roughness."""
+
 COARSE = {"model.cells_per_pitch": 32, "model.axial_cells": 8}
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_examples_give_none(name: str) -> None:
+def test_the_examples_give_none_that_is_not_meant(name: str) -> None:
     one = case(name, **COARSE)
-    assert warnings_of(one, scalars_of(petalfoil.solve(one))) == []
+    told = warnings_of(one, scalars_of(petalfoil.solve(one)))
+    assert [line.partition(":")[0] for line in told] == MEANT.get(name, [])
 
 
 def test_fourteen_gigapascals_are_warned_of() -> None:
