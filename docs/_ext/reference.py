@@ -32,7 +32,7 @@ from petalfoil.cli.studies import study_command
 from petalfoil.results import schema
 from petalfoil.results.schema import Role, Variable
 
-STUDY_FUNCTIONS = ("sweep", "tolerance")
+STUDY_FUNCTIONS = ("sweep", "tolerance", "optimize")
 """Functions that ask an analysis of many cases."""
 
 

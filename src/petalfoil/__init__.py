@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from petalfoil.report.case_report import design_report
     from petalfoil.report.reproduce import reproduce
     from petalfoil.results.store import load, save
+    from petalfoil.studies.optimize import optimize
     from petalfoil.studies.sweep import sweep
     from petalfoil.studies.tolerance import tolerance
 
@@ -65,6 +66,7 @@ __all__ = [
     "design_report",
     "liftoff",
     "load",
+    "optimize",
     "orbit",
     "reproduce",
     "runup",
@@ -81,6 +83,7 @@ _HOMES = {
     "Case": "petalfoil.case",
     "design_report": "petalfoil.report.case_report",
     "load": "petalfoil.results.store",
+    "optimize": "petalfoil.studies.optimize",
     "reproduce": "petalfoil.report.reproduce",
     "save": "petalfoil.results.store",
     "sweep": "petalfoil.studies.sweep",

@@ -26,6 +26,7 @@ NAMES = {
     "design_report",
     "liftoff",
     "load",
+    "optimize",
     "orbit",
     "runup",
     "sensitivity",

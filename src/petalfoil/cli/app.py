@@ -25,6 +25,7 @@ SHOW = "Show a result file once more, without running anything: table, figure, f
 STUDIES = {
     "sweep": "Ask an analysis of many cases: over a grid of parameters, or a sample of them.",
     "tolerance": "Ask an analysis of bearings that scatter, and how likely they keep limits.",
+    "optimize": "Find the design whose results are best within limits.",
     "study": "Show, resume or export the study in a folder.",
 }
 """Commands of studies and the first lines of their help texts."""

@@ -70,6 +70,20 @@ LimitOption = Annotated[
 Samples = Annotated[
     str, typer.Option("--samples", metavar="SAMPLE", help='Number of bearings, or a sample: "lhs 500, seed 2".')
 ]
+RANGES_HELP = 'What varies, as often as needed: petals.thickness="0.1 mm : 0.3 mm", petals.count="6 : 12".'
+Ranges = Annotated[list[str], typer.Option("--vary", metavar="PATH=RANGE", help=RANGES_HELP)]
+Maximize = Annotated[list[str], typer.Option("--maximize", metavar="RESULT", help="A result that is to be large.")]
+Minimize = Annotated[list[str], typer.Option("--minimize", metavar="RESULT", help="A result that is to be small.")]
+Subject = Annotated[
+    list[str],
+    typer.Option("--subject", metavar="LIMIT", help='A limit: "min_film_thickness > 5 um"; as often as needed.'),
+]
+Budget = Annotated[int, typer.Option("--budget", metavar="N", help="Designs that may be answered.", min=1)]
+Method = Annotated[
+    str,
+    typer.Option("--method", metavar="METHOD", help="slsqp along gradients, tpe or nsga2 by sampling; auto chooses."),
+]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", help="Seed of what is drawn at random.", min=0)]
 RUNNING = {
     "out": (Out, Path("study")),
     "workers": (Workers, None),
@@ -121,6 +135,14 @@ def define_tolerance(case: Case, question: Question, own: dict[str, Any]) -> Stu
     return tolerance_study(case, scatter, question, limits=own["limit"], sample=sample)
 
 
+def define_optimize(case: Case, question: Question, own: dict[str, Any]) -> Study:
+    """The study of ``petalfoil optimize``."""
+    from petalfoil.studies.optimize import optimize_study
+
+    settings = {name: own[name] for name in ("maximize", "minimize", "subject", "budget", "method", "seed")}
+    return optimize_study(case, assignments("--vary", own["vary"]), question, settings)
+
+
 COMMANDS = {
     "sweep": StudyCommand(
         help="""Ask an analysis of many cases: over a grid of parameters, or a sample of them.
@@ -149,6 +171,26 @@ Example: petalfoil tolerance case.toml --scatter petals.thickness="± 5 um" --as
             "samples": (Samples, "500"),
         },
         define=define_tolerance,
+    ),
+    "optimize": StudyCommand(
+        help="""Find the design whose results are best within limits, beginning at the case.
+
+Along gradients (SLSQP, exact derivatives where the analysis has them) for
+continuous parameters; by sampling (Optuna) for counts and several objectives,
+of which a front is found. The best designs are case files in the folder.
+
+Example: petalfoil optimize case.toml --vary petals.thickness="0.1 mm : 0.3 mm" --maximize bearing_force
+""",
+        options={
+            "vary": (Ranges, inspect.Parameter.empty),
+            "maximize": (Maximize, []),
+            "minimize": (Minimize, []),
+            "subject": (Subject, []),
+            "budget": (Budget, 200),
+            "method": (Method, "auto"),
+            "seed": (Seed, 0),
+        },
+        define=define_optimize,
     ),
 }
 """Commands that begin a study, by name."""

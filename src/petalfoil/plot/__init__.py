@@ -27,6 +27,7 @@ In the order data flows:
 - ``study_views``  what figures take from a study
 - ``study_sweeps`` a study over its parameters (`sweep`, `parallel_coordinates`, `scatter_matrix`)
 - ``study_tolerance`` scatter of results with limits (`tolerance`)
+- ``study_optimum`` an optimisation and its front (`optimum`)
 - ``studies``      the figures of a study by name (`study`, `study_figures`)
 - ``generic``      any other result (`quantities`)
 - ``figure_registry`` the figure of each analysis (`summary`), and new ones (`register`)
@@ -60,6 +61,7 @@ if TYPE_CHECKING:
     from petalfoil.plot.speed_sweeps import liftoff, runup
     from petalfoil.plot.stability_maps import stability
     from petalfoil.plot.studies import study, study_figures
+    from petalfoil.plot.study_optimum import optimum
     from petalfoil.plot.study_sweeps import parallel_coordinates, scatter_matrix, sweep
     from petalfoil.plot.study_tolerance import tolerance
     from petalfoil.plot.tornado import tornado
@@ -84,6 +86,7 @@ _MODULES = {
     "stability_maps": ("stability",),
     "studies": ("study", "study_figures"),
     "study_tolerance": ("tolerance",),
+    "study_optimum": ("optimum",),
     "study_sweeps": ("parallel_coordinates", "scatter_matrix", "sweep"),
     "tornado": ("tornado",),
 }
@@ -102,6 +105,7 @@ __all__ = [
     "load_characteristic",
     "maps",
     "operating_point",
+    "optimum",
     "orbit",
     "orbit_energy",
     "orbit_histories",

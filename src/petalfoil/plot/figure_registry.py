@@ -25,6 +25,7 @@ FIGURES: dict[str, Draw | str] = {
     "coefficients": "dynamic_coefficients:coefficients",
     "stability": "stability_maps:stability",
     "orbit": "journal_orbit:orbit",
+    "optimize": "study_optimum:optimum",
     "sweep": "study_sweeps:sweep",
     "tolerance": "study_tolerance:tolerance",
     "sensitivity": "tornado:tornado",

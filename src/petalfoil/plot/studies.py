@@ -6,6 +6,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from petalfoil.errors import UsageError
+from petalfoil.plot.study_optimum import optimum
 from petalfoil.plot.study_sweeps import parallel_coordinates, scatter_matrix, sweep
 from petalfoil.plot.study_tolerance import tolerance
 
@@ -23,9 +24,11 @@ def study(ds: xr.Dataset, names: tuple[str, ...] = ()) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Lines, contours or parallel coordinates of a sweep; histograms of a tolerance study.
+        Lines, contours or parallel coordinates of a sweep; histograms of a tolerance study; the
+        designs of an optimisation.
     """
-    return tolerance(ds, names) if ds.attrs["analysis"] == "tolerance" else sweep(ds, names)
+    draw = {"tolerance": tolerance, "optimize": optimum}.get(str(ds.attrs["analysis"]), sweep)
+    return draw(ds, names)
 
 
 def study_figures(ds: xr.Dataset) -> dict[str, Figure]:
@@ -41,11 +44,15 @@ def study_figures(ds: xr.Dataset) -> dict[str, Figure]:
     dict of matplotlib.figure.Figure
         Figures by name; none where no result varies.
     """
-    drawn = {"sweep": _sweep, "tolerance": _tolerance}
+    drawn = {"sweep": _sweep, "tolerance": _tolerance, "optimize": _optimum}
     try:
         return drawn.get(str(ds.attrs["analysis"]), _sweep)(ds)
     except UsageError:  # no case has a result that varies: the page tells why each failed
         return {}
+
+
+def _optimum(ds: xr.Dataset) -> dict[str, Figure]:
+    return {"optimum": optimum(ds), "scatter_matrix": scatter_matrix(ds)}
 
 
 def _tolerance(ds: xr.Dataset) -> dict[str, Figure]:

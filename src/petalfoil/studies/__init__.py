@@ -13,6 +13,12 @@ In the order data flows:
 - `sweep`: a grid or a sample of parameters.
 - `limits`: limits and objectives: results with a bound.
 - `tolerance`: a sample of bearings that scatter.
+- `goals`: objectives, limits, and the designs that are best.
+- `search`: a search under way: what it asked, and what was best.
+- `descent`: along gradients (SciPy).
+- `sampling`: by sampling (Optuna).
+- `gradients`: exact derivatives for a search.
+- `optimize`: the best design within limits.
 - `summary`: a study in words and numbers.
 - `page`: its figures and its page.
 - `export`: its cases as case files.

@@ -24,7 +24,7 @@ from petalfoil.studies.dataset import write_table
 from petalfoil.studies.definition import FILE, Study
 from petalfoil.studies.engine import Effort, Engine, engine
 from petalfoil.studies.plan import Point
-from petalfoil.studies.question import ERROR, Outcome, Task
+from petalfoil.studies.question import ERROR, Outcome, Question, Task
 from petalfoil.studies.store import Store
 
 Progress: TypeAlias = Callable[[float, str], None]
@@ -71,10 +71,13 @@ class Kind:
         Asks its cases through a runner.
     assemble : callable
         Lays out what a store holds.
+    finish : callable or None
+        Writes into the folder what this kind leaves beside data, table, figures and page.
     """
 
     conduct: Callable[[Study, Runner], None]
     assemble: Callable[[Study, Store], xr.Dataset]
+    finish: Callable[[Path, Study, xr.Dataset], None] | None = None
 
 
 @dataclass
@@ -113,20 +116,28 @@ class Runner:
 
     def outcomes(self, points: Sequence[Point]) -> list[Outcome]:
         """Outcomes of points, answered where they are not yet."""
-        self.answer(points)
-        found = (self.store.get(key_of(self.study, self.base, point)) for point in points)
+        return self.ask(points, self.study.question)
+
+    def ask(self, points: Sequence[Point], question: Question) -> list[Outcome]:
+        """Outcomes of points under any question, answered where they are not yet; nothing is told of the progress."""
+        keys = [question.key(self.base, point) for point in points]
+        finished = {key for key in keys if self.store.get(key) is not None}
+        for answered in self.engine.outcomes(self._tasks(points, finished, question)):
+            self.store.add(answered)
+        found = [self.store.get(key) for key in keys]
         return [outcome for outcome in found if outcome is not None]
 
-    def _tasks(self, points: Sequence[Point], finished: set[str]) -> Iterator[Task]:
+    def _tasks(self, points: Sequence[Point], finished: set[str], question: Question | None = None) -> Iterator[Task]:
         """Tasks of the points that are not finished, each once."""
         met: set[str] = set()
+        asked = question or self.study.question
         for point in points:
-            key = key_of(self.study, self.base, point)
+            key = asked.key(self.base, point)
             if key in finished or key in met:
                 continue
             met.add(key)
             path = str(self.store.fields_of(key).resolve()) if self.execution.fields else ""
-            yield Task(key, self.base, point, self.study.question, path)
+            yield Task(key, self.base, point, asked, path)
 
 
 class _Pace:
@@ -203,7 +214,7 @@ def run_with_effort(
             effort = answers.effort
         ds = kind_of(study).assemble(study, store)
         if out is not None:
-            complete(folder, ds)
+            complete(folder, study, ds)
         return ds, effort
 
 
@@ -246,13 +257,15 @@ def stored(folder: str | Path) -> xr.Dataset:
         return kind_of(study).assemble(study, store)
 
 
-def complete(folder: Path, ds: xr.Dataset) -> None:
-    """Write what a finished study leaves: data, table, figures, page."""
+def complete(folder: Path, study: Study, ds: xr.Dataset) -> None:
+    """Write what a finished study leaves: data, table, figures, page, and what its kind adds."""
     from petalfoil.studies.page import write_page
 
     save(ds, folder / folders.DATA)
     write_table(folder / folders.TABLE, ds)
     write_page(folder, ds)
+    if (finish := kind_of(study).finish) is not None:
+        finish(folder, study, ds)
 
 
 @contextmanager

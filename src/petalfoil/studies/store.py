@@ -27,7 +27,21 @@ from petalfoil.studies.question import Outcome
 
 INDEX, FIELDS, LOCK = "index.sqlite", "fields", ".lock"
 DATA, TABLE, FIGURES, PAGE = "study.nc", "table.csv", "figures", "index.html"
-OURS = (FILE, INDEX, f"{INDEX}-wal", f"{INDEX}-shm", FIELDS, LOCK, DATA, TABLE, FIGURES, PAGE, "designs", "optuna.log")
+OURS = (
+    FILE,
+    INDEX,
+    f"{INDEX}-wal",
+    f"{INDEX}-shm",
+    FIELDS,
+    LOCK,
+    DATA,
+    TABLE,
+    FIGURES,
+    PAGE,
+    "designs",
+    "optuna.log",
+    "optuna.log.lock",
+)
 """What a study may leave in its folder."""
 
 _SCHEMA = """CREATE TABLE IF NOT EXISTS cases (

@@ -13,6 +13,7 @@ import xarray as xr
 from petalfoil.results.schema import SCALARS, DataType, Role
 from petalfoil.results.summary import cell, in_order
 from petalfoil.studies.question import CONVERGED
+from petalfoil.units import format_quantity
 
 Lines = tuple[tuple[str, ...], ...]
 SAME = 1e-6
@@ -29,7 +30,16 @@ def headline(ds: xr.Dataset) -> str:
     counts = Counter(str(text) for text in status)
     others = ", ".join(f"{count} {text}" for text, count in counts.items() if text != CONVERGED)
     what = f"{ds.attrs['analysis']} of {ds.attrs['asked']}: {len(status)} cases, {counts[CONVERGED]} converged"
-    return what + (f", {others}" if others else "")
+    optimum = extra(ds).get("optimum")
+    found = "" if optimum is None else f"; {_found(optimum)}"
+    return what + (f", {others}" if others else "") + found
+
+
+def _found(optimum: dict[str, Any]) -> str:
+    """How a search ended, and what it cost."""
+    exact = f", derivatives at {optimum['with_derivatives']} of them" if optimum["with_derivatives"] else ""
+    best = "no design keeps every limit" if not optimum["best"] else f"{len(optimum['best'])} best"
+    return f"{best}, {optimum['designs']} designs{exact}; {optimum['ended']}"
 
 
 def results(ds: xr.Dataset) -> list[str]:
@@ -70,9 +80,33 @@ def tables(ds: xr.Dataset) -> list[tuple[tuple[str, ...], Lines]]:
     told = extra(ds)
     if "tolerance" in told:
         return [(LIMIT_HEADS, _limits(told["tolerance"])), (TOLERANCE_HEADS, _scatter(told["tolerance"]))]
+    if "optimum" in told:
+        return [_best(ds, told["optimum"])]
     if lines := ranges(ds):
         found.append((RANGE_HEADS, lines))
     return found
+
+
+def _best(ds: xr.Dataset, told: dict[str, Any]) -> tuple[tuple[str, ...], Lines]:
+    """A row for each of the best designs: its parameters and results."""
+    names = [str(name) for name in ds.coords if "path" in ds[name].attrs]
+    wanted = list(
+        dict.fromkeys([*(name for name, _ in told["objectives"]), *(one["result"] for one in told["limits"])])
+    )
+    shown = [cell(name, 0.0) for name in wanted]
+    heads = ("case", *names, *(f"{one.label.strip()} {one.unit}".strip() for one in shown), "")
+    lines = []
+    for design in told["best"]:
+        values = [written(design["values"][name], str(ds[name].attrs["units"])) for name in names]
+        lines.append(
+            (str(design["case"]), *values, *(cell(name, design["results"][name]).value for name in wanted), "")
+        )
+    return heads, tuple(lines)
+
+
+def written(value: float, units: str) -> str:
+    """A parameter with its unit."""
+    return format_quantity(value, units.replace("rad s-1", "rad/s"), digits=5) if units != "1" else f"{value:.6g}"
 
 
 def _limits(told: dict[str, Any]) -> Lines:

@@ -134,3 +134,18 @@ def test_tolerance_tells_how_likely_limits_are_kept(two_d: str, tmp_path: Path) 
     assert "first order" in done.stdout
     refused = run(*words, "--limit", "bearing_forc > 1 N", "--out", str(tmp_path / "u"))
     assert "Did you mean 'bearing_force'?" in refused.stderr
+
+
+def test_optimize_tells_the_best_design(two_d: str, tmp_path: Path) -> None:
+    words = ["optimize", two_d, "--vary", "operation.speed=1000 rad/s : 9000 rad/s", "--eccentricity", "0 um, -10 um"]
+    goal = ["--maximize", "bearing_force", "--subject", "power_loss < 30 W", "--budget", "20", "--workers", "0"]
+    done = run(*words, *goal, "--out", str(tmp_path / "o"), "--json")
+    assert done.exit_code == 0, done.output
+    (best,) = json.loads(done.stdout)["optimum"]["best"]
+    assert best["results"]["power_loss"] == pytest.approx(30.0, rel=1e-3)
+    shown = run("study", "show", str(tmp_path / "o"))
+    assert "optimize of solve: " in shown.stdout
+    assert "1 best" in shown.stdout
+    refused = run(*words, "--out", str(tmp_path / "p"))
+    assert "nothing to optimize" in refused.stderr
+    assert run(*words, *goal, "--method", "sqp", "--out", str(tmp_path / "p")).exit_code == 2

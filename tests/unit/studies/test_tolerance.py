@@ -80,7 +80,7 @@ def test_the_interval_of_a_probability_is_that_of_clopper_and_pearson() -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("min_film > 5 um", "Did you mean 'min_film_thickness'?"),
+        ("min_film_thicknes > 5 um", "Did you mean 'min_film_thickness'?"),
         ("min_film_thickness = 5 um", "is no limit"),
         ("min_film_thickness > 5 N", "min_film_thickness: '5 N' measures something else"),
         ("status > 5", "is no result"),
