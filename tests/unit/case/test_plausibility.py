@@ -218,7 +218,7 @@ def scalars_of(answer: Any) -> dict[str, Any]:
     return {name: variable.item() for name, variable in answer.data_vars.items() if not variable.dims}
 
 
-MEANT = {"rig": ["min_film_thickness"]}
+MEANT = {"rig": ["min_film_thickness"], "rig_hot": ["min_film_thickness"]}
 """The rig ran just above its lift-off speed, on films of a few times its roughness."""
 
 COARSE = {"model.cells_per_pitch": 32, "model.axial_cells": 8}
