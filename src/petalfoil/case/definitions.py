@@ -16,7 +16,14 @@ from petalfoil.case.definition import Definition
 from petalfoil.case.gas import Gas
 from petalfoil.case.growth import REFERENCE_TEMPERATURE, Bushing, Growth, Shaft, growth_problems
 from petalfoil.case.heat import Heat, heat_problems
-from petalfoil.case.package import Package, bearing_problems, package_of, package_problems
+from petalfoil.case.package import (
+    Package,
+    bearing_problems,
+    package_of,
+    package_problems,
+    packages_of,
+    solid_height,
+)
 from petalfoil.case.petal_table import Petals
 from petalfoil.case.problems import Problem, refusal
 from petalfoil.case.rotor import Rotor
@@ -126,6 +133,11 @@ class Case(Definition):
         return None if self.petals is None else package_of(self.bearing, self.petals)
 
     @property
+    def packages(self) -> tuple[Package, ...]:
+        """The same as seen by each petal, where they are unequal; none for a plain bearing."""
+        return () if self.petals is None else packages_of(self.bearing, self.petals)
+
+    @property
     def growth(self) -> Growth:
         """How shaft and bushing have grown (G5); nothing without their tables."""
         return Growth.of(self.shaft, self.bushing, (self.bearing.journal_radius, self.bearing.bushing_radius))
@@ -160,8 +172,8 @@ class Case(Definition):
     @property
     def solid_height(self) -> float | None:
         """Height over the bushing of the wall that has bottomed out: 0 of a plain bearing, None if unknown [m]."""
-        if (package := self.package) is not None:
-            return package.layers * package.thickness
+        if self.petals is not None and (package := self.package) is not None:
+            return solid_height(self.petals, package.layers)
         return 0.0 if self.wall is None else self.wall.solid_height
 
     @property
@@ -226,7 +238,12 @@ class Case(Definition):
         problems = list(self._geometry_problems())
         kind: type[DefinitionError] = PackageError
         if not problems:
-            problems = [*self._grid_problems(), *self._tilt_problems(), *self._heat_problems()]
+            problems = [
+                *self._grid_problems(),
+                *self._tilt_problems(),
+                *self._heat_problems(),
+                *self._method_problems(),
+            ]
             kind = DefinitionError
         if problems:
             raise refusal(kind, problems)
@@ -282,6 +299,11 @@ class Case(Definition):
         given = {key: part is not None and part.temperature != REFERENCE_TEMPERATURE for key, part in warm.items()}
         others = {"model.slip": self.model.slip, "classic": self.model.method is Method.CLASSIC}
         yield from heat_problems(self.heat, given | others)
+
+    def _method_problems(self) -> Iterator[Problem]:
+        if self.model.method is Method.CLASSIC and self.petals is not None and len(set(self.petals.each)) > 1:
+            text = 'the paper\'s method is for equal petals; allowed: "newton", or one value for all petals'
+            yield Problem("model.method", text, "classic", "newton, or equal petals")
 
     def _tilt_problems(self) -> Iterator[Problem]:
         """Yield why a journal cannot tilt: no length, the paper's method, two bearings, or two ways to say it."""

@@ -7,7 +7,7 @@ A field carries its declaration as an annotation, so meaning, unit, symbol and r
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from numbers import Integral
 from typing import Any
@@ -119,6 +119,50 @@ class QuantityOrWord(Quantity):
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.parse_either)
+
+
+PER_PETAL = "one for all petals, or a list with one for each"
+
+
+@dataclass(frozen=True, kw_only=True)
+class PerPetal(Quantity):
+    """A quantity of all petals, or a list with that of each."""
+
+    @property
+    def allowed(self) -> str:
+        """Words for what a user may write."""
+        return f"{super().allowed}; {PER_PETAL}"
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(lambda value: one_or_each(self.parse, value))
+
+
+@dataclass(frozen=True, kw_only=True)
+class PerPetalOrWord(QuantityOrWord):
+    """A quantity or a word of all petals, or a list with that of each."""
+
+    @property
+    def allowed(self) -> str:
+        """Words for what a user may write."""
+        return f"{super().allowed}; {PER_PETAL}"
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(lambda value: one_or_each(self.parse_either, value))
+
+
+def one_or_each(parse: Callable[[object], float | str], value: object) -> object:
+    """Read one value, or those of a list; a refusal names the petal, the first of which is 0."""
+    entries = as_sequence(value)
+    if entries is None:
+        return parse(value)
+    read = []
+    for petal, entry in enumerate(entries):
+        try:
+            read.append(parse(entry))
+        except PydanticCustomError as error:
+            allowed = str((error.context or {}).get("allowed", ""))
+            raise refuse(error.type, f"of petal {petal}: {error.message()}", allowed) from None
+    return tuple(read)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from petalfoil.case.free_shape import arc_radius, arc_reach, chordal_tilt
 from petalfoil.case.measured_shape import EDGE_TOLERANCE, Table, fitted_bend_radius, measured_radius
-from petalfoil.case.petal_table import Petals
+from petalfoil.case.petal_table import Petal, Petals
 from petalfoil.case.problems import Problem
 from petalfoil.case.sections import Bearing, Operation, Surface
 from petalfoil.units import format_quantity
@@ -80,39 +80,65 @@ class Package:
 
 
 def package_of(bearing: Bearing, petals: Petals) -> Package:
-    """Derive the foil pack of `petals` in `bearing`.
+    """Derive the foil pack of `petals` in `bearing`; of unequal petals that of the mean one.
 
     A chordal tilt that does not exist comes out as nan; `package_problems` says why.
     """
     metric_radius = bearing.bushing_radius - petals.total_thickness / 2.0
-    petal_angle = petals.arc_length / metric_radius
+    return package_with(bearing, petals, (petals.mean, petals.arc_length / metric_radius))
+
+
+def packages_of(bearing: Bearing, petals: Petals) -> tuple[Package, ...]:
+    """The same of each petal: all span the angle of the mean one, and each lies on the bore with its own thickness.
+
+    Petals whose thickness differs from the mean by `d` would span the angle `φ1 (1 + d / 2 R_B)` instead.
+    """
+    angle = package_of(bearing, petals).petal_angle
+    known = {petal: package_with(bearing, petals, (petal, angle)) for petal in petals.each}
+    return tuple(known[petal] for petal in petals.each)
+
+
+def package_with(bearing: Bearing, petals: Petals, one: tuple[Petal, float]) -> Package:
+    """The pack as seen by `one` petal and its angle [rad]."""
+    petal, angle = one
+    metric_radius = bearing.bushing_radius - petal.total_thickness / 2.0
+    bend_radius = _bend_radius(petals, petal)
     return Package(
         count=petals.count,
-        thickness=petals.total_thickness,
+        thickness=petal.total_thickness,
         metric_radius=metric_radius,
-        petal_angle=petal_angle,
-        bend_radius=_bend_radius(petals),
-        root_tilt=_tilt(petals, metric_radius, petal_angle),
+        petal_angle=angle,
+        bend_radius=bend_radius,
+        root_tilt=_tilt(petals, petal, (metric_radius, bend_radius, angle)),
         table=petals.free_shape,
         table_tolerance=petals.free_shape_tolerance,
     )
 
 
-def _bend_radius(petals: Petals) -> float:
+def _bend_radius(petals: Petals, petal: Petal) -> float:
     if petals.free_shape is not None:
         return fitted_bend_radius(petals.free_shape)
-    return math.nan if petals.bend_radius is None else petals.bend_radius  # nan never: `Petals` refuses it
+    return math.nan if petal.bend_radius is None else petal.bend_radius  # nan never: `Petals` refuses it
 
 
-def _tilt(petals: Petals, metric_radius: float, petal_angle: float) -> float:
+def _tilt(petals: Petals, petal: Petal, arc: tuple[float, float, float]) -> float:
+    metric_radius, bend_radius, petal_angle = arc
     if petals.free_shape is not None:
         return math.nan
-    if petals.root_tilt != "chordal":
-        return petals.root_tilt
-    bend_radius = _bend_radius(petals)
+    if petal.root_tilt != "chordal":
+        return petal.root_tilt
     if bend_radius < metric_radius or petal_angle > MAX_ARC_ANGLE:
         return math.nan
     return chordal_tilt(metric_radius, bend_radius, petal_angle)
+
+
+def solid_height(petals: Petals, layers: int) -> float:
+    """Height of the solid pack where `layers` petals in a row are thickest [m]."""
+    thickness = [petal.total_thickness for petal in petals.each]
+    if len(set(thickness)) == 1:
+        return layers * thickness[0]
+    around = [*thickness, *thickness]
+    return max(math.fsum(around[first : first + layers]) for first in range(petals.count))
 
 
 def bearing_problems(
@@ -162,7 +188,7 @@ def package_problems(bearing: Bearing, petals: Petals, surface: Surface, operati
         )
         return
     yield from _overlap_problems(package, petals)
-    yield from _clearance_problems(package, bearing, surface, operation)
+    yield from _clearance_problems(package, petals, (bearing, surface, operation))
     yield from _shape_problems(package, bearing, petals)
 
 
@@ -180,24 +206,32 @@ def _overlap_problems(package: Package, petals: Petals) -> Iterator[Problem]:
 
 
 def _clearance_problems(
-    package: Package, bearing: Bearing, surface: Surface, operation: Operation
+    package: Package, petals: Petals, around: tuple[Bearing, Surface, Operation]
 ) -> Iterator[Problem]:
+    bearing, surface, operation = around
     eccentricity = operation.farthest(bearing.length)
     clearance = bearing.clearance - eccentricity
-    need = package.layers * package.thickness + surface.contact_film_thickness
+    need = solid_height(petals, package.layers) + surface.contact_film_thickness
     if package.overlap <= 1.0 + FLUSH or need <= clearance:
         return
     displaced = need <= bearing.clearance
     where = f", the clearance {_m(bearing.clearance)} less the eccentricity {_m(eccentricity)}," if eccentricity else ""
     yield Problem(
         "operation.eccentricity" if displaced else "petals",
-        f"the foil pack does not fit: {package.layers} layers of {_m(package.thickness)} and the contact film "
+        f"the foil pack does not fit: {package.layers} layers of {_layer(package, petals)} and the contact film "
         f"thickness {_m(surface.contact_film_thickness)} need {_m(need)}, "
         f"the radial clearance between journal and bushing{where} is {_m(clearance)}: "
         f"{_m(need - clearance)} too much",
         operation.eccentricity if displaced else package.thickness,
         f"an eccentricity up to {bearing.clearance - need:g} m" if displaced else f"at most {clearance:g} m in all",
     )
+
+
+def _layer(package: Package, petals: Petals) -> str:
+    """Thickness of a layer where the pack is thickest."""
+    if len(set(petals.each)) == 1:
+        return _m(package.thickness)
+    return f"{_m(solid_height(petals, package.layers) / package.layers)} on average"
 
 
 def _shape_problems(package: Package, bearing: Bearing, petals: Petals) -> Iterator[Problem]:
@@ -214,28 +248,37 @@ def _shape_problems(package: Package, bearing: Bearing, petals: Petals) -> Itera
             f"up to {longest:g} m",
         )
     else:
-        yield from _arc_problems(package, petals)
+        for number, one in enumerate(packages_of(bearing, petals)):
+            problems = list(_arc_problems(one, number, petals))
+            yield from problems
+            if problems:  # the first petal that cannot be made says what is wrong with the others
+                return
 
 
-def _arc_problems(package: Package, petals: Petals) -> Iterator[Problem]:
+def _key(petals: Petals, name: str, number: int) -> str:
+    """Path of a field of one petal."""
+    return f"petals.{name}[{number}]" if isinstance(getattr(petals, name), tuple) else f"petals.{name}"
+
+
+def _arc_problems(package: Package, number: int, petals: Petals) -> Iterator[Problem]:
     if math.isnan(package.root_tilt):
         yield Problem(
-            "petals.bend_radius",
+            _key(petals, "bend_radius", number),
             f"a chordal petal bent to {_m(package.bend_radius)} would lie outside the bore; allowed: at least the "
             f"metric radius, {_m(package.metric_radius)} ({_m(package.metric_radius - package.bend_radius)} more), "
             "or another petals.root_tilt",
-            petals.bend_radius,
+            package.bend_radius,
             f"at least {package.metric_radius:g} m",
         )
         return
     reach = arc_reach(metric_radius=package.metric_radius, bend_radius=package.bend_radius, tilt=package.root_tilt)
     if reach <= package.petal_angle:
         yield Problem(
-            "petals.root_tilt",
+            _key(petals, "root_tilt", number),
             f"an arc bent to {_m(package.bend_radius)} with a root tilt of {package.root_tilt:.4g} rad turns back at "
             f"{reach:.4g} rad and does not reach the free edge at {package.petal_angle:.4g} rad "
             f"({package.petal_angle - reach:.4g} rad short)",
-            petals.root_tilt,
+            package.root_tilt,
             "a tilt and a bend radius whose arc reaches the free edge",
         )
 
@@ -264,7 +307,7 @@ def _table_problems(package: Package, bearing: Bearing, table: Table) -> Iterato
 
 def _twice_given(package: Package, petals: Petals) -> Iterator[Problem]:
     """Yield what contradicts a measured free shape."""
-    given, measured = petals.bend_radius, package.bend_radius
+    given, measured = petals.mean.bend_radius, package.bend_radius
     if given is not None and abs(given / measured - 1.0) > BEND_TOLERANCE:
         yield Problem(
             "petals.bend_radius",

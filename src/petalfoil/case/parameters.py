@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 import typing
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
@@ -18,7 +18,7 @@ from pydantic_core import PydanticCustomError
 from petalfoil.case.definition import Definition
 from petalfoil.case.definitions import Case
 from petalfoil.case.hints import nearest, nearest_key
-from petalfoil.case.number_fields import UNIT_PROBLEM, Count, Quantity
+from petalfoil.case.number_fields import UNIT_PROBLEM, Count, PerPetal, PerPetalOrWord, Quantity
 from petalfoil.errors import DefinitionError, UnitError
 from petalfoil.text import for_terminal
 from petalfoil.units.reading import shown
@@ -102,7 +102,7 @@ def parameters_of(case: Case) -> dict[str, Parameter]:
 
 
 def parameter_of(case: Case, path: str) -> Parameter:
-    """One parameter of a case.
+    """One parameter of a case; of a field that all petals share, also that of one petal, as ``petals.thickness[3]``.
 
     Raises
     ------
@@ -112,6 +112,9 @@ def parameter_of(case: Case, path: str) -> Parameter:
     known = parameters_of(case)
     if path in known:
         return known[path]
+    field, entry = _entry(path)
+    if entry is not None and field in known and entry < _petals_with_one(case, known[field]):
+        return replace(known[field], path=path)
     text = f"{shown(for_terminal(path))} is no parameter of this case.{_hint(case, path, known)}"
     raise DefinitionError(text, key=path, given=path, allowed=", ".join(known))
 
@@ -140,10 +143,21 @@ def with_values(case: Case, values: Mapping[str, object]) -> Case:
         if entry is None:
             changes[field] = number
         else:
-            entries = list(typing.cast("tuple[Number, ...]", changes.get(field) or _value(case, field) or ZERO))
+            own = changes.get(field) or _value(case, field) or ZERO
+            entries = list(own) if isinstance(own, tuple) else [own] * _petals(case)
             entries[entry] = number
             changes[field] = tuple(entries)
     return case.replace(**changes) if changes else case
+
+
+def _petals(case: Case) -> int:
+    """Petals of the case."""
+    return 0 if case.petals is None else case.petals.count
+
+
+def _petals_with_one(case: Case, parameter: Parameter) -> int:
+    """How many petals may have a value of their own of a parameter that the case gives for all."""
+    return _petals(case) if isinstance(parameter.declared, PerPetal | PerPetalOrWord) else 0
 
 
 def _parameters(case: Case) -> Iterator[Parameter]:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from enum import StrEnum
 from itertools import pairwise
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
-from petalfoil.case.number_fields import VALUE_PROBLEM, Count, Quantity, QuantityOrWord, refuse
+from petalfoil.case.number_fields import VALUE_PROBLEM, Count, PerPetal, PerPetalOrWord, Quantity, refuse
 from petalfoil.case.shape_file import as_shape
 from petalfoil.case.wall_tables import WallTable
 
@@ -30,11 +32,52 @@ _Radius = Annotated[
 ]
 
 
-class Petals(WallTable):
-    """A foil pack of equal petals (leaves); absent in a plain bearing.
+Tilt: TypeAlias = float | Literal["chordal"]
+Each: TypeAlias = float | tuple[float, ...]
+"""One quantity for all petals, or that of each."""
 
-    The free shape is an arc of `bend_radius` at `root_tilt`, or measured: `free_shape` gives rows [angle, radius], in
-    the case itself or as the name of a CSV file. The bend radius then follows from the rows.
+
+@dataclass(frozen=True)
+class Petal:
+    """One petal; fields as in `Petals`, SI."""
+
+    thickness: float
+    coating: float
+    bend_radius: float | None
+    root_tilt: Tilt
+    youngs_modulus: float
+    poisson_ratio: float
+
+    @property
+    def total_thickness(self) -> float:
+        """Metal and coating, ``δ = δ0 + δ_c`` [m]."""
+        return self.thickness + self.coating
+
+    @property
+    def bending_stiffness(self) -> float:
+        """Flexural rigidity of the metal, ``D = E_y δ0³ / (12 (1 − ν²))`` [N m]."""
+        return self.youngs_modulus * self.thickness**3 / (12.0 * (1.0 - self.poisson_ratio**2))
+
+
+def of_each(value: Any, count: int) -> tuple[Any, ...]:
+    """The values of all petals, one by one."""
+    return value if isinstance(value, tuple) else (value,) * count
+
+
+def mean(values: Sequence[Any]) -> Any:
+    """Mean of numbers, exact where they are equal; of words and of what is not given, the first."""
+    first = values[0]
+    if not all(isinstance(value, float) for value in values):
+        return first
+    return first + math.fsum(value - first for value in values) / len(values)
+
+
+class Petals(WallTable):
+    """A foil pack of petals (leaves); absent in a plain bearing.
+
+    Petals are equal, or a list gives the thickness, coating, bend radius, root tilt or material of each, in the order
+    of their roots. The free shape is an arc of `bend_radius` at `root_tilt`, or measured: `free_shape` gives rows
+    [angle, radius], in the case itself or as the name of a CSV file. The bend radius then follows from the rows.
     """
 
     section: ClassVar[str] = "petals"
@@ -43,9 +86,9 @@ class Petals(WallTable):
     arc_length: Annotated[
         float, Quantity(unit="m", meaning="arc length from root to free edge", symbol="l_p", above=0.0, at_most=100.0)
     ]
-    thickness: Annotated[float, Quantity(unit="m", meaning="metal thickness", symbol="delta_0", above=0.0, at_most=0.1)]
+    thickness: Annotated[Each, PerPetal(unit="m", meaning="metal thickness", symbol="delta_0", above=0.0, at_most=0.1)]
     coating: Annotated[
-        float, Quantity(unit="m", meaning="coating thickness", symbol="delta_c", at_least=0.0, at_most=0.1)
+        Each, PerPetal(unit="m", meaning="coating thickness", symbol="delta_c", at_least=0.0, at_most=0.1)
     ] = 0.0
     free_shape: Annotated[tuple[tuple[_Angle, _Radius], ...], BeforeValidator(as_shape)] | None = None
     """Rows `[angle, radius]`, or the name of a CSV file of them."""
@@ -58,14 +101,14 @@ class Petals(WallTable):
     # after free_shape, which makes it needless
     bend_radius: (
         Annotated[
-            float, Quantity(unit="m", meaning="bend radius of the free petal", symbol="R_p", above=0.0, at_most=1e4)
+            Each, PerPetal(unit="m", meaning="bend radius of the free petal", symbol="R_p", above=0.0, at_most=1e4)
         ]
         | None
     ) = Field(default=None, validate_default=True)
     """Required without a measured free shape, from which it follows."""
     root_tilt: Annotated[
-        float | Literal["chordal"],
-        QuantityOrWord(
+        Tilt | tuple[Tilt, ...],
+        PerPetalOrWord(
             unit="rad", meaning="root tilt from the bore's tangent", symbol="psi", above=-1.5, below=1.5, word="chordal"
         ),
     ] = "chordal"
@@ -73,9 +116,9 @@ class Petals(WallTable):
     mount: Mount
     """Root free to turn, or clamped."""
     youngs_modulus: Annotated[
-        float, Quantity(unit="Pa", meaning="Young's modulus", symbol="E_y", above=0.0, at_most=1e13)
+        Each, PerPetal(unit="Pa", meaning="Young's modulus", symbol="E_y", above=0.0, at_most=1e13)
     ]
-    poisson_ratio: Annotated[float, Quantity(unit="1", meaning="Poisson's ratio", symbol="nu", above=-1.0, below=0.5)]
+    poisson_ratio: Annotated[Each, PerPetal(unit="1", meaning="Poisson's ratio", symbol="nu", above=-1.0, below=0.5)]
     first_root: Annotated[
         float,
         Quantity(unit="rad", meaning="angle of the first root", symbol="theta_ref", at_least=-6.3, at_most=6.3),
@@ -87,19 +130,44 @@ class Petals(WallTable):
     """Without it, stress above 2 GPa is warned of."""
 
     @property
-    def total_thickness(self) -> float:
-        """Metal and coating, ``δ = δ0 + δ_c`` [m]."""
-        return self.thickness + self.coating
-
-    @property
     def pitch(self) -> float:
         """Angle between neighbouring roots, ``φ0 = 2π/n`` [rad]."""
         return 2.0 * math.pi / self.count
 
     @property
+    def each(self) -> tuple[Petal, ...]:
+        """The petals one by one; equal ones are the same object."""
+        lists = [of_each(getattr(self, field.name), self.count) for field in fields(Petal)]
+        known: dict[Petal, Petal] = {}
+        made = (Petal(*values) for values in zip(*lists, strict=True))
+        return tuple(known.setdefault(petal, petal) for petal in made)
+
+    @property
+    def mean(self) -> Petal:
+        """The petal that is the mean of all; of equal ones, one of them."""
+        return Petal(*(mean(of_each(getattr(self, field.name), self.count)) for field in fields(Petal)))
+
+    @property
+    def total_thickness(self) -> float:
+        """Metal and coating of the mean petal, ``δ`` [m]."""
+        return self.mean.total_thickness
+
+    @property
     def bending_stiffness(self) -> float:
-        """Flexural rigidity of the metal, ``D = E_y δ0³ / (12 (1 − ν²))`` [N m]."""
-        return self.youngs_modulus * self.thickness**3 / (12.0 * (1.0 - self.poisson_ratio**2))
+        """Flexural rigidity of the mean petal, ``D`` [N m]."""
+        return self.mean.bending_stiffness
+
+    @field_validator("thickness", "coating", "bend_radius", "root_tilt", "youngs_modulus", "poisson_ratio")
+    @classmethod
+    def _is_one_or_one_each(cls, value: object, info: ValidationInfo) -> object:
+        """Refuse lists that do not have one value for each petal; without a valid count all of them fit."""
+        count = info.data.get("count")
+        if isinstance(value, tuple) and count is not None and len(value) != count:
+            allowed = f"one value for all petals, or a list with one for each of the {count}"
+            raise refuse(
+                VALUE_PROBLEM, f"has {len(value)} values for petals.count = {count}; allowed: {allowed}", allowed
+            )
+        return value
 
     @field_validator("free_shape")
     @classmethod
@@ -117,7 +185,7 @@ class Petals(WallTable):
 
     @field_validator("bend_radius")
     @classmethod
-    def _is_given_once(cls, radius: float | None, info: ValidationInfo) -> float | None:
+    def _is_given_once(cls, radius: Each | None, info: ValidationInfo) -> Each | None:
         """Refuse a petal without any free shape; where the measured one is refused itself, nothing more is said."""
         if radius is None and info.data.get("free_shape", ()) is None:
             allowed = "bend radius of the free petal [m], or a measured petals.free_shape"

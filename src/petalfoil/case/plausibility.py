@@ -170,7 +170,9 @@ def _unusual(case: Case) -> Iterator[str]:
         section, _, name = usual.key.partition(".")
         table = getattr(case, section)
         if table is not None:
-            yield from usual.warning(getattr(table, name))
+            given = getattr(table, name)
+            warnings = (list(usual.warning(value)) for value in (given if isinstance(given, tuple) else (given,)))
+            yield from next(filter(None, warnings), [])  # of unequal petals one is told
 
 
 def _surface_speed(case: Case, speed: float) -> Iterator[str]:

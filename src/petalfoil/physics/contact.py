@@ -2,7 +2,7 @@
 
     journal   g_J = r0 + W - delta/2 - R_j - (e_x cos theta + e_y sin theta) - h_c       exposed strips         (K1)
     bushing   g_B = r_m - r0 - W                                                         phi < phi0             (K2)
-    petals    g_P = (r0 + W)^{l+1} - (r0 + W)^l - delta                                  phi0 <= phi <= phi1    (K3)
+    petals    g_P = (r0 + W - delta/2)^{l+1} - (r0 + W + delta/2)^l                      phi0 <= phi <= phi1    (K3)
 
 `h_c` is the contact film thickness. Every gap is `g = rest + by_e e + G W >= 0`. Its nodal reaction `lam >= 0` is zero
 where the gap is open, `lam g = 0` (K4). The reactions load the deflection unknowns with `G^T lam`: the virtual work of
@@ -77,31 +77,54 @@ class Contacts:
         return gaps
 
 
-def pack_contacts(mesh: PackMesh, free_radius: Array, sizes: dict[str, float]) -> Contacts:
+@dataclass(frozen=True)
+class PetalSizes:
+    """What the gaps of a pack need of its petals, one value for each, (count,) [m].
+
+    Attributes
+    ----------
+    free_radius : (count, n_node) array
+        Radius `r0` of the middle surface of the free petals at their nodes.
+    metric_radius, thickness : (count,) array
+        Radius of the middle surface on the bore, and thickness with coating.
+    """
+
+    free_radius: Array
+    metric_radius: Array
+    thickness: Array
+
+    @property
+    def mean_radius(self) -> float:
+        """Metric radius of the mean petal: that of areas [m]."""
+        first = float(self.metric_radius[0])
+        return first + float(np.mean(self.metric_radius - first))
+
+
+def pack_contacts(mesh: PackMesh, petals: PetalSizes, radii: tuple[float, float]) -> Contacts:
     """Gaps of a petal pack.
 
     Parameters
     ----------
     mesh : PackMesh
         Grid of the pack.
-    free_radius : (n_node,) array
-        Radius `r0` of the middle surface of the free petal at its nodes [m].
-    sizes : dict
-        `journal_radius`, `metric_radius`, `thickness` (with coating), `contact_film_thickness` [m].
+    petals : PetalSizes
+        Its petals.
+    radii : (journal_radius, contact_film_thickness)
+        `R_j` and `h_c` [m].
     """
-    R_j, r_m, delta, h_c = (
-        sizes[k] for k in ("journal_radius", "metric_radius", "thickness", "contact_film_thickness")
-    )
+    R_j, h_c = radii
+    r_m, delta = petals.metric_radius[:, None, None], petals.thickness[:, None, None]
     number, n, N = mesh.free_numbers(), mesh.count, mesh.cells
-    r0 = np.broadcast_to(free_radius[None, :, None], mesh.shape)
+    r0 = np.broadcast_to(petals.free_radius[:, :, None], mesh.shape)
     theta = np.broadcast_to(mesh.theta[:, :, None], mesh.shape)
-    area = np.broadcast_to(r_m * mesh.arc_weight[:, None] * mesh.axial.weight, mesh.shape)
-    above, below = number[:, mesh.on_neighbour], number[np.arange(1, n + 1) % n, : mesh.n_node - N]
+    area = np.broadcast_to(petals.mean_radius * mesh.arc_weight[:, None] * mesh.axial.weight, mesh.shape)
+    neighbour = np.arange(1, n + 1) % n
+    above, below = number[:, mesh.on_neighbour], number[neighbour, : mesh.n_node - N]
 
     film, wall, lap = mesh.exposed, mesh.on_bushing, mesh.on_neighbour
     journal_gap = r0[:, film] - 0.5 * delta - R_j - h_c
     bushing_gap = r_m - r0[:, wall]
-    petal_gap = r0[:, : mesh.n_node - N] - r0[:, lap] - delta
+    petal_gap = r0[neighbour, : mesh.n_node - N] - r0[:, lap] - 0.5 * (delta + delta[neighbour])
 
     n_J, n_B, n_P = journal_gap.size, bushing_gap.size, petal_gap.size
     m = n_J + n_B + n_P

@@ -79,22 +79,23 @@ class Friction:
         return np.clip(trial, -limit, limit), np.where(stuck & (limit > 0.0), self.stiffness, 0.0)
 
 
-def petal_slip(mesh: PackMesh, arm: float, first: int) -> tuple[sp.csr_array, sp.csr_array]:
+def petal_slip(mesh: PackMesh, arm: Array, first: int) -> tuple[sp.csr_array, sp.csr_array]:
     """Slip matrix `B` and reaction weights, for the cells on the bushing, then those between petals.
 
     Parameters
     ----------
     mesh : PackMesh
         Grid of the pack.
-    arm : float
-        Half a thickness over the metric radius, `delta / (2 r_m)` [1].
+    arm : (count,) array
+        Half the thickness of each petal over its metric radius, `delta / (2 r_m)` [1].
     first : int
         Index of the first gap on the bushing. The gaps between petals follow those on the bushing.
     """
     count, n_z, N = mesh.count, mesh.n_z, mesh.cells
     cells = np.arange(count * (mesh.n_node - 1) * n_z).reshape(count, -1, n_z)
     along = sp.kron(slopes(mesh.phi), sp.eye_array(n_z), format="csr")
-    slope = sp.csr_array(sp.kron(sp.eye_array(count), along[:, n_z:], format="csr"))  # roots do not move
+    turned = sp.kron(sp.diags_array(arm), along[:, n_z:], format="csr")  # roots do not move
+    slope = sp.csr_array(turned)
     above, below = cells[:, N:], cells[np.arange(1, count + 1) % count, : cells.shape[1] - N]
     slip = sp.vstack([slope[cells[:, :N].ravel()], slope[above.ravel()] + slope[below.ravel()]], format="csr")
     # gaps on the bushing exist at the inner nodes of its cells only, gaps between petals at all nodes of theirs
@@ -102,7 +103,7 @@ def petal_slip(mesh: PackMesh, arm: float, first: int) -> tuple[sp.csr_array, sp
     parts = [sp.kron(sp.kron(sp.eye_array(count), part), sp.eye_array(n_z)) for part in (on_bushing, between)]
     weights = sp.block_diag(parts, format="csr")
     on_journal = sp.csr_array((weights.shape[0], first))
-    return sp.csr_array(arm * slip), sp.csr_array(sp.hstack([on_journal, weights], format="csr"))
+    return sp.csr_array(slip), sp.csr_array(sp.hstack([on_journal, weights], format="csr"))
 
 
 def slopes(phi: Array) -> sp.csr_array:

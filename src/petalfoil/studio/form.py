@@ -15,7 +15,7 @@ from pydantic.fields import FieldInfo
 
 from petalfoil.case import Case
 from petalfoil.case.definition import Definition
-from petalfoil.case.number_fields import Count, Quantity, QuantityOrWord, Range
+from petalfoil.case.number_fields import Count, PerPetal, PerPetalOrWord, Quantity, QuantityOrWord, Range
 from petalfoil.errors import UnitError
 from petalfoil.units import format_quantity, parse_quantity
 
@@ -77,11 +77,16 @@ class Entry:
         short = self.meaning or self.path.rpartition(".")[2].replace("_", " ")
         return short.partition(",")[0]
 
+    @property
+    def takes_several(self) -> bool:
+        """Whether several values may be given, with commas between them: a pair, or one for each petal."""
+        return self.control is Control.PAIR or isinstance(self.bounds, PerPetal | PerPetalOrWord)
+
     def text(self, value: Any) -> str:
         """A value as text, in a unit that a reader likes; empty for None."""
         if value is None:
             return ""
-        if self.control is Control.PAIR and isinstance(value, list | tuple):
+        if self.takes_several and isinstance(value, list | tuple):
             return ", ".join(self.text_of_one(one) for one in value)
         return self.text_of_one(value)
 
@@ -102,7 +107,7 @@ class Entry:
         plain = text.strip()
         if not plain:
             return None
-        if self.control is Control.PAIR and "," in plain:
+        if self.takes_several and "," in plain:
             return [_number_or_text(part) for part in plain.split(",")]
         return _number_or_text(plain) if self.control is not Control.TEXT else plain
 
@@ -167,6 +172,8 @@ def _entry(path: str, field: FieldInfo) -> Entry:
         return Entry(**shared, control=control, meaning="")
     unit = number.unit if isinstance(number, Quantity) else ""
     control = Control.COUNT if isinstance(number, Count) else _control_of_quantity(field)
+    if isinstance(number, PerPetal | PerPetalOrWord):
+        control = Control.QUANTITY
     choices = (number.word,) if isinstance(number, QuantityOrWord) else ()
     return Entry(
         **shared,

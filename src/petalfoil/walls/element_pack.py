@@ -6,6 +6,7 @@ nodes, interpolated by a cubic spline, so that whatever is built into them is in
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -36,23 +37,28 @@ class ElementPack:
 
     Attributes
     ----------
-    elements : PetalElements
-        One petal.
+    petals : tuple of PetalElements
+        The petals, on the same nodes.
     mesh : PackMesh
         Nodes of the pack whose film this one bounds.
     wall : Wall
         That pack.
     per_pitch : int
         Elements per pitch.
-    arm : float
-        Half a thickness over the metric radius: slip on a face by slope [1].
+    arms : (count,) array
+        Half the thickness of each petal over its metric radius: slip on a face by slope [1].
     """
 
-    elements: PetalElements
+    petals: tuple[PetalElements, ...]
     mesh: PackMesh
     wall: Wall
     per_pitch: int
-    arm: float
+    arms: Array
+
+    @property
+    def elements(self) -> PetalElements:
+        """One of the petals: nodes and supports are those of all."""
+        return self.petals[0]
 
     @cached_property
     def nodal(self) -> sp.csr_array:
@@ -62,7 +68,11 @@ class ElementPack:
     @cached_property
     def stiffness(self) -> sp.csr_array:
         """Generalised forces from the unknowns, (n, n) [N/m]."""
-        return sp.csr_array(sp.kron(sp.eye_array(self.mesh.count), self.elements.stiffness, format="csr"))
+        known: dict[int, sp.csr_array] = {}
+        for petal in self.petals:
+            if id(petal) not in known:
+                known[id(petal)] = petal.stiffness
+        return sp.csr_array(sp.block_diag([known[id(petal)] for petal in self.petals], format="csr"))
 
     @property
     def n_unknown(self) -> int:
@@ -106,10 +116,11 @@ class ElementPack:
         theta = (self.mesh.roots[:, None] + phi).ravel()
         towards_journal = np.stack([-np.cos(theta), -np.sin(theta), np.sin(theta), -np.cos(theta)], axis=1)
         by_e = towards_journal.reshape(-1, 2) * float(facing is Facing.JOURNAL)
-        layers = 2.0 if facing is Facing.PETAL else 1.0
         angle = np.append(self.elements.element_angle[nodes.start : nodes.stop - 1], 1.0)
-        C = layers * np.append(self.elements.point_compliance[nodes.start : nodes.stop - 1], 0.0)
-        return facing, rest, by_e, self._by_w(facing), np.tile(angle, n), np.tile(C, n), len(phi)
+        C = np.array([np.append(petal.point_compliance[nodes.start : nodes.stop - 1], 0.0) for petal in self.petals])
+        if facing is Facing.PETAL:  # both petals give
+            C = C + C[np.arange(1, n + 1) % n]
+        return facing, rest, by_e, self._by_w(facing), np.tile(angle, n), C.ravel(), len(phi)
 
     def _by_w(self, facing: Facing) -> sp.csr_array:
         """Derivative of the nodal gaps of one kind by the unknowns."""
@@ -151,25 +162,31 @@ class ElementPack:
         curves, n = self.curves, self.mesh.count
         element, _ = curves.locate(points.every_curve, points.every_position)
         turned = curves.rows(points.every_curve, points.every_position, 1) @ self._turning
-        sliding = (points.every_curve >= n).astype(np.float64) * self.arm / curves.angle[element]
+        sliding = (points.every_curve >= n).astype(np.float64) / curves.angle[element]
         return sp.csr_array(sp.diags_array(sliding) @ turned)
 
     @cached_property
     def _turning(self) -> sp.csr_array:
-        """As `curves.by_w`, with the sum of the deflections of both petals in place of the gap."""
+        """As `curves.by_w`, with the sum of the deflections of both petals times their arms in place of the gap."""
         n, nodes = self.mesh.count, self.nodes[Facing.PETAL]
         pairs = np.arange(2 * n * len(self.elements.phi)).reshape(n, -1)
-        mine = self.nodal[pairs[:, 2 * nodes.start : 2 * nodes.stop].ravel()]
+        turned = sp.csr_array(sp.diags_array(np.repeat(self.arms, pairs.shape[1])) @ self.nodal)
+        mine = turned[pairs[:, 2 * nodes.start : 2 * nodes.stop].ravel()]
         below = pairs[np.arange(1, n + 1) % n, : 2 * (nodes.stop - nodes.start)]
-        parts = [self._by_w(Facing.JOURNAL), self._by_w(Facing.BUSHING), self.nodal[below.ravel()] + mine]
+        facing_bushing = self.nodes[Facing.BUSHING]
+        on_bushing = -turned[pairs[:, 2 * facing_bushing.start : 2 * facing_bushing.stop].ravel()]
+        parts = [self._by_w(Facing.JOURNAL), on_bushing, turned[below.ravel()] + mine]
         return sp.csr_array(sp.vstack(parts, format="csr"))
 
 
-def element_pack(shell: PetalShell, mesh: PackMesh, wall: Wall, arm: float) -> ElementPack:
-    """The pack of `wall` in Hermite elements; `arm` as in `ElementPack`."""
+def element_pack(shells: Sequence[PetalShell], mesh: PackMesh, wall: Wall, arms: Array) -> ElementPack:
+    """The pack of `wall` in Hermite elements; `arms` as in `ElementPack`."""
     pitch = 2.0 * np.pi / mesh.count
     phi = petal_angles(pitch, float(mesh.phi[-1]) / pitch, PETAL_CELLS)
-    elements = PetalElements(
-        phi, mesh.axial.length, shell.metric_radius, shell.bend_radius, shell.rigidity, shell.clamped
-    )
-    return ElementPack(elements, mesh, wall, PETAL_CELLS, arm)
+    made: dict[int, PetalElements] = {}
+    for shell in shells:
+        if id(shell) not in made:
+            made[id(shell)] = PetalElements(
+                phi, mesh.axial.length, shell.metric_radius, shell.bend_radius, shell.rigidity, shell.clamped
+            )
+    return ElementPack(tuple(made[id(shell)] for shell in shells), mesh, wall, PETAL_CELLS, arms)

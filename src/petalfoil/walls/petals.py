@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from collections.abc import Callable
+from typing import ClassVar, TypeVar
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.case import Case, Edges, Mount, Package, Petals
+from petalfoil.case.petal_table import Petal
 from petalfoil.mesh.pack import PackMesh, pack_mesh
 from petalfoil.mesh.strips import exposed_strips
-from petalfoil.physics.contact import pack_contacts
+from petalfoil.physics.contact import PetalSizes, pack_contacts
 from petalfoil.physics.dry_friction import petal_slip
 from petalfoil.physics.forces import node_area
 from petalfoil.physics.shell import PetalShell, bending_stress
@@ -22,6 +24,7 @@ from petalfoil.walls.element_pack import ElementPack, element_pack
 from petalfoil.walls.kind import Capability, Fields, Scalars, WallKind
 
 Array = NDArray[np.float64]
+T = TypeVar("T")
 
 REFERENCE_FILM = 1e-5
 """Reference film of a petal bearing [m]: its films are some micrometres to some tens thick."""
@@ -43,25 +46,56 @@ def build_mesh(case: Case) -> PackMesh:
     return pack_mesh(petals.count, package.overlap, petals.first_root, case.cells_per_pitch, axial_grid(case))
 
 
-def build_shell(case: Case, mesh: PackMesh) -> PetalShell:
-    """One petal of `case` on `mesh`."""
-    petals, package = petals_of(case)
-    return PetalShell(
-        phi=mesh.phi,
-        axial=mesh.axial,
-        metric_radius=package.metric_radius,
-        bend_radius=package.bend_radius,
-        rigidity=petals.bending_stiffness,
-        poisson_ratio=petals.poisson_ratio,
-        clamped=petals.mount is Mount.CLAMPED,
+def build_shells(case: Case, mesh: PackMesh) -> list[PetalShell]:
+    """The petals of `case` on `mesh`, one by one; equal ones are the same object."""
+    petals, _ = petals_of(case)
+    made: dict[Petal, PetalShell] = {}
+    for petal, package in zip(petals.each, case.packages, strict=True):
+        if petal not in made:
+            made[petal] = PetalShell(
+                phi=mesh.phi,
+                axial=mesh.axial,
+                metric_radius=package.metric_radius,
+                bend_radius=package.bend_radius,
+                rigidity=petal.bending_stiffness,
+                poisson_ratio=petal.poisson_ratio,
+                clamped=petals.mount is Mount.CLAMPED,
+            )
+    return [made[petal] for petal in petals.each]
+
+
+def petal_sizes(case: Case, mesh: PackMesh) -> PetalSizes:
+    """Free shapes, metric radii and thicknesses of the petals of `case`."""
+    free = {package: package.free_radius(mesh.phi) for package in case.packages}
+    return PetalSizes(
+        np.stack([free[package] for package in case.packages]),
+        np.array([package.metric_radius for package in case.packages]),
+        np.array([package.thickness for package in case.packages]),
     )
 
 
-def package_elasticity(shell: PetalShell, mesh: PackMesh) -> Elasticity:
+def package_elasticity(shells: list[PetalShell], mesh: PackMesh) -> Elasticity:
     """Elastic energy of all petals, their roots held."""
-    every, free = sp.eye_array(mesh.count), slice(mesh.n_z, None)
-    parts = (shell.difference[:, free], shell.strain, shell.rigidity_matrix)
-    return Elasticity(*(sp.csr_array(sp.kron(every, part, format="csr")) for part in parts))
+    free = slice(mesh.n_z, None)
+    return Elasticity(
+        diagonal([shell.difference[:, free] for shell in shells]),
+        diagonal([shell.strain for shell in shells]),
+        diagonal([shell.rigidity_matrix for shell in shells]),
+    )
+
+
+def of_each(shells: list[PetalShell], function: Callable[[PetalShell], T]) -> list[T]:
+    """What a function gives of each petal, computed once for equal ones."""
+    found: dict[int, T] = {}
+    for shell in shells:
+        if id(shell) not in found:
+            found[id(shell)] = function(shell)
+    return [found[id(shell)] for shell in shells]
+
+
+def diagonal(parts: list[sp.csr_array] | list[Array]) -> sp.csr_array:
+    """The matrix with a block for each petal."""
+    return sp.csr_array(sp.block_diag(parts, format="csr"))
 
 
 class PetalWall(WallKind):
@@ -74,31 +108,28 @@ class PetalWall(WallKind):
 
     def build(self, case: Case) -> Wall:
         """Discretise the pack of `case`."""
-        (petals, package), mesh = petals_of(case), build_mesh(case)
+        mesh = build_mesh(case)
         film = exposed_strips(mesh, continuous=case.model.edges is Edges.CONTINUOUS)
-        r_m, r0 = package.metric_radius, package.free_radius(mesh.phi)
-        sizes = {
-            "journal_radius": case.bearing.journal_radius,
-            "metric_radius": r_m,
-            "thickness": petals.total_thickness,
-            "contact_film_thickness": case.surface.contact_film_thickness,
-        }
-        free = slice(mesh.n_z, None)  # the root row does not move
-        shell, every = build_shell(case, mesh), sp.eye_array(mesh.count)
-        motions, support = shell.free_motions()
-        slip, reaction_share = petal_slip(mesh, 0.5 * petals.total_thickness / r_m, film.unknown.size)
-        rest = r0[mesh.exposed] - 0.5 * petals.total_thickness - case.bearing.journal_radius
+        shells, sizes, free = (
+            build_shells(case, mesh),
+            petal_sizes(case, mesh),
+            slice(mesh.n_z, None),
+        )  # the root row does not move
+        motions, support = zip(*of_each(shells, PetalShell.free_motions), strict=True)
+        R_j, h_c, r_m = case.bearing.journal_radius, case.surface.contact_film_thickness, sizes.mean_radius
+        slip, reaction_share = petal_slip(mesh, 0.5 * sizes.thickness / sizes.metric_radius, film.unknown.size)
+        rest = sizes.free_radius[:, mesh.exposed] - 0.5 * sizes.thickness[:, None] - R_j
         return Wall(
             film=film,
-            elasticity=package_elasticity(shell, mesh),
+            elasticity=package_elasticity(shells, mesh),
             film_unknown=mesh.free_numbers()[:, mesh.exposed],
             load_area=np.broadcast_to(node_area(film, r_m), film.shape),
-            rest_film=np.broadcast_to(rest[None, :, None], film.shape),
-            contacts=pack_contacts(mesh, r0, sizes),
+            rest_film=np.broadcast_to(rest[:, :, None], film.shape),
+            contacts=pack_contacts(mesh, sizes, (R_j, h_c)),
             node_area=r_m * 2.0 * np.pi / mesh.count / mesh.cells * float(mesh.axial.weight.max()),
             reference_film=REFERENCE_FILM,
-            free_motions=sp.csr_array(sp.kron(every, motions[free], format="csr")),
-            support=sp.csr_array(sp.kron(every, support[:, free], format="csr")),
+            free_motions=diagonal([motion[free] for motion in motions]),
+            support=diagonal([force[:, free] for force in support]),
             slip=slip,
             reaction_share=reaction_share,
         )
@@ -107,9 +138,9 @@ class PetalWall(WallKind):
         """The pack in Hermite elements, where it is 2-D."""
         if not wall.film.axial.is_2d:
             return None
-        (petals, package), mesh = petals_of(case), build_mesh(case)
-        arm = 0.5 * petals.total_thickness / package.metric_radius
-        return element_pack(build_shell(case, mesh), mesh, wall, arm)
+        mesh = build_mesh(case)
+        sizes = petal_sizes(case, mesh)
+        return element_pack(build_shells(case, mesh), mesh, wall, 0.5 * sizes.thickness / sizes.metric_radius)
 
     def pitch(self, case: Case) -> float | None:
         """Angle between neighbouring roots [rad]."""
@@ -122,7 +153,8 @@ class PetalWall(WallKind):
         on_bushing, on_neighbour = np.zeros(mesh.shape), np.zeros(mesh.shape)
         on_bushing[:, mesh.on_bushing] = pressure[rows.bushing].reshape(mesh.count, -1, mesh.n_z)
         on_neighbour[:, mesh.on_neighbour] = pressure[rows.petals].reshape(mesh.count, -1, mesh.n_z)
-        stress = bending_stress(build_shell(case, mesh), W, petals.youngs_modulus, petals.thickness)
+        parts = zip(build_shells(case, mesh), W, petals.each, strict=True)
+        stress = np.stack([bending_stress(shell, w, one.youngs_modulus, one.thickness) for shell, w, one in parts])
         return {
             "journal_contact_pressure": whole(pressure[rows.journal].reshape(mesh.count, -1, mesh.n_z)),
             "deflection": whole(W),
@@ -137,21 +169,22 @@ class PetalWall(WallKind):
         return {"phi": build_mesh(case).phi}
 
     def cross_section(self, case: Case, deflection: Array) -> Fields:
-        """Radius of the mid-surface of the petals, free (node,) and deformed (petal, node, axial) [m]."""
+        """Radius of the mid-surface, free of the mean petal (node,) and deformed of all (petal, node, axial) [m]."""
         (_, package), mesh = petals_of(case), build_mesh(case)
-        r0 = package.free_radius(mesh.phi)
-        return {"free_radius": r0, "radius": mesh.axial.whole(r0[None, :, None] + nodal(mesh, deflection))}
+        r0 = petal_sizes(case, mesh).free_radius
+        radius = mesh.axial.whole(r0[:, :, None] + nodal(mesh, deflection))
+        return {"free_radius": package.free_radius(mesh.phi), "radius": radius}
 
     def scalars(self, fields: Fields) -> Scalars:
         """Maximum bending stress."""
         return {"max_bending_stress": float(np.max(np.abs(fields["bending_stress"])))}
 
     def geometry(self, case: Case) -> Scalars:
-        """Thickness of a petal."""
+        """Thickness of the mean petal."""
         return {"petal_thickness": petals_of(case)[0].total_thickness}
 
     def check_scalars(self, case: Case) -> Scalars:
-        """Overlap, layers, stiffness, free shape."""
+        """Overlap, layers, stiffness, free shape of the mean petal."""
         petals, package = petals_of(case)
         phi = np.linspace(0.0, package.petal_angle, FREE_SHAPE_ANGLES)
         r0 = package.free_radius(phi)
