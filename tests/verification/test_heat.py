@@ -11,7 +11,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq, minimize_scalar
 
-from petalfoil import Case, balance, coefficients, curve, orbit, runup, solve
+from petalfoil import Case, balance, coefficients, curve, orbit, runup, sensitivity, solve
 from petalfoil.case import Heat, HotGas
 from petalfoil.equilibrium.heated import ThermalRunawayError
 from petalfoil.errors import DefinitionError, UsageError
@@ -249,6 +249,8 @@ def test_verbs_that_visit_states_know_the_heat() -> None:
     assert_allclose(warm["stiffness"], cold["stiffness"], rtol=1e-7)
     with pytest.raises(UsageError, match="shorter than any warm-up"):
         orbit(hot.replace(rotor={"mass": 1.0}))
+    with pytest.raises(UsageError, match="derivatives hold the temperatures"):
+        sensitivity(hot)
 
 
 # ---------------------------------------------------------------------------------------------- warm-up

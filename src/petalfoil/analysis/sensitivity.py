@@ -115,11 +115,17 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     Raises
     ------
     UsageError
-        A parameter is none of the case, a whole number or left to a rule; a result is none of the question.
+        A parameter is none of the case, a whole number or left to a rule; a result is none of the question; the case
+        has a heat network.
     ConvergenceError
         The equilibrium was not found, or its contacts do not determine it.
     """
     newton_only(case)
+    if case.heat is not None:
+        raise UsageError(
+            "derivatives hold the temperatures, and with [heat] these follow every parameter: leave [heat] out, give "
+            "shaft.temperature and bushing.temperature as `balance` finds them, or compare two runs"
+        )
     verb = ask or ("balance" if load is not None or (case.operation.load and eccentricity is None) else "solve")
     there = posed(at(case, speed), verb, load, eccentricity)
     paths = default_paths(there, verb) if vary is None else [checked(there, path) for path in vary]

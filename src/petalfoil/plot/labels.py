@@ -57,6 +57,8 @@ QUANTITIES = {
     "eccentricity": Quantity("eccentricity", "µm", MICRO, "e"),
     "eccentricity_x": Quantity("displacement along x", "µm", MICRO, "e$_x$"),
     "eccentricity_y": Quantity("displacement along y", "µm", MICRO, "e$_y$"),
+    "shaft_temperature": Quantity("shaft temperature", "K", 1.0),
+    "pack_temperature": Quantity("pack temperature", "K", 1.0),
     "speed": Quantity("speed", "rpm", RPM),
     "load": Quantity("load", "N"),
     "liftoff_speed": Quantity("lift-off speed", "rpm", RPM),

@@ -14,6 +14,8 @@ from petalfoil.plot.labels import MICRO, QUANTITIES, RPM
 from petalfoil.plot.views import Flags, Floats, array, number, unconverged
 
 _RUNUP = ("friction_torque", "contact_fraction", "min_film_thickness", "eccentricity")
+_HOT = ("shaft_temperature", "pack_temperature")
+"""What a bearing with a heat network shows too."""
 _LEGS: dict[str, style.Look] = {
     "up": {"color": style.SKY, "marker": "o", "markersize": 9, "linestyle": "-", "linewidth": 5.0, "zorder": 2},
     "down": {
@@ -39,7 +41,7 @@ def runup(ds: xr.Dataset) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Four panels; a point that did not converge leaves a gap and a cross on the axis.
+        Four panels, six with a heat network; a point that did not converge leaves a gap and a cross on the axis.
 
     Raises
     ------
@@ -47,15 +49,17 @@ def runup(ds: xr.Dataset) -> Figure:
         No point converged.
     """
     converged = _converged(ds)
-    fig = style.figure(10.0, 7.0)
-    axes = fig.subplots(2, 2, sharex=True).ravel()
-    for ax, name in zip(axes, _RUNUP, strict=True):
+    names = (*_RUNUP, *(name for name in _HOT if name in ds))
+    rows = len(names) // 2
+    fig = style.figure(10.0, 3.5 * rows)
+    axes = fig.subplots(rows, 2, sharex=True).ravel()
+    for ax, name in zip(axes, names, strict=True):
         shown = QUANTITIES[name]
         _draw_legs(ax, ds, np.where(converged, _value(ds, name), np.nan) * shown.factor)
-        style.dress(ax, QUANTITIES["speed"].axis if ax in axes[2:] else "", shown.axis)
+        style.dress(ax, QUANTITIES["speed"].axis if ax in axes[-2:] else "", shown.axis)
         ax.set_xlim(0.0, float(array(ds, "speed").max()) * RPM * 1.03)
     _draw_contact_film(axes[2], ds)
-    for ax in axes:
+    for ax in axes[: len(_RUNUP)]:
         ax.set_ylim(bottom=0.0)
     style.legend(axes[0], loc="best")
     style.set_title(fig, ds, _load_fact(ds), labels.grid_fact(ds))
