@@ -11,16 +11,20 @@ from numpy.testing import assert_allclose
 
 from petalfoil.analysis.balance import balance
 from petalfoil.analysis.coefficients import coefficients
+from petalfoil.analysis.liftoff import liftoff
 from petalfoil.analysis.orbit import orbit
 from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
+from petalfoil.analysis.runup import runup
+from petalfoil.analysis.solve import solve
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.analysis.stability import stability
-from petalfoil.case import Case
+from petalfoil.case import Case, warnings_of
 from petalfoil.cli.tables import render
 from petalfoil.dynamics.rotor_motion import Inertia
+from petalfoil.errors import DefinitionError
 from petalfoil.results.layout import Answer
 from petalfoil.results.record import Record
-from tests.cases import FAULTS
+from tests.cases import FAULTS, case
 
 RPM = math.pi / 30.0
 PAIR = Case.load(FAULTS / "two_bearings_plain.toml")
@@ -63,6 +67,36 @@ def test_a_rotor_that_hardly_resists_tilting_is_two_masses_on_two_bearings() -> 
     assert_allclose(both["threshold_speed"], one["threshold_speed"], rtol=1e-4)
     assert_allclose(both["critical_mass"], 2.0 * float(one["critical_mass"]), rtol=1e-4)
     assert both["rotor_mass"] == 3.06
+
+
+@pytest.mark.slow
+def test_every_verb_shares_the_load_of_a_pack() -> None:
+    """Two packs under a load are each one pack under half of it, wherever a load is balanced."""
+    grid = {"model.cells_per_pitch": 24, "operation.eccentricity": (0.0, 0.0)}
+    both = case("paper_n8", rotor={"mass": 2.0, "span": 0.2}, **grid, **{"operation.load": (0.0, -20.0)})
+    one = case("paper_n8", rotor={"mass": 1.0}, **grid, **{"operation.load": (0.0, -10.0)})
+    for verb in (balance, solve):
+        assert_allclose(*(float(verb(of)["eccentricity_y"]) for of in (both, one)), rtol=1e-9)
+    assert_allclose(*(runup(of, to=5000.0, points=3)["friction_torque"] for of in (both, one)), rtol=1e-9)
+    assert_allclose(
+        float(liftoff(both, 20.0)["liftoff_speed"][0]), float(liftoff(one, 10.0)["liftoff_speed"][0]), rtol=1e-9
+    )
+    assert_allclose(*(coefficients(of)["stiffness"] for of in (both, one)), rtol=1e-7)
+    masses = [float(stability.record(of).scalars["critical_mass"]) for of in (both, one)]
+    assert masses[0] == math.inf or masses[0] <= 2.0 * masses[1] * (1.0 + 1e-6)
+
+
+def test_inertias_that_are_not_given_are_those_of_a_cylinder() -> None:
+    """And a warning tells them."""
+    bare = PAIR.replace(rotor={"mass": 3.06, "span": 0.2})
+    inertia = RotorOnBearings(bare, 3.06).inertia
+    transverse, polar = 3.06 * (0.2**2 / 12.0 + 0.02**2 / 4.0), 0.5 * 3.06 * 0.02**2
+    assert_allclose(np.diag(inertia.mass)[2:], transverse / 0.1**2, rtol=1e-12)
+    assert_allclose(inertia.gyroscopic[2, 3], polar / 0.1**2, rtol=1e-12)
+    assert any(f"{transverse:.4g} kg m^2 is taken" in said for said in warnings_of(bare, {}))
+    assert not any("is taken" in said for said in warnings_of(PAIR, {}))
+    with pytest.raises(DefinitionError, match="polar_inertia is given alone"):
+        PAIR.replace(rotor={"mass": 3.06, "span": 0.2, "polar_inertia": 1e-4})
 
 
 # ---------------------------------------------------------------------------------------------- the conical mode

@@ -48,7 +48,8 @@ class RotorOnBearings:
         rotor = self.case.rotor
         if rotor is None or rotor.span is None:
             return Inertia.of_mass(self.mass)
-        return Inertia.of(rotor.model_copy(update={"mass": self.mass}))
+        whole = rotor.model_copy(update={"mass": self.mass})
+        return Inertia.of(whole.with_inertias(self.case.bearing.journal_radius))
 
     @cached_property
     def pair(self) -> CoupledProblem | None:

@@ -162,6 +162,13 @@ def _of_inputs(case: Case, scalars: Scalars) -> Iterator[str]:
             "surface.petal_friction: it counts the turning of the petals' faces only, about a sixtieth of the slip in "
             "the paper's bearing: the damping it gives is no prediction"
         )
+    if case.rotor is not None and case.rotor.inertia_is_estimated:
+        whole = case.rotor.with_inertias(case.bearing.journal_radius)
+        yield (
+            f"rotor.transverse_inertia: not given; {whole.transverse_inertia:.4g} kg m^2 is taken, and "
+            f"{whole.polar_inertia:.4g} kg m^2 about the axis, as of a cylinder of the journal's radius between the "
+            "bearings: conical modes and their threshold speed depend on it"
+        )
     yield from _measured_shape(case)
 
 

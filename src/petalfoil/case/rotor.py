@@ -49,6 +49,7 @@ class Rotor(Definition):
         float,
         Quantity(unit="kg*m^2", meaning="moment of inertia about a diameter", symbol="I_t", at_least=0.0, at_most=1e9),
     ] = 0.0
+    """With a span; without it a cylinder of the journal's radius between the bearings is taken."""
     polar_inertia: Annotated[
         float,
         Quantity(unit="kg*m^2", meaning="moment of inertia about the axis", symbol="I_p", at_least=0.0, at_most=1e9),
@@ -84,14 +85,29 @@ class Rotor(Definition):
         """Equal bearings that it runs in."""
         return 2 if self.span else 1
 
+    @property
+    def inertia_is_estimated(self) -> bool:
+        """Whether it may tilt, and its inertias are not given."""
+        return self.span is not None and self.transverse_inertia == 0.0
+
+    def with_inertias(self, radius: float) -> Self:
+        """The rotor with inertias where none are given: those of a cylinder of a radius [m] between its bearings.
+
+        ``I_t = m (span^2 / 12 + R^2 / 4)``, ``I_p = m R^2 / 2``.
+        """
+        if self.span is None or not self.inertia_is_estimated:
+            return self
+        transverse = self.mass * (self.span**2 / 12.0 + radius**2 / 4.0)
+        return self.model_copy(update={"transverse_inertia": transverse, "polar_inertia": 0.5 * self.mass * radius**2})
+
     @model_validator(mode="after")
     def _tilts_as_a_body(self) -> Self:
-        """Refuse inertias without a span, a span without inertias, and a polar inertia beyond that of a disk."""
+        """Refuse inertias without a span, and a polar inertia beyond that of a disk or without the other."""
         if self.span is None and (self.transverse_inertia or self.polar_inertia or self.skew):
             text = "inertias and skew matter only to a rotor in two bearings: give its span, or leave them out"
             raise refuse(VALUE_PROBLEM, text, "together with span")
-        if self.span is not None and not self.transverse_inertia > 0.0:
-            text = "a rotor in two bearings (span) may tilt: give its transverse_inertia, greater than 0 kg*m^2"
+        if self.polar_inertia and not self.transverse_inertia:
+            text = "polar_inertia is given alone: give transverse_inertia too, or neither to have both estimated"
             raise refuse(VALUE_PROBLEM, text, "transverse_inertia greater than 0 kg*m^2")
         if self.polar_inertia > 2.0 * self.transverse_inertia:
             text = (

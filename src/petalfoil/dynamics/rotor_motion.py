@@ -127,7 +127,8 @@ class RotorMotion:
         """
         if case.rotor is None:
             raise UsageError(NO_ROTOR)
-        rotor, clock, given = case.rotor, Clock.of(case, scales, schedule), constant_load(case, load)
+        rotor = case.rotor.with_inertias(case.bearing.journal_radius)
+        clock, given = Clock.of(case, scales, schedule), constant_load(case, load)
         unit, lever = scales.length * clock.rate**2 / scales.force, rotor.lever
         inertia, force, askew = Inertia.of(rotor), np.array(given) / scales.force, 0.0
         if lever:
