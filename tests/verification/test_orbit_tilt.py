@@ -132,7 +132,7 @@ def test_petal_bearings_carry_a_tilting_rotor_through_contact() -> None:
 
 def test_what_cannot_be_is_refused() -> None:
     for rotor, reason in (
-        ({"mass": 1.0, "span": 0.5}, "transverse_inertia"),
+        ({"mass": 1.0, "span": 0.5, "polar_inertia": 1e-3}, "transverse_inertia"),
         ({"mass": 1.0, "polar_inertia": 1e-3}, "span"),
         ({"mass": 1.0, "span": 0.5, "transverse_inertia": 1e-3, "polar_inertia": 1.0}, "body"),
     ):
