@@ -162,13 +162,25 @@ class CasePanel:
         return Case if case is None else type(case)
 
     def _build(self, section: Section) -> None:
+        """A table that is folded is built when it is opened: most pages never need it."""
         is_there = not section.name or section.name in self._session.design.tables or not section.is_optional
         opened = section.name in OPEN_AT_FIRST and is_there
         with ui.expansion(section.name or "case", value=opened).classes("table-of-case") as fold:
-            fold.props["caption"] = (
-                section.title.partition(":")[0].partition(";")[0].partition(" (")[0] if section.name else ""
-            )
+            fold.props["caption"] = _short(section.title) if section.name else ""
             fold.props("dense switch-toggle-side")
+            place = ui.element("div")
+        if opened:
+            self._fill(section, place, is_there=is_there)
+        else:
+            fold.on_value_change(lambda event: self._unfold(section, place, is_there=is_there) if event.value else None)
+
+    def _unfold(self, section: Section, place: ui.element, *, is_there: bool) -> None:
+        if not place.default_slot.children:
+            self._fill(section, place, is_there=is_there)
+            self.show_problems()
+
+    def _fill(self, section: Section, place: ui.element, *, is_there: bool) -> None:
+        with place:
             if section.is_optional:
                 switch = ui.switch(f"with {section.name}", value=is_there)
                 switch.on_value_change(lambda event: self._toggle(section.name, bool(event.value)))
@@ -180,3 +192,8 @@ class CasePanel:
         """Add an empty table, whose missing keys are then asked for, or take one away."""
         self._session.change(name, {} if wanted else None)
         self._on_toggle()
+
+
+def _short(title: str) -> str:
+    """A title without what stands behind a colon, a semicolon or in brackets."""
+    return title.partition(":")[0].partition(";")[0].partition(" (")[0]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+from collections.abc import Callable
 from typing import Any
 
 from nicegui import events, ui
@@ -37,23 +39,30 @@ class Page:
 
     def __init__(self, session: Session, *, is_wide: bool) -> None:
         self.session = session
+        self._is_wide = is_wide
         self._space: Any = None
-        self._dark = ui.dark_mode(session.is_dark)
+        self._showers: dict[Aspect, Callable[[], None]] = {}
+
+    async def build(self) -> None:
+        """Build the page part by part; in between others are served."""
+        self._dark = ui.dark_mode(self.session.is_dark)
         ui.add_css(STYLE)
         ui.colors(primary="#0072B2", negative="#B3261E", warning="#8A5A00")
         self._build_header()
-        with ui.left_drawer(value=is_wide).props("width=340 breakpoint=900 bordered").classes("drawer") as self._drawer:
+        self._drawer = ui.left_drawer(value=self._is_wide).props("width=340 breakpoint=900 bordered").classes("drawer")
+        board = ui.element("main").classes("board")
+        parts = {
+            "pictures of the bearing": ("pictures", self._build_pictures),
+            "results": ("numbers", self._build_numbers),
+            "questions": ("questions", self._build_questions),
+            "history": ("past", self._build_past),
+        }
+        with self._drawer:
             self._build_case()
-        with ui.element("main").classes("board"):
-            with ui.element("section").classes("pictures").props('aria-label="pictures of the bearing"'):
-                self._build_pictures()
-            with ui.element("section").classes("numbers").props('aria-label="results"'):
-                self._build_numbers()
-            with ui.element("section").classes("questions").props('aria-label="questions"'):
-                ui.label("Questions").classes("heading")
-                self._questions = Questions(session)
-            with ui.element("section").classes("past").props('aria-label="history"'):
-                self._build_past()
+        for name, (kind, build) in parts.items():
+            await asyncio.sleep(0.0)
+            with board, ui.element("section").classes(kind).props(f'aria-label="{name}"'):
+                build()
         self._showers = {
             Aspect.DESIGN: self._rebuild_case,
             Aspect.PROBLEMS: self._case_panel_problems,
@@ -111,6 +120,10 @@ class Page:
     def _build_numbers(self) -> None:
         ui.label("Results").classes("heading")
         self._results = ResultsPanel(self.session)
+
+    def _build_questions(self) -> None:
+        ui.label("Questions").classes("heading")
+        self._questions = Questions(self.session)
 
     def _build_past(self) -> None:
         with ui.tabs().props("dense no-caps align=left") as tabs:

@@ -33,8 +33,8 @@ CONNECT = 20.0
 """Time that a browser has to open its web socket after it asked for the page [s]."""
 LARGEST_MESSAGE = 256 * 1024
 """Largest message of a browser on the web socket [bytes]: a long text in a field."""
-RECONNECT = 5.0
-"""Time after which a page whose connection broke is taken for left [s]."""
+RECONNECT = 20.0
+"""Time after which a page whose connection broke is taken for left [s]: a busy machine may answer late."""
 RESENT = 30
 """Messages that are kept for a connection that breaks: a picture has 100 kB, and a page that missed more reloads."""
 WIDE = 900
@@ -211,6 +211,7 @@ async def show(sessions: Sessions) -> None:
         tab[KEY] = (session.key, client.tab_id)
         session.is_dark = bool(is_dark)
     page = Page(session, is_wide=width > WIDE)
+    await page.build()
     session.listener = page.changed
     client.on_delete(lambda: sessions.leave(session, page))
     session.refresh()

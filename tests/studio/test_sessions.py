@@ -1,0 +1,111 @@
+"""Twenty pages at once: each gets its own answers, memory is bounded, and a page that leaves frees its work."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import random
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from petalfoil.studio.design import Design
+from tests.studio.server import Studio, running_studio, wait_until
+
+pytestmark = pytest.mark.slow
+pytest.importorskip("nicegui")
+robots = pytest.importorskip("tests.studio.robot")
+
+SESSIONS = 20
+SECONDS = float(os.environ.get("PETALFOIL_STUDIO_SECONDS", "20"))
+"""How long they work; five minutes were run by hand (docs/how-to/studio.md)."""
+OPENS = 120.0
+"""Time in which twenty pages that are opened at once have results, on a machine that others use [s]."""
+PAUSE = 4.0
+"""Mean time between two changes of a session [s]."""
+MOST_A_SESSION = 15e6
+"""Memory that the server takes for a session [bytes]: measured 4 to 7 MB."""
+
+
+def memory(studio: Studio) -> float:
+    return float(psutil.Process(studio.process.pid).memory_info().rss)
+
+
+async def work(studio: Studio, number: int, seconds: float) -> int:
+    """Change the load of a page again and again; every answer is that of its own load. Returns how many there were."""
+    chance = random.Random(number)
+    robot = robots.Robot(studio)
+    await robot.open()
+    await robots.until(robot.results, OPENS)
+    end, answers = asyncio.get_running_loop().time() + seconds, 0
+    while asyncio.get_running_loop().time() < end:
+        load = 5.0 + number + round(0.01 * (answers + 1), 2)
+        await robot.type_in("operation.load", f"{load:.2f} N")
+        wanted = f"{-load:.3g}" if load < 10 else f"{-load:.2f}"
+        await robots.until(
+            lambda wanted=wanted: float(robot.results()["load_y"]) == pytest.approx(float(wanted), abs=5e-3)
+        )
+        assert float(robot.results()["bearing_force"]) == pytest.approx(load, abs=5e-3)
+        answers += 1
+        await asyncio.sleep(chance.expovariate(1.0 / PAUSE))
+    await robot.leave()
+    return answers
+
+
+def test_twenty_sessions_at_once(tmp_path: Path) -> None:
+    path = tmp_path / "small.toml"
+    path.write_text(Design.starting().with_value("model.cells_per_pitch", 24).to_toml())
+
+    async def all_of_them(studio: Studio) -> list[int]:
+        return await asyncio.gather(*(work(studio, number, SECONDS) for number in range(SESSIONS)))
+
+    with running_studio(str(path)) as studio:
+        assert asyncio.run(work(studio, 0, 0.5)) > 0
+        before = memory(studio)
+        answers = asyncio.run(all_of_them(studio))
+        after = memory(studio)
+        again = asyncio.run(all_of_them(studio))
+        bound = memory(studio)
+        assert len(studio.workers()) >= 2
+    print(f"{sum(answers)} and {sum(again)} answers; {before / 1e6:.0f}, {after / 1e6:.0f}, {bound / 1e6:.0f} MB")  # noqa: T201
+    assert min(answers) > 0
+    assert (after - before) / SESSIONS < MOST_A_SESSION
+    assert (bound - after) / SESSIONS < MOST_A_SESSION
+
+
+def test_a_page_that_leaves_frees_its_work_and_finds_its_state_again(tmp_path: Path) -> None:
+    """The page leaves while a 3-D run is under way: another page, whose runs are long too, is answered at once."""
+    design = Design.starting().with_value("model.cells_per_pitch", 64).with_value("model.kind", "3d")
+    path = tmp_path / "long.toml"
+    path.write_text(design.to_toml())
+
+    async def leave(studio: Studio) -> None:
+        robot = robots.Robot(studio)
+        await robot.open()
+        await robots.until(robot.results)
+        await robot.type_in("operation.load", "12 N")
+        await robots.until(lambda: robot.results()["load_y"] == "-12.00")
+        await robot.leave()
+        back = robots.Robot(studio, robot.tab)
+        await back.open()
+        await robots.until(lambda: back.results().get("load_y") == "-12.00")
+        await back.leave()
+        other = robots.Robot(studio)
+        await other.open()
+        await robots.until(other.results)
+        assert other.results()["load_y"] == "-15.00"
+        await other.leave()
+
+    with running_studio(str(path)) as studio:
+        asyncio.run(leave(studio))
+        idle = [worker.cpu_times().user for worker in studio.workers()]
+        assert wait_until(lambda: _is_idle(studio), 60.0), idle
+
+
+def _is_idle(studio: Studio) -> bool:
+    """Whether no worker computes: the pages have left."""
+    before = [worker.cpu_times().user for worker in studio.workers()]
+    time.sleep(1.0)
+    return [worker.cpu_times().user for worker in studio.workers()] == before
