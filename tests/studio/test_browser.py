@@ -232,5 +232,4 @@ def test_names_for_screen_readers_and_a_narrow_window(page: Page) -> None:
     )
     assert nameless == []
     page.set_viewport_size({"width": 400, "height": 800})
-    page.wait_for_timeout(500)
-    assert page.evaluate("document.documentElement.scrollWidth") <= 400
+    page.wait_for_function("document.documentElement.scrollWidth <= 400")

@@ -102,7 +102,7 @@ def rows_of(found: Found, pinned: Found | None) -> list[dict[str, Any]]:
                 "bar": bar,
                 "unit": shown.unit,
                 "pinned": cell(name, before[name]).value if name in before else "",
-                "difference": _difference(before.get(name), value),
+                "difference": _difference(before.get(name), value, _size(name, before)),
                 "level": level_of(name, value, warned),
             }
         )
@@ -116,13 +116,20 @@ def level_of(name: str, value: object, warned: set[str]) -> str:
     return "warned" if name in warned else ""
 
 
-def _difference(before: Any, now: Any) -> str:
-    """Difference from A in percent of A; words where they differ."""
+def _size(name: str, before: Mapping[str, Any]) -> float:
+    """What a difference is measured by: the value of A; of a component, the length of its vector."""
+    stem, _, axis = name.rpartition("_")
+    pair = [before.get(f"{stem}_{one}") for one in "xy"] if axis in ("x", "y") else [before.get(name)]
+    return math.hypot(*(float(value) for value in pair if isinstance(value, float | int)))
+
+
+def _difference(before: Any, now: Any, size: float) -> str:
+    """Difference from A in percent of a size; words where they differ."""
     if before is None or isinstance(before, bool | str) or isinstance(now, bool | str):
         return "changed" if before is not None and before != now else ""
     if not (math.isfinite(before) and math.isfinite(now)) or before == now:
         return ""
-    if before == 0.0:
+    if size == 0.0:
         return "from 0"
-    part = (now - before) / abs(before)
+    part = (now - before) / size
     return "" if abs(part) < LEAST_DIFFERENCE else f"{100.0 * part:+.3g} %"

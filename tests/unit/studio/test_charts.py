@@ -112,6 +112,9 @@ def test_the_difference_from_a_pinned_design_is_in_percent(state: Found) -> None
     pinned = Found(verb="balance", tables=(), scalars=scalars)
     (row,) = (row for row in rows_of(state, pinned) if row["name"] == "min_film_thickness")
     assert row["difference"] == "+100 %"
+    moved = dict(state.scalars) | {"force_x": 3e-9, "force_y": 10.0}
+    rows = {row["name"]: row["difference"] for row in rows_of(state, Found(verb="balance", tables=(), scalars=moved))}
+    assert (rows["force_x"], rows["force_y"]) == ("", "+50 %")
     assert rows_of(state, None)[0]["pinned"] == ""
 
 
