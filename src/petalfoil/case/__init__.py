@@ -8,6 +8,7 @@ In the order data flows:
 - `definition`: the base of all definitions.
 - `gas_properties`: a gas by its name.
 - `sections`: the tables of bearing, surface, operation and model.
+- `metals`: metals by their names.
 - `petal_table`: the table of the petals.
 - `bump_foil_table`: the table of a bump foil.
 - `gas`: the table of the gas.

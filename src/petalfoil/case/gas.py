@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, ClassVar, cast
+from typing import Annotated, ClassVar
 
 from pydantic import Field, SerializerFunctionWrapHandler, ValidationInfo, field_validator, model_serializer
 
 from petalfoil.case import gas_properties
 from petalfoil.case.definition import Definition
-from petalfoil.case.number_fields import VALUE_PROBLEM, Quantity, refuse
+from petalfoil.case.number_fields import UNSET, VALUE_PROBLEM, Quantity, refuse
 from petalfoil.units.reading import shown
-
-UNSET: float = cast(float, None)
-"""A number that was not given: it follows from the name, or has a default."""
 
 REFUSED = 1.0
 """Stands for a number of a gas that is refused for another of its fields; nobody sees it."""

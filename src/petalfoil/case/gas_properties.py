@@ -75,7 +75,8 @@ def check_pressure(name: str, T: float, p: float) -> None:
     else:
         return
     allowed = _allowed(state, T, p)
-    raise refuse(VALUE_PROBLEM, f"{found}; allowed: {allowed}", allowed)
+    ideal = "; a numeric gas.viscosity and gas.gas_constant in place of the name run as an ideal gas"
+    raise refuse(VALUE_PROBLEM, f"{found}; allowed: {allowed}{ideal}", allowed)
 
 
 def viscosity(name: str, T: float, p: float) -> float:

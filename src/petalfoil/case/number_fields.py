@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from numbers import Integral
-from typing import Any
+from typing import Any, cast
 
 from pydantic import GetCoreSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
@@ -21,6 +21,10 @@ from petalfoil.units.reading import is_bare, shown
 
 UNIT_PROBLEM = "unit_problem"  # pydantic error types of ours; `problems.py` tells them apart
 VALUE_PROBLEM = "value_problem"
+
+
+UNSET: float = cast(float, None)
+"""A number that was not given: it follows from a name, or has a default."""
 
 
 def refuse(kind: str, text: str, allowed: str) -> PydanticCustomError:

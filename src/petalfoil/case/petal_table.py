@@ -9,14 +9,29 @@ from enum import StrEnum
 from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
-from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    SerializerFunctionWrapHandler,
+    ValidationInfo,
+    field_validator,
+    model_serializer,
+)
 
-from petalfoil.case.number_fields import VALUE_PROBLEM, Count, PerPetal, PerPetalOrWord, Quantity, refuse
+from petalfoil.case.metals import Metal, metal_of
+from petalfoil.case.number_fields import UNSET, VALUE_PROBLEM, Count, PerPetal, PerPetalOrWord, Quantity, refuse
 from petalfoil.case.shape_file import as_shape
 from petalfoil.case.wall_tables import WallTable
+from petalfoil.units.reading import shown
 
 MIN_ROWS = 3  # of a measured free shape: fewer say nothing of a curvature
 MAX_ROWS = 10_000  # more than a coordinate measuring machine takes of a petal, and read in a second or two
+
+
+BY_MATERIAL = ("youngs_modulus", "poisson_ratio", "yield_strength")
+"""Fields that a material gives."""
+REFUSED = {"youngs_modulus": 2e11, "poisson_ratio": 0.3}
+"""Stand for the numbers of a material that is refused; nobody sees them."""
 
 
 class Mount(StrEnum):
@@ -115,10 +130,21 @@ class Petals(WallTable):
     """With `"chordal"` the free edge of the free petal lies on the bore (G4)."""
     mount: Mount
     """Root free to turn, or clamped."""
+    # before the numbers that a material gives
+    material: str | None = None
+    """Metal whose modulus, Poisson's ratio and yield strength are looked up, such as `inconel x-750`."""
+    metal_temperature: Annotated[
+        float, Quantity(unit="K", meaning="temperature of the petals' metal", symbol="T_m", above=0.0, at_most=2000.0)
+    ] = 293.15
+    """Of effect on the modulus of a material."""
     youngs_modulus: Annotated[
         Each, PerPetal(unit="Pa", meaning="Young's modulus", symbol="E_y", above=0.0, at_most=1e13)
-    ]
-    poisson_ratio: Annotated[Each, PerPetal(unit="1", meaning="Poisson's ratio", symbol="nu", above=-1.0, below=0.5)]
+    ] = Field(default=UNSET, validate_default=True)
+    """Required unless the petals have a material."""
+    poisson_ratio: Annotated[
+        Each, PerPetal(unit="1", meaning="Poisson's ratio", symbol="nu", above=-1.0, below=0.5)
+    ] = Field(default=UNSET, validate_default=True)
+    """Required unless the petals have a material."""
     first_root: Annotated[
         float,
         Quantity(unit="rad", meaning="angle of the first root", symbol="theta_ref", at_least=-6.3, at_most=6.3),
@@ -126,8 +152,28 @@ class Petals(WallTable):
     yield_strength: (
         Annotated[float, Quantity(unit="Pa", meaning="yield strength", symbol="sigma_y", above=0.0, at_most=1e11)]
         | None
-    ) = None
-    """Without it, stress above 2 GPa is warned of."""
+    ) = Field(default=None, validate_default=True)
+    """By default that of the material; without one, stress above 2 GPa is warned of."""
+
+    @property
+    def metal(self) -> Metal | None:
+        """What is known of the material; None without one."""
+        return None if self.material is None else metal_of(self.material)
+
+    def entries(self) -> dict[str, object]:
+        """Entries that make these petals again."""
+        return {name: value for name, value in super().entries().items() if self._is_written(name)}
+
+    @model_serializer(mode="wrap")
+    def _as_given(self, handler: SerializerFunctionWrapHandler) -> dict[str, object]:
+        return {name: value for name, value in handler(self).items() if self._is_written(name)}
+
+    def _is_written(self, field: str) -> bool:
+        """Whether a field is the user's own: not one that follows from the material."""
+        metal = self.metal
+        if metal is None:
+            return True
+        return field not in BY_MATERIAL or (field == "yield_strength" and self.yield_strength != metal.yield_strength)
 
     @property
     def pitch(self) -> float:
@@ -168,6 +214,38 @@ class Petals(WallTable):
                 VALUE_PROBLEM, f"has {len(value)} values for petals.count = {count}; allowed: {allowed}", allowed
             )
         return value
+
+    @field_validator("material")
+    @classmethod
+    def _is_known(cls, material: str | None) -> str | None:
+        return None if material is None else metal_of(material).name
+
+    @field_validator(*BY_MATERIAL, mode="before")
+    @classmethod
+    def _resolved(cls, given: object, info: ValidationInfo) -> object:
+        """What was given, or what follows from the material."""
+        field, known = str(info.field_name), info.data
+        material = known.get("material")
+        if material is None:
+            return cls._without_metal(given, field, known)
+        metal = metal_of(material)
+        if field == "yield_strength":
+            return metal.yield_strength if given is None else given
+        if given is not UNSET:
+            text = f"{shown(given)} is given beside petals.material = {shown(material)}; allowed: one of them"
+            raise refuse(VALUE_PROBLEM, text, "a material or numbers")
+        temperature = known.get("metal_temperature", 293.15)  # a refused one is told already
+        return metal.poisson_ratio if field == "poisson_ratio" else metal.youngs_modulus(temperature)
+
+    @classmethod
+    def _without_metal(cls, given: object, field: str, known: dict[str, object]) -> object:
+        if given is not UNSET or field == "yield_strength":
+            return given
+        if "material" not in known:  # it is refused itself
+            return REFUSED[field]
+        declared = next(part for part in cls.model_fields[field].metadata if isinstance(part, Quantity))
+        allowed = f"{declared.allowed}, or petals.material, such as 'inconel x-750'"
+        raise refuse(VALUE_PROBLEM, f"is missing; expected {allowed}", allowed)
 
     @field_validator("free_shape")
     @classmethod

@@ -170,6 +170,7 @@ def _of_inputs(case: Case, scalars: Scalars) -> Iterator[str]:
             "bearings: conical modes and their threshold speed depend on it"
         )
     yield from _measured_shape(case)
+    yield from _metal(case)
 
 
 def _unusual(case: Case) -> Iterator[str]:
@@ -199,6 +200,19 @@ def _unbalance(case: Case) -> Iterator[str]:
             f"rotor.unbalance: the mass centre lies {format_quantity(case.rotor.unbalance, 'm')} off the axis, more "
             f"than half the radial clearance {format_quantity(case.bearing.clearance, 'm')}; balanced rotors have some "
             "micrometres: divide a residual unbalance in g mm by the mass"
+        )
+
+
+def _metal(case: Case) -> Iterator[str]:
+    metal = None if case.petals is None else case.petals.metal
+    if case.petals is None or metal is None:
+        return
+    (low, high), temperature = metal.range, case.petals.metal_temperature
+    if not low <= temperature <= high:
+        yield (
+            f"petals.metal_temperature: the modulus of {metal.name} is known from {low - 273.15:.0f} to "
+            f"{high - 273.15:.0f} °C, not at {temperature - 273.15:.0f} °C: that of the nearer end is taken; give "
+            "petals.youngs_modulus and petals.poisson_ratio instead of a material"
         )
 
 

@@ -1,0 +1,148 @@
+"""Metals that foils are made of, by name: elastic constants, density, expansion, yield strength, and their sources.
+
+Young's modulus is linear between the temperatures of its source; the other values are those at about 20 °C. They are
+typical: a strip's own certificate is better. A yield strength stands only where the source states one for a temper.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from petalfoil.case.hints import nearest
+from petalfoil.case.number_fields import VALUE_PROBLEM, refuse
+
+CELSIUS = 273.15
+"""0 °C [K]."""
+
+NEAR = 30.0
+"""Temperatures about room temperature within which a modulus that is stated there holds [K]: it falls by 1 % or so."""
+
+
+@dataclass(frozen=True)
+class Metal:
+    """A metal.
+
+    Attributes
+    ----------
+    name : str
+        Name in a case.
+    modulus : tuple of (float, float)
+        Temperature [°C] and Young's modulus [Pa], the temperatures growing.
+    poisson_ratio : float
+        Poisson's ratio [1].
+    density : float
+        Density [kg/m^3].
+    expansion : float
+        Mean thermal expansion coefficient from 20 °C on [1/K].
+    yield_strength : float or None
+        Yield strength of the temper [Pa]; None where it depends on a temper that the source does not name.
+    temper : str
+        Condition of the strip.
+    source : str
+        Where the values are from.
+    """
+
+    name: str
+    modulus: tuple[tuple[float, float], ...]
+    poisson_ratio: float
+    density: float
+    expansion: float
+    yield_strength: float | None
+    temper: str
+    source: str
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Temperatures between which the modulus is known [K]."""
+        first, last = self.modulus[0][0], self.modulus[-1][0]
+        below, beyond = NEAR if first > 0.0 else 0.0, NEAR if len(self.modulus) == 1 else 0.0
+        return first - below + CELSIUS, last + beyond + CELSIUS
+
+    def youngs_modulus(self, temperature: float) -> float:
+        """Young's modulus at a temperature [K], outside its range that of the nearest end [Pa]."""
+        at, values = np.array(self.modulus).T
+        return float(np.interp(temperature - CELSIUS, at, values))
+
+
+_ROARK = (
+    "modulus: Young and Budynas, Roark's Formulas for Stress and Strain, table of the effect of temperature, carbon "
+    "steel with C > 0.3 %"
+)
+
+METALS = {
+    metal.name: metal
+    for metal in (
+        Metal(
+            "spring steel",
+            (
+                *((-73.0, 206.8e9), (21.0, 202.0e9), (93.0, 197.2e9), (149.0, 193.7e9), (204.0, 189.6e9)),
+                *((260.0, 186.8e9), (316.0, 182.7e9)),
+            ),
+            0.29, 7850.0, 12.1e-6, None, "hardened and tempered, any",
+            f"{_ROARK}; expansion: ASME BPVC II-D table TE-1, 70 to 200 °F; Poisson's ratio: ASTM A231",
+        ),
+        Metal(
+            "stainless steel 302", ((20.0, 193e9),), 0.30, 7920.0, 17.3e-6, 517e6, "cold rolled, 75 ksi",
+            "modulus, expansion and yield: eCourses material tables (AISI 302 cold rolled); density: ASTM A313",
+        ),
+        Metal(
+            "inconel x-750", ((21.0, 214e9), (538.0, 184e9)), 0.29, 8280.0, 14.0e-6, None, "spring temper, aged",
+            "Special Metals SMC-067 and Tokkin data sheet: E 31.0 and 26.7 Msi at 70 and 1000 °F, G 12.0 Msi; "
+            "expansion 70 to 1000 °F",
+        ),
+        Metal(
+            "inconel 718", ((21.0, 200.0e9), (149.0, 198.6e9), (204.0, 196.5e9), (260.0, 193.1e9)),
+            0.29, 8190.0, 13.2e-6, 1034e6, "annealed and aged, AMS 5596, least",
+            "Special Metals SMC-045: dynamic modulus 29.0, 28.8, 28.5 and 28.0 Msi at 70, 300, 400 and 500 °F; "
+            "yield: AMS 5596",
+        ),
+        Metal(
+            "beryllium copper c17200", ((20.0, 127e9),), 0.30, 8260.0, 17.8e-6, 960e6, "age hardened TF00, least",
+            "NGK alloy 25 data sheet",
+        ),
+        Metal(
+            "phosphor bronze c51000", ((20.0, 110e9),), 0.33, 8860.0, 17.8e-6, 690e6, "spring temper H08, nominal",
+            "Olin Brass C51000 (ASTM B103); Poisson's ratio: eCourses material tables, bronze",
+        ),
+        Metal(
+            "titanium ti-6al-4v", ((20.0, 114e9),), 0.31, 4420.0, 8.6e-6, 828e6, "annealed, least",
+            "data sheet of grade 5: modulus and density typical, yield least; Poisson's ratio: Lumina data sheet",
+        ),
+    )
+}  # fmt: skip
+"""Metals by name."""
+
+SHORT = {
+    "x-750": "inconel x-750",
+    "x750": "inconel x-750",
+    "inconel x750": "inconel x-750",
+    "718": "inconel 718",
+    "beryllium copper": "beryllium copper c17200",
+    "c17200": "beryllium copper c17200",
+    "phosphor bronze": "phosphor bronze c51000",
+    "c51000": "phosphor bronze c51000",
+    "titanium": "titanium ti-6al-4v",
+    "ti-6al-4v": "titanium ti-6al-4v",
+    "carbon steel": "spring steel",
+    "stainless steel": "stainless steel 302",
+}
+"""Other names of them."""
+
+
+def metal_of(name: str) -> Metal:
+    """The metal of a name, in any spelling of letters.
+
+    Raises
+    ------
+    PydanticCustomError
+        It is not in the table.
+    """
+    plain = " ".join(name.lower().split())
+    plain = SHORT.get(plain, plain)
+    if plain not in METALS:
+        allowed = ", ".join(METALS)
+        hint = nearest(plain, [*METALS, *SHORT])
+        raise refuse(VALUE_PROBLEM, f"{name!r} is not in the table of metals; known: {allowed}.{hint}", allowed)
+    return METALS[plain]
