@@ -83,5 +83,5 @@ constraints: ## Renew constraints.txt (needs uv)
 	  -o constraints.txt
 
 clean: ## Remove what was built, .venv included
-	rm -rf .venv build dist demo docs/gallery .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache
+	rm -rf .venv build dist demo docs/gallery docs/tutorials/worked .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

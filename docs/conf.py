@@ -27,7 +27,11 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "reference",
 ]
-exclude_patterns = ["_ext", "sg_execution_times.rst", "gallery/*.ipynb", "gallery/*.py", "gallery/*.zip"]
+exclude_patterns = [
+    "_ext",
+    "sg_execution_times.rst",
+    *(f"{folder}/*.{kind}" for folder in ("gallery", "tutorials/worked") for kind in ("ipynb", "py", "zip")),
+]
 nitpicky = False  # docstrings name types in words, "(n, m) array", which are no targets
 
 # ---------------------------------------------------------------------------------------------- pages
@@ -83,8 +87,8 @@ def copy_mathjax(app: object, problem: Exception | None) -> None:
 # ---------------------------------------------------------------------------------------------- gallery
 
 sphinx_gallery_conf = {
-    "examples_dirs": ["../examples/gallery"],
-    "gallery_dirs": ["gallery"],
+    "examples_dirs": ["../examples/gallery", "../examples/tutorials"],
+    "gallery_dirs": ["gallery", "tutorials/worked"],
     "filename_pattern": r"/plot_",
     "image_scrapers": (gallery.scraper,),
     "reset_modules": (),

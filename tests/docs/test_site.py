@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import math
 import re
 import runpy
 from pathlib import Path
+from typing import Any
 
 import pytest
 import xarray as xr
 from matplotlib.figure import Figure
 
+import petalfoil
 from petalfoil import plot
 from petalfoil.analysis import known_verbs
 from petalfoil.case import Case
 from petalfoil.case import keys as case_keys
 from tests.docs.site import GALLERY, listed
-from tests.docs.texts import DOCS, text
+from tests.docs.texts import DOCS, ROOT, text
 
 NO_FIGURES = {"animate", "register", "save", "study", "study_figures", "summary"}
 """Names of `petalfoil.plot` that draw no figure of their own."""
@@ -56,6 +59,30 @@ def test_every_analysis_has_a_script_in_the_gallery() -> None:
 def test_every_figure_is_in_the_gallery() -> None:
     drawn = {name for path in GALLERY for name in re.findall(r"\bplot\.(\w+)\(", text(path))}
     assert set(plot.__all__) - NO_FIGURES - drawn == set()
+
+
+@pytest.mark.slow
+def test_the_tutorial_sizes_a_bearing_that_meets_its_requirements(monkeypatch: pytest.MonkeyPatch) -> None:
+    path = ROOT / "examples" / "tutorials" / "plot_size_a_turbocharger_bearing.py"
+    monkeypatch.chdir(path.parent)
+    names = runpy.run_path(str(path))
+    assert float(names["result"]["min_film_thickness"]) >= 2e-6
+    assert float(names["result"]["contact_fraction"]) == 0.0
+    assert float(names["result"]["max_bending_stress"]) <= 600e6
+    assert float(names["liftoff"]["liftoff_speed"][0]) <= 40000.0 * math.pi / 30.0
+    assert float(petalfoil.balance(names["first"])["min_film_thickness"]) < 2e-6  # the first guess does not
+
+
+@pytest.mark.slow
+def test_the_tutorial_of_whirl_tells_what_it_says(monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
+    path = ROOT / "examples" / "tutorials" / "plot_stiffness_damping_whirl.py"
+    monkeypatch.chdir(path.parent)
+    names = runpy.run_path(str(path))
+    assert float(names["stability"]["whirl_ratio"]) == pytest.approx(0.5, abs=0.02)
+    assert abs(names["cross"]) < 0.1 * names["direct"]
+    masses = [float(mass) for mass in re.findall(r"N: critical mass (\S+) kg", capsys.readouterr().out)]
+    assert masses == sorted(masses)
+    assert len(masses) == 3
 
 
 @pytest.mark.slow
