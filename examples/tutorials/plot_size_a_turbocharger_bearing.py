@@ -89,9 +89,9 @@ describe("3-D", first)
 # Mistake 2: to clamp petals that were shaped to be hinged
 # --------------------------------------------------------
 #
-# A clamped root keeps the angle of the drawing. At the tilt of a hinged petal (``root_tilt = "chordal"``) it presses the
-# petals onto the journal with many times the force. Warnings name a stress above the yield strength. Clamped along the
-# bore it is another bearing, and a good one.
+# A clamped root keeps the angle of the drawing. At the tilt of a hinged petal (``root_tilt = "chordal"``) it presses
+# the petals onto the journal with many times the force. Warnings name a stress above the yield strength. Clamped along
+# the bore it is another bearing, and a good one.
 
 describe("clamped, chordal", first.replace(**{"petals.mount": "clamped"}))
 describe("clamped, along the bore", first.replace(**{"petals.mount": "clamped", "petals.root_tilt": "0 deg"}))
