@@ -22,6 +22,9 @@ ROOTS = ("README.md", "CONTRIBUTING.md", "docs", "examples", "benchmarks", "src"
 TABLE_OF_WRONG_WORDS = ROOT / "src" / "petalfoil" / "case" / "hints.py"
 """Answers a wrong or former key with the right one, and so must name it."""
 
+GENERATED = {ROOT / "docs" / "gallery", ROOT / "docs" / "tutorials" / "worked"}
+"""Folders that building the site fills from scripts that are searched themselves."""
+
 SUFFIXES = {".md", ".py", ".toml", ".csv"}
 
 READ = {"COMMENT", "STRING", "FSTRING_MIDDLE"}
@@ -116,7 +119,7 @@ def files(root: str) -> list[Path]:
     """Texts of a root."""
     path = ROOT / root
     inside = [path] if path.is_file() else sorted(f for f in path.rglob("*") if f.suffix in SUFFIXES)
-    return [file for file in inside if file != TABLE_OF_WRONG_WORDS]
+    return [file for file in inside if file != TABLE_OF_WRONG_WORDS and not GENERATED & set(file.parents)]
 
 
 def prose(path: Path) -> str:
