@@ -72,6 +72,7 @@ def test_loads(called: Called, given: Any, force: tuple[float, float] | None) ->
         "speed": None,
         "speeds": None,
         "amplitude": None,
+        "tilt": False,
         "progress": None,
     }
     petalfoil.stability(PLAIN, load=given, mass="500 g")

@@ -20,6 +20,7 @@ from petalfoil.solvers.contact_newton import ActiveContacts, solve_contacts
 from petalfoil.solvers.interior_point import InteriorOptions, InteriorStep, interior_point
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, ContactProblem, PrimalDualPoint
 from petalfoil.solvers.sparse_lu import LinearSolver
+from petalfoil.sparsity import SparseRows
 from petalfoil.system.coupled import WALL_ROUNDING
 
 Array = NDArray[np.float64]
@@ -104,6 +105,10 @@ class ElasticProblem:
     G: sp.csr_array
     rest: Array
     weight: Array
+
+    def __post_init__(self) -> None:
+        """Take the rows of any sparse matrix."""
+        object.__setattr__(self, "G", SparseRows(self.G))
 
     @property
     def n(self) -> int:

@@ -73,7 +73,7 @@ RESULTS = {
         shown=Shown("load coefficient", "lbf/(in³ krpm)"),
     ),
     "limited_by": Variable(
-        (), "", "result that reaches its limit at the load capacity", "", DataType.STR, shown=Shown("limited by")
+        (), "", "result that reaches its limit at the load capacity", "q_lim", DataType.STR, shown=Shown("limited by")
     ),
     "min_film_limit": Variable((), "m", "least minimum film thickness allowed", "h_lim", role=Role.GIVEN),
     "contact_fraction_allowed": Variable((), "1", "largest contact fraction allowed", "s_lim", role=Role.GIVEN),

@@ -26,7 +26,7 @@ class Choice(Argument):
 
     def read(self, given: object) -> str:
         """The word."""
-        if given not in self.words:
+        if not isinstance(given, str) or given not in self.words:
             hint = nearest(given, self.words)
             raise UsageError(f"{shown(given)} is not known; allowed: {', '.join(self.words)}.{hint}")
         return str(given)

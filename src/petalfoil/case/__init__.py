@@ -36,7 +36,7 @@ from petalfoil.case.gas import Gas
 from petalfoil.case.growth import Bushing, Growth, Shaft
 from petalfoil.case.heat import Heat, HotGas
 from petalfoil.case.package import Package, package_of
-from petalfoil.case.parameters import Parameter, parameter_of, parameters_of, with_values
+from petalfoil.case.parameters import Parameter, parameter_of, parameters_of, parameters_of_petals, with_values
 from petalfoil.case.petal_table import Mount, Petals
 from petalfoil.case.plausibility import warnings_of, warnings_of_errors
 from petalfoil.case.rotor import Rotor
@@ -71,6 +71,7 @@ __all__ = [
     "package_of",
     "parameter_of",
     "parameters_of",
+    "parameters_of_petals",
     "register_table",
     "unregister_table",
     "warnings_of",

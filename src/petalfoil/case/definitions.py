@@ -91,6 +91,15 @@ class Case(Definition):
             raise type(error)(message, key=error.key, given=given, allowed=allowed, problems=problems) from None
 
     @classmethod
+    def tables_of_file(cls, path: str | os.PathLike[str]) -> dict[str, Any]:
+        """The tables of a case file as they are written; a measured shape in a file of its own as rows."""
+        petals = cls.load(path).petals
+        tables = toml.parse(toml.read_file(path))
+        if petals is not None and petals.free_shape is not None:
+            tables["petals"]["free_shape"] = [list(row) for row in petals.free_shape]
+        return tables
+
+    @classmethod
     def from_toml(cls, text: str) -> Self:
         """Read a case from a TOML text."""
         return cls(**toml.parse(text))

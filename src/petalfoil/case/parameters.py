@@ -119,6 +119,19 @@ def parameter_of(case: Case, path: str) -> Parameter:
     raise DefinitionError(text, key=path, given=path, allowed=", ".join(known))
 
 
+def parameters_of_petals(case: Case, path: str) -> tuple[Parameter, ...]:
+    """The parameters of the single petals that one path stands for.
+
+    Raises
+    ------
+    DefinitionError
+        The path is no field of the table of the petals, or one that they share.
+    """
+    if not _petals(case) or not path.startswith("petals."):
+        raise DefinitionError(f"{path}: 'each' is for fields of [petals], one value a petal", key=path, given="each")
+    return tuple(parameter_of(case, f"{path}[{number}]") for number in range(_petals(case)))
+
+
 def with_values(case: Case, values: Mapping[str, object]) -> Case:
     """The case with other values of some of its parameters, validated.
 

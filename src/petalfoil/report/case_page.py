@@ -20,6 +20,7 @@ from petalfoil.results.schema import VARIABLES, Role
 from petalfoil.results.seal import digest_of_data
 from petalfoil.results.summary import cell, in_order, without_rounding
 from petalfoil.units.writing import format_quantity
+from petalfoil.walls import Capability, wall_kind
 
 LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "pydantic")
 """Libraries whose version may change a last digit."""
@@ -198,7 +199,7 @@ def _limits(request: Request) -> Iterator[str]:
     yield "The gas is ideal and isothermal, the flow laminar and without inertia."
     if not case.model.slip:
         yield "The gas does not slip at the walls (model.slip)."
-    if case.petals is not None:
+    if wall_kind(case).can(Capability.RUBBING):
         yield (
             "Petals are thin elastic shells without mass. Sliding along each other dissipates nothing beyond what "
             "surface.petal_friction says, so damping is underestimated."

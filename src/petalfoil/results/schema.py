@@ -240,7 +240,9 @@ SCALARS: dict[str, Variable] = {
     "knudsen_number": _answer("1", "mean free path at ambient pressure over the minimum film thickness", "Kn"),
     "peak_pressure": _answer("Pa", "peak absolute pressure of the film", "p_max"),
     "peak_pressure_angle": _answer("rad", "bushing angle of the peak pressure", "theta(p_max)"),
-    "petal_friction_work": _answer("J", "energy lost where petals slide on each other and the bushing", "W_p"),
+    "petal_friction_work": _answer(
+        "J", "energy lost where petals slide on each other and the bushing, or by the loss of a foil", "W_p"
+    ),
     "friction_torque": _answer("N m", "friction torque on the journal, film and contact", "M"),
     "starting_torque": _answer("N m", "torque of dry friction at rest", "M_0"),
     "power_loss": _answer("W", "friction torque times angular velocity", "M omega"),

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.case import Case, Parameter, parameter_of
+from petalfoil.case import Case, Parameter, parameter_of, parameters_of_petals
 from petalfoil.errors import DefinitionError, UnitError, UsageError
 from petalfoil.units import format_quantity, parse_quantity, parse_range
 from petalfoil.units.reading import shown
@@ -181,21 +181,8 @@ def read_scatter(case: Case, path: str, given: str) -> tuple[Scatter, ...]:
             "behind it for one value a petal"
         )
     kind = "uniform" if form["kind"] in UNIFORM else form["kind"]
-    parameters = each_petal(case, path) if form["each"] else (parameter_of(case, path),)
+    parameters = parameters_of_petals(case, path) if form["each"] else (parameter_of(case, path),)
     return tuple(_scatter(parameter, kind, form["width"].strip()) for parameter in parameters)
-
-
-def each_petal(case: Case, path: str) -> tuple[Parameter, ...]:
-    """The parameters of the single petals that one path stands for.
-
-    Raises
-    ------
-    DefinitionError
-        The table of petals has no list under this path.
-    """
-    if case.petals is None or not path.startswith("petals."):
-        raise DefinitionError(f"{path}: 'each' is for fields of [petals], one value a petal", key=path, given="each")
-    return tuple(parameter_of(case, f"{path}[{number}]") for number in range(case.petals.count))
 
 
 def _scatter(parameter: Parameter, kind: str, width: str) -> Scatter:

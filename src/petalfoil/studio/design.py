@@ -72,11 +72,7 @@ class Design:
         DefinitionError
             It is no valid case.
         """
-        case = Case.load(path)
-        tables = case_toml.parse(case_toml.read_file(path))
-        if case.petals is not None and case.petals.free_shape is not None:
-            tables["petals"]["free_shape"] = [list(row) for row in case.petals.free_shape]
-        return cls(tables)
+        return cls(Case.tables_of_file(path))
 
     @classmethod
     def from_toml(cls, text: str) -> Self:

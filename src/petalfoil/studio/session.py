@@ -21,6 +21,7 @@ from petalfoil.errors import DefinitionError
 from petalfoil.studio.design import Design
 from petalfoil.studio.engine import Engine, Job, Outcome
 from petalfoil.studio.protocol import Cancelled, Done, Failure, Found, Work
+from petalfoil.walls import Capability, wall_kind
 
 FINE_CELLS = 64
 """Cells per pitch of a 2-D grid above which a coarse answer comes first: below, the answer itself is as quick."""
@@ -316,7 +317,9 @@ def live_verb(case: Case) -> str:
 
 def needs_coarse(case: Case) -> bool:
     """Whether the case's grid is so fine that a coarse answer comes first."""
-    return case.model.kind is ModelKind.THREE_D or (case.petals is not None and case.cells_per_pitch > FINE_CELLS)
+    return case.model.kind is ModelKind.THREE_D or (
+        wall_kind(case).can(Capability.PACK) and case.cells_per_pitch > FINE_CELLS
+    )
 
 
 def _by_key(error: DefinitionError) -> dict[str, str]:

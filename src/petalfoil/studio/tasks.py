@@ -22,6 +22,7 @@ from petalfoil.results.tables import tables_of
 from petalfoil.studio.arrays import arrays_of
 from petalfoil.studio.design import without_files
 from petalfoil.studio.protocol import Found, Task, Work
+from petalfoil.walls import Capability, wall_kind
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -84,7 +85,7 @@ def answered(task: Task, analysis: Analysis, progress: Progress) -> Found:
 
 def coarse(case: Case) -> Case:
     """The case in 2-D on a coarse grid, without the settings of an axial grid; a coarser grid of its own is kept."""
-    cells = COARSE_CELLS if case.petals is not None else COARSE_PLAIN_CELLS
+    cells = COARSE_CELLS if wall_kind(case).can(Capability.PACK) else COARSE_PLAIN_CELLS
     changes = {"model.kind": ModelKind.TWO_D, "model.cells_per_pitch": min(cells, case.cells_per_pitch)}
     return case.replace(**changes)
 

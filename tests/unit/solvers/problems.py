@@ -6,6 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.sparsity import SparseRows
 from tests.verification.shell_helpers import ElasticProblem, rows_of
 
 Array = NDArray[np.float64]
@@ -39,9 +40,9 @@ class Spring:
     strength: float
 
     @property
-    def G(self) -> sp.csr_array:
+    def G(self) -> SparseRows:
         """The gap closes as x grows."""
-        return sp.csr_array([[-1.0]])
+        return SparseRows([[-1.0]])
 
     @property
     def weight(self) -> Array:

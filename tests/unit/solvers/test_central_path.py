@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from petalfoil.solvers.central_path import PathOptions, follow_central_path
 from petalfoil.solvers.problem import PrimalDualPoint
 from petalfoil.solvers.sparse_lu import LinearSolver
+from petalfoil.sparsity import SparseRows
 from tests.unit.solvers.problems import CELLS, string, string_answer
 from tests.verification.shell_helpers import cold_point
 
@@ -27,8 +28,8 @@ class SofteningSpring:
     """
 
     @property
-    def G(self) -> sp.csr_array:
-        return sp.csr_array([[1.0]])
+    def G(self) -> SparseRows:
+        return SparseRows([[1.0]])
 
     @property
     def weight(self) -> Array:
