@@ -20,6 +20,7 @@ from pathlib import Path
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
+import former
 import growth
 import numpy as np
 import orbit
@@ -32,7 +33,7 @@ from measure import Row
 
 import petalfoil
 
-GROUPS = ("race", "point", "growth", "journal", "orbit", "others")
+GROUPS = ("race", "point", "growth", "journal", "orbit", "others", "former")
 
 
 def groups(quick: bool, classic_seconds: float) -> dict[str, Callable[[], list[Row]]]:
@@ -45,6 +46,7 @@ def groups(quick: bool, classic_seconds: float) -> dict[str, Callable[[], list[R
             "journal": lambda: plain_journal.rows(((48, 16),), 2),
             "orbit": lambda: orbit.rows(orbit.QUICK),
             "others": lambda: others.rows(1),
+            "former": lambda: former.rows(1, quick=True),
         }
     return {
         "race": lambda: race.rows(race.FULL, classic_seconds, 3),
@@ -53,6 +55,7 @@ def groups(quick: bool, classic_seconds: float) -> dict[str, Callable[[], list[R
         "journal": lambda: plain_journal.rows(plain_journal.GRIDS, 7),
         "orbit": lambda: orbit.rows(orbit.FULL),
         "others": lambda: others.rows(2),
+        "former": lambda: former.rows(3),
     }
 
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -146,42 +145,58 @@ def _quartic(rise: Array, lines: tuple[Line, Line]) -> tuple[float, float, float
 
     Newton's method from the node, in the directions that have neighbours on both sides.
     """
-    vandermonde = [polynomial.polyvander(line.local, len(line.local) - 1) for line in lines]
-    c = np.linalg.solve(vandermonde[1], np.linalg.solve(vandermonde[0], rise).T).T  # sum c[a, b] x^a y^b
-    free = [k for k, line in enumerate(lines) if line.inside]
-    bounds, place = np.array([line.reach for line in lines]), np.zeros(2)
-    for _ in range(STEPS if free else 0):
-        value, slope, bend = _taylor(c, place)
-        bend = bend[np.ix_(free, free)]
-        if bend[0, 0] <= 0.0 or np.linalg.det(bend) <= 0.0:
+    along, across = (line.local[:, None] ** np.arange(len(line.local)) for line in lines)
+    c = np.linalg.solve(across, np.linalg.solve(along, rise).T).T.tolist()  # sum c[a][b] x^a y^b
+    (first, last), (near, far) = (line.reach for line in lines)
+    x = y = 0.0
+    for _ in range(STEPS):
+        value, slope, bend = _taylor(c, x, y)
+        step = _newton_step(slope, bend, (lines[0].inside, lines[1].inside))
+        if step is None:
             return None
-        ahead = place.copy()
-        ahead[free] -= np.linalg.solve(bend, slope[free])
-        ahead = np.clip(ahead, bounds[:, 0], bounds[:, 1])
-        step, place = float(np.max(np.abs(ahead - place))), ahead
-        if step <= SHORTEST:
-            at_bound = bool(np.any((place == bounds.T)[:, free]))
-            return None if at_bound else (max(0.0, -value), float(place[0]), float(place[1]))
-    return None if free else (0.0, 0.0, 0.0)
+        ahead = min(max(x + step[0], first), last), min(max(y + step[1], near), far)
+        moved, (x, y) = max(abs(ahead[0] - x), abs(ahead[1] - y)), ahead
+        if moved <= SHORTEST:
+            at_bound = (lines[0].inside and x in (first, last)) or (lines[1].inside and y in (near, far))
+            return None if at_bound else (max(0.0, -value), x, y)
+    return None
 
 
-def _taylor(c: Array, place: Array) -> tuple[float, Array, Array]:
-    """Value, gradient (2,) and second derivatives (2, 2) of the polynomial `sum c[a, b] x^a y^b` at a place."""
-    (x, dx, ddx), (y, dy, ddy) = (_powers(t, n) for t, n in zip(place.tolist(), c.shape, strict=True))
-    across, turning = c @ y, c @ dy
-    mixed = float(dx @ turning)
-    bend = np.array([[float(ddx @ across), mixed], [mixed, float(x @ (c @ ddy))]])
-    return float(x @ across), np.array([float(dx @ across), float(x @ turning)]), bend
+def _newton_step(
+    slope: tuple[float, float], bend: tuple[float, float, float], free: tuple[bool, bool]
+) -> tuple[float, float] | None:
+    """Step to where the gradient vanishes, in the directions that are free; None where the field is not convex.
+
+    `bend` are the second derivatives by x, by both, and by y.
+    """
+    (g, h), (xx, xy, yy) = slope, bend
+    if free == (True, True):
+        area = xx * yy - xy * xy
+        return ((xy * h - yy * g) / area, (xy * g - xx * h) / area) if xx > 0.0 and area > 0.0 else None
+    if (free[0] and not xx > 0.0) or (free[1] and not yy > 0.0):
+        return None
+    return (-g / xx if free[0] else 0.0), (-h / yy if free[1] else 0.0)
 
 
-def _powers(t: float, n: int) -> tuple[Array, Array, Array]:
-    """Powers of `t` from 0 to `n - 1`, and their first and second derivatives by `t`."""
-    k = np.arange(n)
-    powers = t ** np.arange(n, dtype=np.float64)
-    first, second = np.zeros(n), np.zeros(n)
-    first[1:] = k[1:] * powers[:-1]
-    second[2:] = k[2:] * k[1:-1] * powers[:-2]
-    return powers, first, second
+def _taylor(c: list[list[float]], x: float, y: float) -> tuple[float, tuple[float, float], tuple[float, float, float]]:
+    """Value, gradient and second derivatives (by x, by both, by y) of the polynomial `sum c[a][b] x^a y^b`.
+
+    Horner's scheme in plain numbers: arrays of five cost ten times as much.
+    """
+    value = by_x = by_xx = by_y = by_xy = by_yy = 0.0
+    for row in reversed(c):
+        f = f_y = f_yy = 0.0
+        for entry in reversed(row):
+            f_yy = f_yy * y + 2.0 * f_y
+            f_y = f_y * y + f
+            f = f * y + entry
+        by_xx = by_xx * x + 2.0 * by_x
+        by_x = by_x * x + value
+        value = value * x + f
+        by_xy = by_xy * x + by_y
+        by_y = by_y * x + f_y
+        by_yy = by_yy * x + f_yy
+    return value, (by_x, by_y), (by_xx, by_xy, by_yy)
 
 
 def vertex(x: Array, y: Array) -> tuple[float, float]:

@@ -1,0 +1,111 @@
+"""One task of the comparison with an earlier state, in the sources that PYTHONPATH names: prints its figures as JSON.
+
+    python benchmarks/former_tasks.py TASK [--quick]
+
+Processor time is that of the call alone, after a small solution has loaded all that is needed. Factorisations are those
+of the results.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+import petalfoil
+from petalfoil.case import Case
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+
+
+def pack(name: str, cells: int, axial: int = 0, down: float = 0.0) -> Case:
+    """One of the example packs on a grid, the journal displaced by `down` [m]; `cells` 0 leaves the default grid."""
+    changes: dict[str, object] = {"operation.eccentricity": (0.0, -down)}
+    changes |= {"model.cells_per_pitch": cells} if cells else {}
+    changes |= {"model.axial_cells": axial} if axial else {}
+    return Case.load(EXAMPLES / f"{name}.toml").replace(**changes)
+
+
+def cold_3d(quick: bool) -> None:
+    """A position from nothing in 3-D, on the default grid."""
+    petalfoil.solve(pack("paper_n8_spatial", *((12, 4) if quick else (0, 0)), down=2e-4))
+
+
+def warm_3d(quick: bool) -> float:
+    """Three followed points of a curve in 3-D [s]."""
+    case = pack("paper_n8_spatial", *((12, 4) if quick else (24, 16)))
+    points = petalfoil.curve.records(case, 2e-5 * np.arange(4))
+    next(points)
+    begin = time.process_time()
+    for _ in points:
+        pass
+    return time.process_time() - begin
+
+
+def curve_2d(quick: bool) -> None:
+    """Fifteen points of a load characteristic in 2-D."""
+    petalfoil.curve(pack("paper_n8", 32 if quick else 0), np.linspace(0.0, 280e-6, 15))
+
+
+def frequencies_3d(quick: bool) -> None:
+    """Stiffness and damping at twenty frequencies in 3-D."""
+    case = pack("paper_n8_spatial", *((12, 4) if quick else (24, 16)), down=1e-4)
+    petalfoil.coefficients(case, frequencies=np.linspace(400.0, 8000.0, 20))
+
+
+def threshold(quick: bool) -> None:
+    """Critical mass, natural modes and threshold speed in 2-D."""
+    petalfoil.stability(pack("paper_n8", 32 if quick else 0), load="20 N", mass="2 kg")
+
+
+def liftoff(quick: bool) -> None:
+    """Lift-off and touchdown of the rig in 2-D."""
+    petalfoil.liftoff(pack("rig", 24 if quick else 0), loads=[46.4])
+
+
+def runup(quick: bool) -> None:
+    """A run-up of the rig over nine speeds and back."""
+    petalfoil.runup(pack("rig", 24 if quick else 0), load="46.4 N", to="12000 rpm", points=5 if quick else 9)
+
+
+def orbit_2d(quick: bool) -> None:
+    """Six turns in 2-D."""
+    petalfoil.orbit(pack("orbit_n8", 24 if quick else 0), revolutions=1.0 if quick else 6.0)
+
+
+def orbit_3d(quick: bool) -> None:
+    """Three turns in 3-D."""
+    case = pack("orbit_n8", *((8, 4) if quick else (24, 16))).replace(**{"model.kind": "3d"})
+    petalfoil.orbit(case, revolutions=1.0 if quick else 3.0)
+
+
+def designs(quick: bool) -> None:
+    """Packs of other thickness and bend radius in 2-D, on 64 cells per pitch."""
+    rng = np.random.default_rng(3)
+    for _ in range(2 if quick else 12):
+        changes = {"petals.thickness": rng.uniform(0.12e-3, 0.2e-3), "petals.bend_radius": rng.uniform(0.035, 0.05)}
+        petalfoil.solve(pack("paper_n8", 64, down=1e-4).replace(**changes))
+
+
+TASKS: dict[str, Callable[[bool], float | None]] = {
+    task.__name__: task
+    for task in (cold_3d, warm_3d, curve_2d, frequencies_3d, threshold, liftoff, runup, orbit_2d, orbit_3d, designs)
+}
+
+
+def main(name: str, quick: bool) -> None:
+    """Run a task and print its processor time."""
+    warnings.simplefilter("ignore")
+    petalfoil.solve(pack("paper_n8", 16))
+    begin = time.process_time()
+    own = TASKS[name](quick)
+    print(json.dumps({"seconds": time.process_time() - begin if own is None else own}))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], "--quick" in sys.argv)
