@@ -69,14 +69,24 @@ def parents(matrix: sp.csc_array, order: Index) -> Index:
 
 @dataclass
 class Learnt:
-    """Place of every unknown in an elimination that once served, (n,), and the entries an unknown it led to."""
+    """Place of every unknown in an elimination that once served, (n,), and the entries an unknown it led to first.
+
+    Factors in the postorder are compared with each other, not with those of the factorisation that found it: in
+    postorder SuperLU joins columns of nearly equal structure, and stores a fifth more.
+    """
 
     rank: Array | None = None
     fill: float = np.inf
 
+    def keep(self, rank: Array) -> None:
+        """Keep a new order."""
+        self.rank, self.fill = rank, np.inf
+
     def judge(self, fill: float) -> None:
         """Give the order up where factors have grown."""
-        if fill > GROWN * self.fill:
+        if np.isinf(self.fill):
+            self.fill = fill
+        elif fill > GROWN * self.fill:
             self.rank = None
 
 
@@ -97,7 +107,7 @@ class Elimination:
         if order is None:
             self.whole.judge(fill)
         else:
-            self.whole.rank, self.whole.fill = places(order), fill
+            self.whole.keep(places(order))
 
 
 @dataclass(frozen=True)
@@ -125,7 +135,7 @@ class TiedOrder:
             return
         # a held unknown may move with the next contact set: it is placed by the one before it, its neighbour
         spread = np.maximum.accumulate(np.where(self.group >= 0, np.arange(len(self.group)), 0))
-        self.learnt.rank, self.learnt.fill = places(order)[self.group[spread]], fill
+        self.learnt.keep(places(order)[self.group[spread]])
 
 
 def places(order: Index) -> Array:
