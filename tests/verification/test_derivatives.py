@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -158,6 +159,33 @@ def test_at_a_contact_that_just_touches_both_sides_differ() -> None:
         rate = there.by(path).above
         assert_allclose(side["bearing_force"], rate["bearing_force"], rtol=1e-3)
     assert abs(found.below["bearing_force"] / found.above["bearing_force"] - 1.0) > 1e-2
+
+
+@pytest.mark.parametrize("path", ["petals.thickness", "petals.bend_radius"])
+def test_contacts_as_points_foretell_a_change_of_one_per_cent(path: str) -> None:
+    """Contacts at nodes, exact for tiny changes, are several times farther from the change between two equilibria."""
+    of = loaded(case(**{"model.cells_per_pitch": 32}), 20.0)
+    at_nodes = derivatives_of(of)
+    as_points = replace(at_nodes, as_points=True)
+    value = at_nodes.variation(path).value
+    films = [
+        derivatives_of(with_values(of, {path: share * value})).values["min_film_thickness"] for share in (0.99, 1.01)
+    ]
+    change = films[1] - films[0]
+    off_points, off_nodes = (
+        abs(derivatives.by(path).above["min_film_thickness"] * 0.02 * value / change - 1.0)
+        for derivatives in (as_points, at_nodes)
+    )
+    assert off_points < 0.02
+    assert off_nodes > 3.0 * off_points
+
+
+def test_contacts_that_are_all_at_nodes_give_the_same_either_way() -> None:
+    plain = case("plain_journal", **{"model.cells_per_pitch": 12, "model.axial_cells": 4})
+    at_nodes = derivatives_of(plain)
+    as_points = replace(at_nodes, as_points=True)
+    assert as_points.with_points is None
+    assert as_points.by("gas.viscosity") == at_nodes.by("gas.viscosity")
 
 
 # ---------------------------------------------------------------------------------------------- lift-off

@@ -26,8 +26,8 @@ from petalfoil.equilibrium.parameter_response import (
     HeldEquilibrium,
     ParameterResponse,
     StateRate,
-    parameter_response,
 )
+from petalfoil.equilibrium.point_rates import PointEquilibrium, point_response
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import UsageError
 from petalfoil.results.parts import scalars_of
@@ -78,11 +78,15 @@ class DerivativesOf:
         The equilibrium.
     results : callable
         Results of a case and a solution.
+    as_points : bool
+        Whether isolated contacts are points that travel between nodes (V5), or held at their nodes: the first
+        converges with the grid, the second is the derivative of the discrete equations.
     """
 
     case: Case
     solution: Solution
     results: ResultsOf
+    as_points: bool = False
 
     @cached_property
     def values(self) -> Results:
@@ -98,6 +102,11 @@ class DerivativesOf:
     def held(self) -> HeldEquilibrium:
         """The equilibrium, its tangent factorised."""
         return HeldEquilibrium.of(self.solution, self.solution.active)
+
+    @cached_property
+    def with_points(self) -> PointEquilibrium | None:
+        """The same with contacts as points; None where they are asked for at nodes, or are all there."""
+        return PointEquilibrium.of(self.solution) if self.as_points else None
 
     @cached_property
     def own(self) -> Equations:
@@ -140,7 +149,8 @@ class DerivativesOf:
 
     def along(self, variation: Variation) -> Derivative:
         """Derivatives along a variation of the case."""
-        response = parameter_response(self.held, variation.rates(self.solution), KINK * variation.size)
+        rates, nearest = variation.rates(self.solution), KINK * variation.size
+        response = point_response(self.with_points, self.held, rates, nearest)
         finer = self._small_beside_the_film(variation, response)
         if not response.at_kink:
             along = self._along(finer, response.above, variation.stencil)

@@ -85,8 +85,10 @@ class SpeedDerivatives:
         return replace(fraction, below=rate, above=rate)
 
 
-def speed_derivatives(case: Case, load: float, limit: float) -> list[SpeedDerivatives]:
+def speed_derivatives(case: Case, load: float, limit: float, *, as_points: bool = False) -> list[SpeedDerivatives]:
     """Derivatives of lift-off and touchdown speed of a load [N] along -y, as far as these speeds are finite.
+
+    `as_points` as in `DerivativesOf`.
 
     Raises
     ------
@@ -96,7 +98,7 @@ def speed_derivatives(case: Case, load: float, limit: float) -> list[SpeedDeriva
     loaded = case.replace(**{"operation.load": (0.0, -load), "operation.eccentricity": (0.0, 0.0)})
     speeds = dict(zip(("liftoff_speed", "touchdown_speed"), crossings(loaded, load, limit), strict=True))
     found = [
-        refined(name, SpeedLine(loaded, (0.0, -load)), speed, limit)
+        of_contacts(refined(name, SpeedLine(loaded, (0.0, -load)), speed, limit), as_points=as_points)
         for name, speed in speeds.items()
         if 0.0 < speed < math.inf
     ]
@@ -128,6 +130,17 @@ def refined(name: str, line: SpeedLine, speed: float, limit: float) -> SpeedDeri
         f"near {speed:.6g} rad/s",
         advice="another contact fraction, or a finer grid, moves the crossing off the kink",
     )
+
+
+def of_contacts(found: SpeedDerivatives, *, as_points: bool) -> SpeedDerivatives:
+    """The derivatives with contacts as points, or at nodes as they are."""
+    if not as_points:
+        return found
+    balance = replace(found.balance, as_points=True)
+    by_speed = balance.by(SPEED)
+    if by_speed.at_kink:
+        raise at_kink(SPEED)
+    return replace(found, balance=balance, by_speed=by_speed.above[FRACTION])
 
 
 def fraction_of(case: Case, solution: Solution) -> Results:

@@ -65,6 +65,16 @@ Step = Annotated[
 ]
 
 
+Contacts = Annotated[
+    str,
+    Choice(
+        metavar="PLACE",
+        words=("points", "nodes"),
+        help="Contacts as points that travel between nodes; at nodes: exact for tiny changes on this grid.",
+    ),
+]
+
+
 @dataclass(frozen=True)
 class Asked:
     """What derivatives are asked for.
@@ -81,6 +91,8 @@ class Asked:
         Relative change of the parameters whose effect is told [1].
     all_of_them : bool
         Whether the parameters are all that the case has, so that those without effect are left out.
+    as_points : bool
+        Whether isolated contacts travel between nodes.
     """
 
     verb: str
@@ -88,6 +100,7 @@ class Asked:
     quantities: list[str]
     step: float
     all_of_them: bool
+    as_points: bool
 
 
 @analysis(LAYOUT, results=RESULTS, excludes={"load": ("eccentricity",)})
@@ -101,6 +114,7 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     eccentricity: Position = None,
     speed: Speed = None,
     contact_fraction: Limit = CONTACT_FRACTION,
+    contacts: Contacts = "points",
     step: Step = 0.01,
     progress: Progress | None = None,
 ) -> Points:
@@ -108,7 +122,7 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
 
     From exact derivatives of the equilibrium, through geometry, grid and
     contacts: a table of parameters by their effect. "Contacts hold" is the
-    change up to which no contact opens or closes.
+    change up to which no contact begins or ends.
 
     Example: petalfoil sensitivity case.toml --ask liftoff --load "20 N" --plot tornado.png
 
@@ -130,7 +144,7 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     there = posed(at(case, speed), verb, load, eccentricity)
     paths = default_paths(there, verb) if vary is None else [checked(there, path) for path in vary]
     quantities = [known(name, ANSWERS, "result") for name in of or [MAIN_RESULT[verb]]]
-    asked = Asked(verb, paths, quantities, step, vary is None)
+    asked = Asked(verb, paths, quantities, step, vary is None, contacts == "points")
     return Points(_points(there, asked, contact_fraction, progress), len(paths) * len(asked.quantities), "effects")
 
 
@@ -183,7 +197,7 @@ def checked(case: Case, path: str) -> str:
 def _points(case: Case, asked: Asked, limit: float, progress: Progress | None) -> Iterator[Record]:
     """One record for each parameter and result, by the size of the effect."""
     with running(progress, "sensitivity") as run:
-        there = {name: source for source in sources_of(case, asked.verb, limit) for name in source.values}
+        there = {name: source for source in sources_of(case, asked, limit) for name in source.values}
         sources = {known(name, list(there), f"result of {asked.verb} here"): there[name] for name in asked.quantities}
         lines: list[Line] = []
         for number, path in enumerate(asked.paths, 1):
@@ -210,7 +224,7 @@ def state_of(case: Case, verb: str) -> tuple[object, ...]:
     return speed, AppliedLoad.of(case.operation.load, case.operation.moment)
 
 
-def sources_of(case: Case, verb: str, limit: float) -> Sequence[Source]:
+def sources_of(case: Case, asked: Asked, limit: float) -> Sequence[Source]:
     """Where the results of a question have their derivatives.
 
     Raises
@@ -218,8 +232,8 @@ def sources_of(case: Case, verb: str, limit: float) -> Sequence[Source]:
     ConvergenceError
         The equilibrium was not found.
     """
-    if verb == "liftoff":
-        return speed_derivatives(case, own_load(case), limit)
+    if asked.verb == "liftoff":
+        return speed_derivatives(case, own_load(case), limit, as_points=asked.as_points)
     load = case.operation.load
     solution = at_position(case).answer if load is None else under_load(case, load)[0]
-    return [DerivativesOf(case, solution, equilibrium_results)]
+    return [DerivativesOf(case, solution, equilibrium_results, asked.as_points)]

@@ -48,7 +48,7 @@ RESULTS = {
     "effect_text": _text("change of the result with its unit", "delta q", "effect", Role.ANSWER),
     "relative_effect": _number("change of the result over its value", "delta q/q", units="1"),
     "contacts_hold": _number(
-        "relative change of the parameter up to which no contact opens or closes", "delta p_c", units="1"
+        "relative change of the parameter up to which no contact begins or ends", "delta p_c", units="1"
     ),
 }
 

@@ -11,6 +11,7 @@
 `heated.py`                the temperatures of a heat network with film, contacts and position
 `friction_path.py`         equilibria with friction between petals, one after another
 `parameter_response.py`    how an equilibrium follows a parameter of its case
+`point_rates.py`           the same with isolated contacts as points between nodes
 `small_motion.py`          what is asked of the response to a small motion of the journal
 `linear_response.py`       that response, contacts at nodes
 `travelling_contacts.py`   contacts of that response that move between nodes

@@ -264,7 +264,7 @@ def parameter_response(held: HeldEquilibrium, rates: EquationValues, nearest: fl
     rate = held.respond(rates)
     doubt = np.zeros(len(held.held), dtype=bool)
     for sign in (-1.0, 1.0):
-        doubt |= distances(held, rate, sign) <= nearest
+        doubt |= distances(held.solution, held.held, rate, sign) <= nearest
     if not doubt.any():
         return ParameterResponse(rate, rate, (reach(held, rate, -1.0, doubt), reach(held, rate, 1.0, doubt)))
     firm = HeldEquilibrium.of(held.solution, held.held & ~doubt)
@@ -288,15 +288,14 @@ def one_sided(firm: HeldEquilibrium, rates: EquationValues, doubt: Mask, sign: f
     return rate.plus(reactions, sign * pushes)
 
 
-def distances(held: HeldEquilibrium, rate: StateRate, sign: float) -> Array:
+def distances(solution: Solution, held: Mask, rate: StateRate, sign: float) -> Array:
     """Change of the parameter at which each contact opens or closes as it moves by `sign`, (m,); infinite for never.
 
-    Reactions and gaps within the tolerance of a solution are at zero already.
+    Reactions (of the contacts `held`) and gaps within the tolerance of a solution are at zero already.
     """
-    solution = held.solution
     problem = solution.problem
-    here = np.where(held.held, solution.lam / problem.weight, problem.gaps(solution.x))
-    change = sign * np.where(held.held, rate.lam / problem.weight, rate.gaps)
+    here = np.where(held, solution.lam / problem.weight, problem.gaps(solution.x))
+    change = sign * np.where(held, rate.lam / problem.weight, rate.gaps)
     left = np.where(np.abs(here) <= RESIDUAL_TOLERANCE, 0.0, np.maximum(here, 0.0))
     falling = change < 0.0
     out = np.full(len(left), np.inf)
@@ -306,7 +305,7 @@ def distances(held: HeldEquilibrium, rate: StateRate, sign: float) -> Array:
 
 def reach(held: HeldEquilibrium, rate: StateRate, sign: float, doubt: Mask) -> float:
     """The smallest of `distances` among the contacts that are not in `doubt`."""
-    return float(np.min(distances(held, rate, sign)[~doubt], initial=np.inf))
+    return float(np.min(distances(held.solution, held.held, rate, sign)[~doubt], initial=np.inf))
 
 
 WORST_CONDITION = 1e12

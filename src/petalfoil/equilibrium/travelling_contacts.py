@@ -60,15 +60,11 @@ class TravellingContacts:
         problem, active = solution.problem, solution.active
         if not constrain(problem.G, active).determinate:  # bottomed out
             return cls.at_nodes(solution)
-        contacts = problem.layout.wall.contacts
-        points = ContactPoints.of(contacts, problem.gaps(solution.x), solution.lam, active)
-        matrix = linearized.matrix(np.zeros(len(active)))
-        compliance = turning_compliance(problem.G, matrix, points, problem.elimination_key)
+        points = placed_points(solution, linearized)
         at_points = float(solution.lam[active & ~points.at_nodes].sum() / max(solution.lam.sum(), 1e-300))
-        current_run().note(
-            "contact points", points=len(compliance), nodes=int(points.at_nodes.sum()), carried=at_points
-        )
-        return travelling_contacts(problem.G, contacts.by_e, points.placed(compliance))
+        count = len(points.travel_stiffness)
+        current_run().note("contact points", points=count, nodes=int(points.at_nodes.sum()), carried=at_points)
+        return travelling_contacts(problem.G, problem.layout.wall.contacts.by_e, points)
 
     @classmethod
     def at_nodes(cls, solution: Solution) -> TravellingContacts:
@@ -90,6 +86,14 @@ class TravellingContacts:
     def gradient(self) -> Array:
         """`n'_e^T (lam / p'') n'_e`, (d, d)."""
         return np.asarray(self.slope_by_e.T @ (self.travel_stiffness[:, None] * self.slope_by_e))
+
+
+def placed_points(solution: Solution, linearized: Linearization) -> ContactPoints:
+    """Contact points of an equilibrium whose contacts determine it, where they are (K8): one factorisation."""
+    problem, active = solution.problem, solution.active
+    points = ContactPoints.of(problem.layout.wall.contacts, problem.gaps(solution.x), solution.lam, active)
+    matrix = linearized.matrix(np.zeros(len(active)))
+    return points.placed(turning_compliance(problem.G, matrix, points, problem.elimination_key))
 
 
 def travelling_contacts(G: sp.csr_array, by_e: Array, points: ContactPoints) -> TravellingContacts:
