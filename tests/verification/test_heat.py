@@ -11,7 +11,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq, minimize_scalar
 
-from petalfoil import Case, balance, coefficients, curve, orbit, runup, sensitivity, solve
+from petalfoil import Case, balance, capacity, coefficients, curve, orbit, runup, sensitivity, solve
 from petalfoil.case import Heat, HotGas
 from petalfoil.equilibrium.heated import ThermalRunawayError
 from petalfoil.errors import DefinitionError, UsageError
@@ -251,6 +251,34 @@ def test_verbs_that_visit_states_know_the_heat() -> None:
         orbit(hot.replace(rotor={"mass": 1.0}))
     with pytest.raises(UsageError, match="derivatives hold the temperatures"):
         sensitivity(hot)
+
+
+def test_coefficients_of_a_hot_pack_are_those_at_its_temperatures() -> None:
+    """Petals with continuous slopes and contact points between nodes see the same film."""
+    hot = rig()
+    T = temperatures(balance.record(hot, speed=12000.0 * RPM).scalars)
+    still = hot.replace(
+        heat=None,
+        **{
+            "gas.viscosity": hot.gas.viscosity * (T.film / 293.15) ** 0.7,
+            "shaft.temperature": T.shaft,
+            "bushing.temperature": T.bushing,
+        },
+    )
+    there, alone = (coefficients.record(of, [600.0], speed=12000.0 * RPM) for of in (hot, still))
+    warm, cold = there.fields, alone.fields
+    assert_allclose(float(there.scalars["shaft_temperature"]), T.shaft, rtol=1e-9)
+    for name in ("stiffness", "damping"):
+        assert_allclose(warm[name], cold[name], rtol=0.0, atol=1e-6 * np.abs(cold[name].astype(float)).max())
+
+
+@pytest.mark.slow
+def test_the_load_capacity_is_that_of_the_warm_bearing() -> None:
+    hot = rig(**{"operation.speed": 12000.0 * RPM})
+    found = capacity.record(hot, contact_fraction=0.02).scalars
+    load = float(found["load_capacity"])
+    there = balance.record(hot, (0.0, -load)).scalars
+    assert_allclose(there["contact_fraction"], 0.02, rtol=0.02)
 
 
 # ---------------------------------------------------------------------------------------------- warm-up

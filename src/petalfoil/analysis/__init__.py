@@ -43,6 +43,7 @@ What they share:
 `sensitivity_table.py` the rows of `sensitivity`
 `impedance.py`         small motions of the journal
 `rotor_on_bearings.py` a rigid rotor on its bearing, or in two of them
+`tilt_coefficients.py` stiffness and damping of a journal that tilts
 `tilted_journal.py`   one equilibrium, its journal free to tilt or held
 `campbell.py`          branches of natural modes over speed
 `threshold.py`         the speed at which a rotor becomes unstable

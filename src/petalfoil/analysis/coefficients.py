@@ -13,11 +13,13 @@ from petalfoil.analysis.arguments import TURNING_ONLY, Flag, Load, Name, Quantit
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.declaration import Export, analysis
 from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.analysis.heat_results import heat_results
 from petalfoil.analysis.impedance import Array, Slopes, cycle_impedance, elastic_and_sliding, impedances
 from petalfoil.analysis.operating_point import OperatingPoint, Vector, at, operating_point
 from petalfoil.analysis.records import effort, failed_record, geometry, position, record_of
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
+from petalfoil.analysis.tilt_coefficients import ENTRIES, TILTING, blocks
 from petalfoil.analysis.tilted_journal import free_to_tilt, held, whole_length
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, current_run, running
@@ -28,7 +30,6 @@ from petalfoil.results.record import Record
 from petalfoil.results.ross import LEAST_POINTS, ross_frequencies
 from petalfoil.results.schema import Variable
 from petalfoil.results.summary import ABSENT, cell, number
-from petalfoil.system.build import lever_of
 from petalfoil.walls import Capability, required, wall_kind
 
 Frequencies = Annotated[
@@ -78,25 +79,6 @@ class Contact:
     contact_fraction: float
 
 
-FORCE, MOMENT = slice(0, 2), slice(2, 4)
-"""Rows of force and moment, columns of displacement and slopes."""
-TILT_BLOCKS = {"force_tilt": (FORCE, MOMENT), "moment_displacement": (MOMENT, FORCE), "moment_tilt": (MOMENT, MOMENT)}
-"""Rows and columns of the blocks of a journal that tilts, beside those of force and displacement."""
-
-
-def blocks(case: Case, pairs: list[tuple[Array, Array]]) -> dict[str, Array]:
-    """Stiffness and damping at each frequency by name, (frequency, 2, 2) each; of a journal that tilts all blocks."""
-    both = {"stiffness": np.array([K for K, _ in pairs]), "damping": np.array([C for _, C in pairs])}
-    fields = {name: matrix[:, :2, :2] for name, matrix in both.items()}
-    if next(iter(both.values())).shape[1] == 2:
-        return fields
-    lever = np.array([1.0, 1.0, lever_of(case), lever_of(case)])  # of slopes, and of moments
-    for name, matrix in both.items():
-        scaled = matrix * lever[:, None] * lever
-        fields |= {f"{name}_{block}": scaled[:, row, col] for block, (row, col) in TILT_BLOCKS.items()}
-    return fields
-
-
 def entry(name: str, row: int, column: int) -> Callable[[Record, int], Cell]:
     """One entry of a matrix at each frequency, and its error bar where it has one."""
 
@@ -130,19 +112,9 @@ TABLE = ArrayTable(
     },
 )
 LISTS = ("whirl_frequency", *MATRICES)
-_ENTRIES = ("whirl_frequency", "row", "column")
-TILTING = {
-    "stiffness_force_tilt": Variable(_ENTRIES, "N rad-1", "stiffness, force by slope of the journal's axis", "K_Fa"),
-    "stiffness_moment_displacement": Variable(_ENTRIES, "N", "stiffness, moment by displacement", "K_Me"),
-    "stiffness_moment_tilt": Variable(_ENTRIES, "N m rad-1", "stiffness, moment by slope of the axis", "K_Ma"),
-    "damping_force_tilt": Variable(_ENTRIES, "N s rad-1", "damping, force by slope of the journal's axis", "C_Fa"),
-    "damping_moment_displacement": Variable(_ENTRIES, "N s", "damping, moment by displacement", "C_Me"),
-    "damping_moment_tilt": Variable(_ENTRIES, "N m s rad-1", "damping, moment by slope of the axis", "C_Ma"),
-}
-"""Stiffness and damping of a journal that tilts."""
 ERROR_BARS = {
-    "stiffness_error": Variable(_ENTRIES, "N m-1", "error bar of the stiffness, from a grid study", "dK"),
-    "damping_error": Variable(_ENTRIES, "N s m-1", "error bar of the damping, from a grid study", "dC"),
+    "stiffness_error": Variable(ENTRIES, "N m-1", "error bar of the stiffness, from a grid study", "dK"),
+    "damping_error": Variable(ENTRIES, "N s m-1", "error bar of the damping, from a grid study", "dC"),
 }
 
 
@@ -356,5 +328,6 @@ def point(case: Case, asked: Asked, load: Vector | None) -> Record:
 
 def state_parts(case: Case, found: OperatingPoint) -> tuple[object, ...]:
     """What is told of the equilibrium that small motions are about."""
-    contact = Contact(Evaluation.of(case, found.answer).contact_fraction)
-    return *geometry(case), position(case, found.answer), contact, found.branch, *found.loaded
+    contact, hot = Contact(Evaluation.of(case, found.answer).contact_fraction), heat_results(case, found.answer)
+    heat = () if hot is None else (hot,)
+    return *geometry(case), position(case, found.answer), contact, found.branch, *found.loaded, *heat

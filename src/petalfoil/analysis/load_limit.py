@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.fields import all_fields
+from petalfoil.analysis.heat_results import with_heat
 from petalfoil.case import Case
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold, from_neighbour, reloaded
@@ -160,6 +161,7 @@ class LoadRay:
         load, known = self.load(size), self.known
         try:
             answer = balance_cold(self.base, load) if known is None else self._neighbour(known, load)
+            answer = None if answer is None else with_heat(self.case, answer)
         except ConvergenceError:
             return NO_BALANCE
         if answer is None:
@@ -170,13 +172,18 @@ class LoadRay:
         return self._judged(size, answer)
 
     def _neighbour(self, known: Solution, load: Array) -> Solution | None:
+        if self.case.heat is not None:
+            return from_neighbour(known, self.base.at(temperatures=known.problem.temperatures), load)
         same = known.problem.bearing_number == self.base.bearing_number
         return (reloaded(known, load) if same else None) or from_neighbour(known, self.base, load)
 
     def slope(self, here: Loaded) -> float:
-        """Derivative of the margin by the logarithm of the load, foretold by the last tangent; nan without one."""
+        """Derivative of the margin by the logarithm of the load, foretold by the last tangent; nan without one.
+
+        The tangent of a bearing with a heat network has the temperatures beside the position, and foretells none.
+        """
         answer = here.found.answer
-        if answer.contacts is None or answer.load is None:
+        if answer.contacts is None or answer.load is None or self.case.heat is not None:
             return math.nan
         tangent = answer.contacts.tangent
         de = np.linalg.solve(tangent.gradient, -PROBE * self.load(here.size))

@@ -155,7 +155,7 @@ class PointEquations:
         """The film's rows."""
         layout = self.whole.layout
         pressure = layout.balance.nodal_pressure(self.state.P)
-        return layout.film_rows.at(pressure, self.film_thickness, self.problem.bearing_number)
+        return layout.film_rows.at(pressure, self.film_thickness, self.problem.film_number)
 
     @cached_property
     def gaps(self) -> PointGaps:
