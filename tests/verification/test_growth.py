@@ -14,6 +14,7 @@ from petalfoil import Case, balance, check, orbit, runup, solve
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Bushing, Shaft
 from petalfoil.case.growth import REFERENCE_TEMPERATURE, centrifugal_growth, thermal_growth
+from petalfoil.case.metals import metal_of
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.continuation import follow, predict
 from petalfoil.equilibrium.run_context import running
@@ -86,6 +87,24 @@ def test_a_grown_journal_is_one_in_a_smaller_clearance() -> None:
     cold = solve.record(plain()).scalars
     assert float(cold["bearing_force"]) < 0.95 * float(one["bearing_force"])
     assert "shaft_growth" not in cold
+
+
+def test_a_shaft_and_a_bushing_of_named_metals() -> None:
+    """The constants are those of the table, the modulus that at the temperature; no file repeats them."""
+    named = plain(shaft={"material": "718", "temperature": 300.0}, bushing={"material": "titanium"})
+    metal, given = metal_of("inconel 718"), {"temperature": 300.0, "youngs_modulus": 0.0}
+    given["youngs_modulus"] = metal.youngs_modulus(300.0)
+    given |= {name: getattr(metal, name) for name in ("poisson_ratio", "density", "expansion")}
+    numbers = plain(shaft=given, bushing={"expansion": 8.6e-6})
+    assert named.growth == numbers.growth
+    assert Case.from_toml(named.to_toml()) == named
+    assert "density" not in named.to_toml()
+    with pytest.raises(DefinitionError, match=r"shaft\.density: .* is given beside shaft\.material"):
+        plain(shaft={"material": "718", "density": 8000.0})
+    with pytest.raises(DefinitionError, match=r"shaft\.youngs_modulus: is missing"):
+        plain(shaft={"density": 8000.0})
+    with pytest.raises(DefinitionError, match="not in the table of metals"):
+        plain(bushing={"material": "cheese"})
 
 
 def test_check_shows_growth_and_the_clearance_that_it_leaves() -> None:

@@ -15,14 +15,21 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
+from pydantic import Field, SerializerFunctionWrapHandler, ValidationInfo, field_validator, model_serializer
+
 from petalfoil.case.definition import Definition
-from petalfoil.case.number_fields import Quantity
+from petalfoil.case.metals import metal_of
+from petalfoil.case.number_fields import UNSET, VALUE_PROBLEM, Quantity, refuse
 from petalfoil.case.problems import Problem
 from petalfoil.case.sections import Bearing
 from petalfoil.units import format_quantity
+from petalfoil.units.reading import shown
 
 REFERENCE_TEMPERATURE = 293.15
 """Temperature at which the dimensions of drawings hold: 20 °C (ISO 1:2022) [K]."""
+
+REFUSED = 0.3
+"""Stands for a number of a material that is refused; nobody sees it."""
 
 _Expansion = Annotated[
     float,
@@ -31,34 +38,96 @@ _Expansion = Annotated[
 _Temperature = Annotated[float, Quantity(unit="K", meaning="mean temperature", symbol="T", above=0.0, at_most=3000.0)]
 
 
-class Shaft(Definition):
+class MetalPart(Definition):
+    """A part whose metal is given by its name or by numbers; what a name gives is written to no file."""
+
+    by_material: ClassVar[frozenset[str]] = frozenset()
+    """Fields that a material gives."""
+
+    # before the numbers that a material gives
+    material: str | None = None
+    """Metal whose constants are looked up, such as `inconel 718`."""
+    temperature: _Temperature = REFERENCE_TEMPERATURE
+    """Mean over the section; with a heat network it follows, and is left out."""
+
+    def entries(self) -> dict[str, object]:
+        """Entries that make this part again."""
+        return {name: value for name, value in super().entries().items() if self._is_written(name)}
+
+    @model_serializer(mode="wrap")
+    def _as_given(self, handler: SerializerFunctionWrapHandler) -> dict[str, object]:
+        return {name: value for name, value in handler(self).items() if self._is_written(name)}
+
+    def _is_written(self, field: str) -> bool:
+        return self.material is None or field not in self.by_material
+
+    @field_validator("material")
+    @classmethod
+    def _is_known(cls, material: str | None) -> str | None:
+        return None if material is None else metal_of(material).name
+
+    @classmethod
+    def resolved(cls, given: object, info: ValidationInfo) -> object:
+        """What was given of a field, or what follows from the material."""
+        field, known = str(info.field_name), info.data
+        if "material" not in known:  # it is refused itself
+            return REFUSED
+        material = known["material"]
+        if material is None and given is UNSET:
+            declared = next(part for part in cls.model_fields[field].metadata if isinstance(part, Quantity))
+            allowed = f"{declared.allowed}, or {cls.section}.material, such as 'inconel 718'"
+            raise refuse(VALUE_PROBLEM, f"is missing; expected {allowed}", allowed)
+        if material is None:
+            return given
+        if given is not UNSET:
+            text = f"{shown(given)} is given beside {cls.section}.material = {shown(material)}; allowed: one of them"
+            raise refuse(VALUE_PROBLEM, text, "a material or numbers")
+        metal = metal_of(material)
+        if field == "youngs_modulus":
+            return metal.youngs_modulus(known.get("temperature", REFERENCE_TEMPERATURE))
+        return getattr(metal, field)
+
+
+class Shaft(MetalPart):
     """The shaft, which grows by its speed and its temperature; without this table its radius is that of the case."""
 
     section: ClassVar[str] = "shaft"
+    by_material: ClassVar[frozenset[str]] = frozenset({"youngs_modulus", "poisson_ratio", "density", "expansion"})
 
     youngs_modulus: Annotated[
         float, Quantity(unit="Pa", meaning="Young's modulus of the shaft", symbol="E_s", above=0.0, at_most=1e13)
-    ]
+    ] = Field(default=UNSET, validate_default=True)
+    """Required unless the shaft has a material; so are the next three."""
     poisson_ratio: Annotated[
         float, Quantity(unit="1", meaning="Poisson's ratio of the shaft", symbol="nu_s", above=-1.0, below=0.5)
-    ]
+    ] = Field(default=UNSET, validate_default=True)
     density: Annotated[
         float, Quantity(unit="kg/m^3", meaning="density of the shaft", symbol="rho_s", above=0.0, at_most=1e5)
-    ]
-    expansion: _Expansion
+    ] = Field(default=UNSET, validate_default=True)
+    expansion: _Expansion = Field(default=UNSET, validate_default=True)
     bore_radius: Annotated[
         float, Quantity(unit="m", meaning="radius of the shaft's bore", symbol="a", at_least=0.0, at_most=10.0)
     ] = 0.0
-    temperature: _Temperature = REFERENCE_TEMPERATURE
+
+    @field_validator(*by_material, mode="before")
+    @classmethod
+    def _resolved(cls, given: object, info: ValidationInfo) -> object:
+        return cls.resolved(given, info)
 
 
-class Bushing(Definition):
+class Bushing(MetalPart):
     """The bushing, which grows by its temperature; without this table its radius is that of the case."""
 
     section: ClassVar[str] = "bushing"
+    by_material: ClassVar[frozenset[str]] = frozenset({"expansion"})
 
-    expansion: _Expansion
-    temperature: _Temperature = REFERENCE_TEMPERATURE
+    expansion: _Expansion = Field(default=UNSET, validate_default=True)
+    """Required unless the bushing has a material."""
+
+    @field_validator(*by_material, mode="before")
+    @classmethod
+    def _resolved(cls, given: object, info: ValidationInfo) -> object:
+        return cls.resolved(given, info)
 
 
 def centrifugal_growth(shaft: Shaft, radius: float, speed: float) -> float:
