@@ -49,7 +49,10 @@ def stopped_after(number: int, bearing: Case, verb: str, given: dict[str, Any]) 
     return analysis.answer(run, "interrupted").to_dataset()
 
 
-@pytest.mark.parametrize("name", SERIES)
+QUICK = ("static loop", "grid study", "stability chart")
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[] if n in QUICK else pytest.mark.slow) for n in SERIES])
 def test_a_series_that_goes_on_ends_as_if_it_had_not_been_stopped(name: str, tmp_path: Path) -> None:
     bearing, verb, given = SERIES[name]
     whole = getattr(petalfoil, verb)(bearing, **given)

@@ -130,6 +130,7 @@ def test_a_point_that_is_asked_for_again_is_no_jump() -> None:
         assert all(record.scalars["known_equilibria"] == 1 for record in records)
 
 
+@pytest.mark.slow
 def test_the_paper_s_curves_do_not_jump() -> None:
     for name in ("paper_n6", "paper_n8", "paper_n10"):
         records = list(curve.records(case(name, **{"model.cells_per_pitch": 32}), np.linspace(0.0, 280e-6, 8)))

@@ -139,6 +139,7 @@ def test_one_factorisation_serves_all_parameters(run: RunContext) -> None:
     assert run.probes.factorizations + run.film.factorizations == before + 1
 
 
+@pytest.mark.slow
 def test_at_a_contact_that_just_touches_both_sides_differ() -> None:
     """A journal that is moved until a petal just leaves it: solid contact carries on one side alone."""
     near = case(**{"model.cells_per_pitch": 16, "operation.eccentricity": (0.0, -330e-6)})
@@ -191,6 +192,7 @@ def test_contacts_that_are_all_at_nodes_give_the_same_either_way() -> None:
 # ---------------------------------------------------------------------------------------------- lift-off
 
 
+@pytest.mark.slow
 def test_the_lift_off_speed_is_inverse_to_the_viscosity_and_follows_its_thickness() -> None:
     of = case(**{"model.cells_per_pitch": 16})
     lift_off = speed_derivatives(of, 30.0, 0.01)[0]

@@ -72,6 +72,7 @@ def test_sensitivity_is_that_of_another_floor_and_share(lifted: Record) -> None:
     assert -0.2 < number(lifted, "liftoff_by_contact_fraction") < 0.0  # a smaller share is reached later, if little
 
 
+@pytest.mark.slow
 def test_an_overload_never_floats() -> None:
     (record,) = liftoff.records(BEARING, [400.0])
     assert record.converged

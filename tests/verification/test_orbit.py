@@ -70,6 +70,7 @@ def eigenvalue(tau: Array, path: Array, guess: complex) -> complex:
 # ---------------------------------------------------------------------------------------------- free motions
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [pytest.param(0.6, marks=pytest.mark.slow), 2.0])
 def test_free_orbit_grows_or_dies_out_as_its_natural_mode(share: float) -> None:
     """Growth rate and whirl frequency within 1 %, on both sides of the critical mass."""

@@ -112,6 +112,7 @@ def test_pair_is_two_bearings() -> None:
         assert pair.film_force(x)[axis] == pytest.approx(float(np.sum((P - 1.0) * area * change)), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_petal_bearings_carry_a_tilting_rotor_through_contact() -> None:
     """Film, petals and contacts of both bearings with a rotor out of balance both ways; no step fails."""
     rotor = {

@@ -132,6 +132,7 @@ def test_translation_is_that_of_two_bearings_side_by_side() -> None:
         assert_allclose(pair[name][pair["mode_tilt"] < 0.5], one[name], rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_gyroscopic_moments_part_the_conical_modes() -> None:
     """A disk with `I_p = 2 I_t` does not whirl conically at half the speed: its moments outweigh its inertia."""
     disk = PAIR.replace(**{"rotor.polar_inertia": 0.16})

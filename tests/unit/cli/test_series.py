@@ -67,7 +67,14 @@ main()
 """
 
 
-@pytest.mark.parametrize(("signal", "exit_code"), [("SIGINT", 130), ("SIGTERM", 143), ("SIGHUP", 129)])
+@pytest.mark.parametrize(
+    ("signal", "exit_code"),
+    [
+        ("SIGTERM", 143),
+        pytest.param("SIGINT", 130, marks=pytest.mark.slow),
+        pytest.param("SIGHUP", 129, marks=pytest.mark.slow),
+    ],
+)
 def test_a_process_that_a_signal_stops_keeps_what_is_finished(
     case, tmp_path: Path, signal: str, exit_code: int
 ) -> None:

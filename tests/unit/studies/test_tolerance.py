@@ -99,6 +99,7 @@ def test_limits_have_units() -> None:
     assert (unit_of("side_leakage"), unit_of("growth_rate"), unit_of("overlap")) == ("kg/s", "1/s", "1")
 
 
+@pytest.mark.slow
 def test_a_small_scatter_is_linear() -> None:
     scatter = {"gas.viscosity": "normal 0.1 %", "bearing.journal_radius": "± 5 nm"}
     ds = tolerance(
