@@ -32,7 +32,7 @@ from petalfoil.cli.studies import study_command
 from petalfoil.results import schema
 from petalfoil.results.schema import Role, Variable
 
-STUDY_FUNCTIONS = ("sweep", "tolerance", "optimize")
+STUDY_FUNCTIONS = ("sweep", "tolerance", "optimize", "sobol_indices")
 """Functions that ask an analysis of many cases."""
 
 
@@ -106,6 +106,7 @@ class Commands(Written):
             yield from _analysis(analysis)
         group: Any = typer.main.get_command(app)
         studies = {name: study_command(name, []) for name in STUDIES}
+        studies["sensitivity --samples"] = study_command("sensitivity", [])
         for name, command in {"show": show_command(), **studies, **group.commands}.items():
             yield from _heading(name, command.help)
             yield from _parameters(command)

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from petalfoil.report.reproduce import reproduce
     from petalfoil.results.store import load, save
     from petalfoil.studies.optimize import optimize
+    from petalfoil.studies.sobol import sobol_indices
     from petalfoil.studies.sweep import sweep
     from petalfoil.studies.tolerance import tolerance
 
@@ -72,6 +73,7 @@ __all__ = [
     "runup",
     "save",
     "sensitivity",
+    "sobol_indices",
     "solve",
     "stability",
     "static",
@@ -86,6 +88,7 @@ _HOMES = {
     "optimize": "petalfoil.studies.optimize",
     "reproduce": "petalfoil.report.reproduce",
     "save": "petalfoil.results.store",
+    "sobol_indices": "petalfoil.studies.sobol",
     "sweep": "petalfoil.studies.sweep",
     "tolerance": "petalfoil.studies.tolerance",
 }

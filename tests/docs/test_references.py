@@ -85,7 +85,8 @@ def commands() -> dict[str, Any]:
     group: Any = typer.main.get_command(app)
     verbs = {verb: command_of(verb) for verb in known_verbs.summaries()}
     studies = {name: study_command(name, []) for name in STUDIES}
-    return {**group.commands, **verbs, "show": show_command(), **studies}
+    sampled = {"sensitivity --samples": study_command("sensitivity", [])}
+    return {**group.commands, **verbs, "show": show_command(), **studies, **sampled}
 
 
 @cache

@@ -92,6 +92,6 @@ def test_a_script_of_the_gallery_draws_converged_results(path: Path, monkeypatch
     names = runpy.run_path(str(path))
     result = names["result"]
     assert isinstance(result, xr.Dataset)
-    assert path.stem in {f"plot_{result.attrs['analysis']}", "plot_campbell", "plot_maps", "plot_samples"}
+    assert path.stem in {f"plot_{result.attrs['analysis']}", "plot_campbell", "plot_maps", "plot_samples", "plot_sobol"}
     assert "converged" not in result or bool(result["converged"].all())
     assert any(isinstance(value, Figure) for value in names.values())

@@ -31,6 +31,7 @@ NAMES = {
     "runup",
     "sensitivity",
     "save",
+    "sobol_indices",
     "solve",
     "stability",
     "static",

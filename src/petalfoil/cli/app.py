@@ -31,6 +31,11 @@ STUDIES = {
 """Commands of studies and the first lines of their help texts."""
 
 
+def is_sampled(name: str, words: list[str]) -> bool:
+    """Whether a call asks `sensitivity` for Sobol' indices, which is a study, instead of derivatives."""
+    return name == "sensitivity" and any(word.partition("=")[0] == "--samples" for word in words)
+
+
 class Verbs(TyperGroup):
     """The analyses, read from their declarations, and the commands that are none.
 
@@ -52,7 +57,11 @@ class Verbs(TyperGroup):
     def resolve_command(self, ctx: Context, args: list[str]) -> Any:
         """The command that is called, with all its options."""
         name, command, rest = super().resolve_command(ctx, args)
-        if name in known_verbs.summaries():
+        if name in STUDIES or is_sampled(str(name), rest):
+            from petalfoil.cli.studies import study_command
+
+            command = study_command(str(name), rest)
+        elif name in known_verbs.summaries():
             from petalfoil.cli.commands import command_of
 
             command = command_of(str(name))
@@ -60,10 +69,6 @@ class Verbs(TyperGroup):
             from petalfoil.cli.show import show_command
 
             command = show_command()
-        elif name in STUDIES:
-            from petalfoil.cli.studies import study_command
-
-            command = study_command(str(name), rest)
         return name, command, rest
 
 

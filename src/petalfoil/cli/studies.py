@@ -70,6 +70,10 @@ LimitOption = Annotated[
 Samples = Annotated[
     str, typer.Option("--samples", metavar="SAMPLE", help='Number of bearings, or a sample: "lhs 500, seed 2".')
 ]
+Of = Annotated[
+    list[str], typer.Option("--of", metavar="RESULT", help="A result whose variance is told; by default all.")
+]
+BaseSamples = Annotated[int, typer.Option("--samples", metavar="N", help="Base samples, a power of two.")]
 RANGES_HELP = 'What varies, as often as needed: petals.thickness="0.1 mm : 0.3 mm", petals.count="6 : 12".'
 Ranges = Annotated[list[str], typer.Option("--vary", metavar="PATH=RANGE", help=RANGES_HELP)]
 Maximize = Annotated[list[str], typer.Option("--maximize", metavar="RESULT", help="A result that is to be large.")]
@@ -135,6 +139,13 @@ def define_tolerance(case: Case, question: Question, own: dict[str, Any]) -> Stu
     return tolerance_study(case, scatter, question, limits=own["limit"], sample=sample)
 
 
+def define_sobol(case: Case, question: Question, own: dict[str, Any]) -> Study:
+    """The study of ``petalfoil sensitivity --samples``."""
+    from petalfoil.studies.sobol import sobol_study
+
+    return sobol_study(case, assignments("--vary", own["vary"]), question, samples=own["samples"], of=own["of"])
+
+
 def define_optimize(case: Case, question: Question, own: dict[str, Any]) -> Study:
     """The study of ``petalfoil optimize``."""
     from petalfoil.studies.optimize import optimize_study
@@ -171,6 +182,18 @@ Example: petalfoil tolerance case.toml --scatter petals.thickness="± 5 um" --as
             "samples": (Samples, "500"),
         },
         define=define_tolerance,
+    ),
+    "sensitivity": StudyCommand(
+        help="""Compute Sobol' indices: the part of a result's variance that each parameter explains.
+
+Without --samples the command gives exact derivatives at the case instead.
+N base samples take N times the number of parameters plus two cases; blocks
+with a case that has no answer are left out.
+
+Example: petalfoil sensitivity case.toml --samples 256 --vary petals.thickness="± 5 %" --vary gas.viscosity="± 2 %"
+""",
+        options={"vary": (Ranges, inspect.Parameter.empty), "of": (Of, []), "samples": (BaseSamples, 256)},
+        define=define_sobol,
     ),
     "optimize": StudyCommand(
         help="""Find the design whose results are best within limits, beginning at the case.

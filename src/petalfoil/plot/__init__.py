@@ -28,6 +28,7 @@ In the order data flows:
 - ``study_sweeps`` a study over its parameters (`sweep`, `parallel_coordinates`, `scatter_matrix`)
 - ``study_tolerance`` scatter of results with limits (`tolerance`)
 - ``study_optimum`` an optimisation and its front (`optimum`)
+- ``study_sobol``  Sobol' indices (`sobol`)
 - ``studies``      the figures of a study by name (`study`, `study_figures`)
 - ``generic``      any other result (`quantities`)
 - ``figure_registry`` the figure of each analysis (`summary`), and new ones (`register`)
@@ -62,6 +63,7 @@ if TYPE_CHECKING:
     from petalfoil.plot.stability_maps import stability
     from petalfoil.plot.studies import study, study_figures
     from petalfoil.plot.study_optimum import optimum
+    from petalfoil.plot.study_sobol import sobol
     from petalfoil.plot.study_sweeps import parallel_coordinates, scatter_matrix, sweep
     from petalfoil.plot.study_tolerance import tolerance
     from petalfoil.plot.tornado import tornado
@@ -87,6 +89,7 @@ _MODULES = {
     "studies": ("study", "study_figures"),
     "study_tolerance": ("tolerance",),
     "study_optimum": ("optimum",),
+    "study_sobol": ("sobol",),
     "study_sweeps": ("parallel_coordinates", "scatter_matrix", "sweep"),
     "tornado": ("tornado",),
 }
@@ -121,6 +124,7 @@ __all__ = [
     "runup",
     "save",
     "scatter_matrix",
+    "sobol",
     "stability",
     "static",
     "study",

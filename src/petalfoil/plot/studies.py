@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from petalfoil.errors import UsageError
 from petalfoil.plot.study_optimum import optimum
+from petalfoil.plot.study_sobol import sobol
 from petalfoil.plot.study_sweeps import parallel_coordinates, scatter_matrix, sweep
 from petalfoil.plot.study_tolerance import tolerance
 
@@ -25,9 +26,9 @@ def study(ds: xr.Dataset, names: tuple[str, ...] = ()) -> Figure:
     -------
     matplotlib.figure.Figure
         Lines, contours or parallel coordinates of a sweep; histograms of a tolerance study; the
-        designs of an optimisation.
+        designs of an optimisation; Sobol' indices.
     """
-    draw = {"tolerance": tolerance, "optimize": optimum}.get(str(ds.attrs["analysis"]), sweep)
+    draw = {"tolerance": tolerance, "optimize": optimum, "sensitivity": sobol}.get(str(ds.attrs["analysis"]), sweep)
     return draw(ds, names)
 
 
@@ -44,11 +45,15 @@ def study_figures(ds: xr.Dataset) -> dict[str, Figure]:
     dict of matplotlib.figure.Figure
         Figures by name; none where no result varies.
     """
-    drawn = {"sweep": _sweep, "tolerance": _tolerance, "optimize": _optimum}
+    drawn = {"sweep": _sweep, "tolerance": _tolerance, "optimize": _optimum, "sensitivity": _sobol}
     try:
         return drawn.get(str(ds.attrs["analysis"]), _sweep)(ds)
     except UsageError:  # no case has a result that varies: the page tells why each failed
         return {}
+
+
+def _sobol(ds: xr.Dataset) -> dict[str, Figure]:
+    return {"sobol": sobol(ds), "scatter_matrix": scatter_matrix(ds)}
 
 
 def _optimum(ds: xr.Dataset) -> dict[str, Figure]:

@@ -13,6 +13,7 @@ In the order data flows:
 - `sweep`: a grid or a sample of parameters.
 - `limits`: limits and objectives: results with a bound.
 - `tolerance`: a sample of bearings that scatter.
+- `sobol`: Sobol' indices, which part of the variance each parameter explains.
 - `goals`: objectives, limits, and the designs that are best.
 - `search`: a search under way: what it asked, and what was best.
 - `descent`: along gradients (SciPy).

@@ -18,6 +18,7 @@ from petalfoil.units import format_quantity
 Lines = tuple[tuple[str, ...], ...]
 SAME = 1e-6
 """Relative spread below which a result is the same in all cases: each is solved to 1e-8."""
+SOBOL_HEADS = ("quantity", "parameter", "first order", "total", "samples")
 LIMIT_HEADS = ("limit", "kept by", "95 % confidence", "without an answer")
 QUANTILE_KEYS = ("quantile_05", "quantile_50", "quantile_95")
 TOLERANCE_HEADS = ("quantity", "nominal", "mean", "std. dev.", "first order", "5 %", "50 %", "95 %", "unit")
@@ -80,11 +81,24 @@ def tables(ds: xr.Dataset) -> list[tuple[tuple[str, ...], Lines]]:
     told = extra(ds)
     if "tolerance" in told:
         return [(LIMIT_HEADS, _limits(told["tolerance"])), (TOLERANCE_HEADS, _scatter(told["tolerance"]))]
+    if "sobol" in told:
+        return [(SOBOL_HEADS, _sobol(told["sobol"]))]
     if "optimum" in told:
         return [_best(ds, told["optimum"])]
     if lines := ranges(ds):
         found.append((RANGE_HEADS, lines))
     return found
+
+
+def _sobol(told: dict[str, Any]) -> Lines:
+    """First-order and total index of each result and parameter, the largest first."""
+    lines = []
+    for name, numbers in told.items():
+        for path, one in sorted(numbers["parameters"].items(), key=lambda item: -item[1]["ST"]):
+            first, total = (f"{one[key]:.3f} ± {one[f'{key}_conf']:.3f}" for key in ("S1", "ST"))
+            blocks = f"{numbers['answered']} of {numbers['blocks']}"
+            lines.append((cell(name, 0.0).label.strip(), path, first, total, blocks))
+    return tuple(lines)
 
 
 def _best(ds: xr.Dataset, told: dict[str, Any]) -> tuple[tuple[str, ...], Lines]:

@@ -149,3 +149,16 @@ def test_optimize_tells_the_best_design(two_d: str, tmp_path: Path) -> None:
     refused = run(*words, "--out", str(tmp_path / "p"))
     assert "nothing to optimize" in refused.stderr
     assert run(*words, *goal, "--method", "sqp", "--out", str(tmp_path / "p")).exit_code == 2
+
+
+def test_sensitivity_with_samples_is_a_study(two_d: str, tmp_path: Path) -> None:
+    words = ["sensitivity", two_d, "--samples", "8", "--vary", "gas.viscosity=± 2 %", "--vary", "operation.speed=± 5 %"]
+    done = run(
+        *words, "--eccentricity", "0 um, -5 um", "--of", "bearing_force", "--workers", "0", "--out", str(tmp_path / "s")
+    )
+    assert done.exit_code == 0, done.output
+    assert "sensitivity of solve: 32 cases, 32 converged" in done.stdout
+    assert "operation.speed" in done.stdout
+    assert "8 of 8" in done.stdout
+    assert "PATH=RANGE" in run("sensitivity", "--samples", "8", "--help").stdout
+    assert "PATH=RANGE" not in run("sensitivity", "--help").stdout
