@@ -26,6 +26,7 @@ How they are declared:
 `runs.py`              an analysis under way
 `resume.py`            a series that goes on from the points that it wrote
 `session.py`           one BLAS thread, clock, progress
+`progress_bar.py`      the bar at a terminal or in a notebook
 =====================  ===================================================================
 
 What they share:

@@ -13,8 +13,10 @@ outputs. The function gets SI numbers; who calls it may give texts with units.
 from __future__ import annotations
 
 import inspect
+import logging
 import warnings
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias, get_type_hints
@@ -23,6 +25,7 @@ from petalfoil.analysis.adapted_stations import with_stations
 from petalfoil.analysis.arguments import Accuracy, Argument, ErrorBars, StoredResult
 from petalfoil.analysis.error_bars import WithErrorBars
 from petalfoil.analysis.known_verbs import register
+from petalfoil.analysis.progress_bar import bar
 from petalfoil.analysis.resume import asked_for, points_done
 from petalfoil.analysis.runs import Points, Run, Single
 from petalfoil.analysis.session import one_thread
@@ -40,6 +43,7 @@ if TYPE_CHECKING:
 Question: TypeAlias = Callable[..., Record | Run]
 Values: TypeAlias = Mapping[str, Any]
 """Arguments by name, SI."""
+LOG = logging.getLogger(__name__)
 ERROR, ACCURACY = "error", "accuracy"
 """The arguments that ask for error bars, and for bars below a limit."""
 
@@ -286,11 +290,16 @@ class Analysis:
     def __call__(
         self, case: Case, *given: Any, progress: Progress | None = None, resume: Any = None, **named: Any
     ) -> xr.Dataset:
-        """Answer the question: SI numbers or texts with units in, labelled data out."""
-        run = self._begin(case, given, named, progress, resume)
-        for _ in self.advance(run, progress):
-            pass
+        """Answer the question: SI numbers or texts with units in, labelled data out.
+
+        Without `progress`, a terminal or a notebook shows how far a long run has come.
+        """
+        with bar(self.verb) if progress is None else nullcontext(progress) as report:
+            run = self._begin(case, given, named, report, resume)
+            for _ in self.advance(run, report):
+                pass
         answer = self.answer(run)
+        LOG.info("%s: %s", self.verb, answer.records[-1].scalars.get("status", "done"))
         for remark in (remark for record in answer.records for remark in record.remarks):
             warnings.warn(remark, stacklevel=2)
         return answer.to_dataset()

@@ -123,6 +123,11 @@ class Case(Definition):
             data[section] = {**_entries(data.get(section)), field: value} if dot else value
         return type(self)(**data)
 
+    def _repr_html_(self) -> str:
+        from petalfoil.case.keys import as_html  # keys are read from this class
+
+        return as_html(self)
+
     # ------------------------------------------------------------------------------------------ derived
 
     @property

@@ -7,6 +7,7 @@ import typing
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
+from html import escape
 from typing import Any
 
 from pydantic.fields import FieldInfo
@@ -89,6 +90,17 @@ def entries(case: Case) -> Iterator[Entry]:
         table = getattr(case, section)
         if isinstance(table, Definition):
             yield from _entries(table, f"{section}.")
+
+
+def as_html(case: Case) -> str:
+    """What a notebook shows of a case: its title and the keys that it gives, with their meanings."""
+    rows = "".join(
+        f"<tr><td><code>{escape(entry.key.name)}</code></td><td>{escape(entry.value)}</td>"
+        f"<td style='text-align:left'>{escape(entry.key.meaning)}</td></tr>"
+        for entry in entries(case)
+        if entry.given
+    )
+    return f"<b>{escape(case.title or 'Case without a title')}</b><table>{rows}</table>"
 
 
 def _entries(table: Definition, prefix: str) -> Iterator[Entry]:

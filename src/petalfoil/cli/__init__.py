@@ -5,7 +5,6 @@ In the order a call runs through them:
 - ``app``        the verbs under one name; ``main`` is the entry point
 - ``commands``   the declaration of an analysis as a command with its options, and the run of one
 - ``keeping``    follows a run, rewrites its result file as it grows, keeps what is finished when it is stopped
-- ``progress``   the bar on standard error
 - ``tables``     an answer as printed tables
 - ``outputs``    where an answer goes: checked before the run, written after it
 - ``signals``    interrupts by the terminal or the system, all alike

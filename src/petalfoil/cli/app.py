@@ -12,7 +12,7 @@ from petalfoil.analysis import known_verbs
 from petalfoil.cli.failures import handled
 from petalfoil.cli.report import report
 from petalfoil.cli.reproduce import reproduce
-from petalfoil.cli.streams import accept_any_text, emit
+from petalfoil.cli.streams import accept_any_text, be_verbose, emit
 from petalfoil.cli.studio import studio
 
 if TYPE_CHECKING:
@@ -96,6 +96,7 @@ def petalfoil(
     version: Annotated[
         bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
     ] = False,
+    verbose: Annotated[bool, typer.Option("-v", "--verbose", help="Tell every step of the solvers.")] = False,
 ) -> None:
     """Simulate petal (multi-leaf foil) gas bearings.
 
@@ -107,6 +108,7 @@ def petalfoil(
 
     Example: petalfoil solve case.toml --speed "8000 rad/s" --plot petals.png
     """
+    be_verbose(verbose)
 
 
 def main() -> None:

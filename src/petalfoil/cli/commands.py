@@ -12,12 +12,13 @@ import typer
 from petalfoil.analysis import known_verbs
 from petalfoil.analysis.arguments import Argument, Flag, StoredResult
 from petalfoil.analysis.declaration import RESUME, Analysis
+from petalfoil.analysis.progress_bar import bar
 from petalfoil.case import Case
 from petalfoil.cli.exports import chosen, export_options
 from petalfoil.cli.failures import handled
 from petalfoil.cli.keeping import Autosave, follow
 from petalfoil.cli.outputs import Outputs
-from petalfoil.cli.progress import bar
+from petalfoil.cli.streams import be_verbose
 from petalfoil.errors import UsageError
 
 KEYWORD = inspect.Parameter.KEYWORD_ONLY
@@ -28,6 +29,10 @@ JSON = Annotated[bool, typer.Option("--json", help="Print one JSON object in SI 
 OUT = Annotated[Path | None, typer.Option("--out", metavar="FILE.nc", help="Write the whole result to a NetCDF file.")]
 PLOT = Annotated[Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw a figure: .png, .svg or .pdf.")]
 RESUME_FILE = Annotated[Path | None, typer.Option("--resume", metavar=RESUME.metavar, help=RESUME.help)]
+VERBOSE = Annotated[
+    bool,
+    typer.Option("-v", "--verbose", callback=be_verbose, expose_value=False, help="Tell every step of the solvers."),
+]
 HELP = ["-h", "--help"]
 """Options that print the help text."""
 OUTPUTS = {"as_json": (JSON, False), "out": (OUT, None), "plot": (PLOT, None)}
@@ -54,6 +59,7 @@ def command_of(verb: str) -> Any:
 
 def command(name: str, function: Callable[..., None], options: list[inspect.Parameter], text: str) -> Any:
     """A command of its own: its options, its help text, and the function that is called with them."""
+    options = [*options, inspect.Parameter("verbose", KEYWORD, annotation=VERBOSE, default=False)]
     ordered = sorted(options, key=lambda option: option.default is not REQUIRED)
     function.__signature__ = inspect.Signature(ordered)  # type: ignore[attr-defined]
     function.__annotations__ = {option.name: option.annotation for option in options}

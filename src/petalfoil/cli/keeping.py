@@ -13,8 +13,8 @@ from petalfoil.errors import StoreError
 
 if TYPE_CHECKING:
     from petalfoil.analysis.declaration import Analysis
+    from petalfoil.analysis.progress_bar import Report
     from petalfoil.analysis.runs import Run
-    from petalfoil.cli.progress import Report
     from petalfoil.results.layout import Answer
 
 PERIOD = 2.0  # [s] between rewrites: a fast series is not slowed by its own file

@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
+from petalfoil.analysis.progress_bar import bar
 from petalfoil.cli.failures import NOT_CONVERGED, handled
-from petalfoil.cli.progress import bar
 from petalfoil.cli.reproduce import Folder, check_folder
 from petalfoil.cli.streams import emit, say
 

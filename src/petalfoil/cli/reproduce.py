@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from petalfoil.analysis.progress_bar import bar
 from petalfoil.cli.failures import NOT_CONVERGED, handled
-from petalfoil.cli.progress import bar
 from petalfoil.cli.streams import emit, say
 from petalfoil.errors import UsageError
 

@@ -52,6 +52,15 @@ def say(text: str) -> None:
         silence(sys.stderr)
 
 
+def be_verbose(wanted: bool) -> None:
+    """Let every step of the solvers be told on standard error, by the standard library's logging."""
+    if wanted:
+        import logging
+
+        logging.basicConfig(stream=sys.stderr, format="%(asctime)s %(message)s", datefmt="%H:%M:%S")
+        logging.getLogger("petalfoil").setLevel(logging.DEBUG)
+
+
 def accept_any_text() -> None:
     """Let a terminal that knows no Greek show a question mark instead of failing."""
     for stream in (sys.stdout, sys.stderr):

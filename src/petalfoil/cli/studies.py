@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from petalfoil.analysis.declaration import Analysis
+from petalfoil.analysis.progress_bar import bar
 from petalfoil.case import Case
 from petalfoil.cli.commands import CASE_FILE, JSON, KEYWORD, argument_options, command, option_of
 from petalfoil.cli.failures import handled
-from petalfoil.cli.progress import bar
 from petalfoil.cli.signals import exit_code_of
 from petalfoil.cli.streams import say
 from petalfoil.cli.study_outputs import deliver

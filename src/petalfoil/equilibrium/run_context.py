@@ -6,6 +6,7 @@ log down to the next (`docs/decisions/015-run-context.md`).
 
 from __future__ import annotations
 
+import logging
 import math
 import time
 from collections.abc import Callable, Hashable, Iterator
@@ -22,6 +23,9 @@ from petalfoil.sparsity import Elimination
 T = TypeVar("T")
 HistoryRow = dict[str, float | int | str]
 Progress = Callable[[float, str], None]
+
+LOG = logging.getLogger(__name__)
+"""Told every step at level DEBUG: ``petalfoil --verbose``, or ``logging.basicConfig(level="DEBUG")``."""
 
 TYPICAL_STEPS = 30.0
 """History rows of a typical cold start: the scale of the progress of a single solve."""
@@ -77,6 +81,8 @@ class RunContext:
     def note(self, phase: str, **row: float | int | str) -> None:
         """Add a row to the history."""
         self.history.append({"phase": phase, **row})
+        if LOG.isEnabledFor(logging.DEBUG):
+            LOG.debug("%s: %s", phase, ", ".join(map(_told, row.items())))
         if self.tell is not None:
             self.tell(phase)
 
@@ -120,6 +126,11 @@ class RunContext:
                 except StopIteration:
                     return
             yield item
+
+
+def _told(entry: tuple[str, float | int | str]) -> str:
+    name, value = entry
+    return f"{name} {value:.3g}" if isinstance(value, float) else f"{name} {value}"
 
 
 _CURRENT: ContextVar[RunContext] = ContextVar("current_run")

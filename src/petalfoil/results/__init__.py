@@ -11,6 +11,7 @@ In the order data flows:
 - ``grid``     the same over load and speed
 - ``study``    the same of a grid study, with its estimates
 - ``tables``   an answer as tables of text
+- ``view``     a result as a notebook shows it: ``result.petalfoil``
 - ``dataset``  records to ``xarray.Dataset``: one point, or a curve of points
 - ``motion``   what the histories of a motion tell: positions once per revolution, spectra of the whirl
 - ``spreadsheet`` any result for other programs: CSV, Excel

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from petalfoil.results import view  # noqa: F401 - gives datasets `petalfoil`, the tables of the result
 from petalfoil.results.record import Array, Record, Scalar, blank
 from petalfoil.results.schema import COORDINATES, FIELDS, SCALARS, DataType, Role, Variable
 

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from petalfoil.errors import StoreError
+from petalfoil.results import view  # noqa: F401 - gives datasets `petalfoil`, the tables of the result
 from petalfoil.results.atomic import replacing
 from petalfoil.results.seal import add_seal, digest_of_data, is_sealed
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from petalfoil.cli.streams import say
+from tests.cases import case as small_case
 
 PETALFOIL = [sys.executable, "-m", "petalfoil"]
 
@@ -54,3 +55,13 @@ def test_a_terminal_that_is_gone_does_not_end_the_run() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (0, "files are written\n")
+
+
+@pytest.mark.parametrize("place", ["before", "behind"])
+def test_verbose_tells_the_steps(tmp_path: Path, place: str) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(small_case("paper_n6").to_toml(), encoding="utf-8")
+    arguments = ["-v", "check", str(path)] if place == "before" else ["check", str(path), "--verbose"]
+    done = subprocess.run([*PETALFOIL, *arguments], capture_output=True, text=True, check=True)
+    assert "pack: barrier " in done.stderr
+    assert "pack: barrier " not in done.stdout
