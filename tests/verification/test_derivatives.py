@@ -19,7 +19,7 @@ from petalfoil.case import Case
 from petalfoil.case.parameters import with_values
 from petalfoil.equilibrium.run_context import RunContext
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.errors import DefinitionError, UsageError
+from petalfoil.errors import ConvergenceError, DefinitionError, UsageError
 from petalfoil.walls import register, unregister
 from tests.cases import case
 from tests.random_packages import random_case, wide_case
@@ -103,6 +103,7 @@ def test_derivatives_of_a_sliders_load(slider: Case, row: int) -> None:
 # ---------------------------------------------------------------------------------------------- equilibria solved again
 
 
+@pytest.mark.slow
 def test_a_journal_at_a_position_in_petals() -> None:
     assert_exact(derivatives_of(case(**{"model.cells_per_pitch": 8})), FEW)
 
@@ -162,7 +163,7 @@ def test_at_a_contact_that_just_touches_both_sides_differ() -> None:
     assert abs(found.below["bearing_force"] / found.above["bearing_force"] - 1.0) > 1e-2
 
 
-@pytest.mark.parametrize("path", ["petals.thickness", "petals.bend_radius"])
+@pytest.mark.parametrize("path", ["petals.thickness", pytest.param("petals.bend_radius", marks=pytest.mark.slow)])
 def test_contacts_as_points_foretell_a_change_of_one_per_cent(path: str) -> None:
     """Contacts at nodes, exact for tiny changes, are several times farther from the change between two equilibria."""
     of = loaded(case(**{"model.cells_per_pitch": 32}), 20.0)
@@ -216,6 +217,13 @@ def again(balance: DerivativesOf, values: dict[str, float], near: float) -> floa
 
 
 # ---------------------------------------------------------------------------------------------- refusals
+
+
+def test_a_state_of_another_case_is_refused() -> None:
+    derivatives = derivatives_of(case("plain_journal", **{"model.cells_per_pitch": 8, "model.axial_cells": 4}))
+    other = derivatives.case.replace(**{"gas.viscosity": 2e-5})
+    with pytest.raises(ConvergenceError, match="the equations of the case hold at this state to"):
+        replace(derivatives, case=other).by("gas.viscosity")
 
 
 def test_what_has_no_derivative_is_refused() -> None:

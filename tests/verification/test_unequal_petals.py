@@ -49,9 +49,16 @@ SMALL_3D = {"model.kind": "3d", "model.cells_per_pitch": 6, "model.axial_cells":
 
 
 @pytest.mark.parametrize(
-    "of", [EQUAL, EQUAL.replace(**SMALL_3D), EQUAL.replace(**{"petals.mount": "clamped"})], ids=["2d", "3d", "clamped"]
+    "changes",
+    [
+        {},
+        pytest.param(SMALL_3D, marks=pytest.mark.slow),
+        pytest.param({"petals.mount": "clamped"}, marks=pytest.mark.slow),
+    ],
+    ids=["2d", "3d", "clamped"],
 )
-def test_equal_lists_are_the_scalar_to_the_bit(of: Case) -> None:
+def test_equal_lists_are_the_scalar_to_the_bit(changes: dict[str, object]) -> None:
+    of = EQUAL.replace(**changes)
     assert_same(petalfoil.solve(of), petalfoil.solve(listed(of)))
 
 
@@ -79,6 +86,7 @@ def test_gaps_of_unequal_petals_are_between_their_faces() -> None:
     assert_allclose(on_bushing[3], of.bearing.bushing_radius - outer, atol=1e-15)
 
 
+@pytest.mark.slow
 def test_a_pack_whose_list_is_turned_is_the_same_pack_turned() -> None:
     one = petalfoil.solve(scattered())
     pitch = 2.0 * np.pi / COUNT
@@ -87,6 +95,7 @@ def test_a_pack_whose_list_is_turned_is_the_same_pack_turned() -> None:
         assert_allclose(other[name], one[name], rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_slopes_of_equal_lists_are_those_of_the_scalar_and_turn_with_the_pack() -> None:
     of = EQUAL.replace(**{"operation.load": (0.0, -20.0), "operation.eccentricity": (0.0, 0.0)})
     one, other = petalfoil.coefficients(of), petalfoil.coefficients(listed(of))
@@ -116,14 +125,16 @@ def test_the_papers_method_is_for_equal_petals() -> None:
 
 
 def test_derivatives_by_single_petals_add_up_to_that_by_all() -> None:
-    derivatives = DerivativesOf(EQUAL, at_position(EQUAL).answer, equilibrium_results)
+    few = case("paper_n6", **{"model.cells_per_pitch": 6})
+    derivatives = DerivativesOf(few, at_position(few).answer, equilibrium_results)
     by_all = derivatives.by("petals.thickness").above
-    singles = [derivatives.by(f"petals.thickness[{petal}]").above for petal in range(COUNT)]
+    singles = [derivatives.by(f"petals.thickness[{petal}]").above for petal in range(few.petals.count)]
     for name in ("force_x", "force_y", "peak_pressure", "friction_torque"):
         terms = [single[name] for single in singles]
         assert_allclose(sum(terms), by_all[name], rtol=1e-7, atol=1e-7 * np.max(np.abs(terms)))
 
 
+@pytest.mark.slow
 def test_the_derivative_by_one_petal_of_an_unequal_pack() -> None:
     of = scattered()
     derivatives = DerivativesOf(of, at_position(of).answer, equilibrium_results)

@@ -28,8 +28,8 @@ from petalfoil.equilibrium.parameter_response import (
     StateRate,
 )
 from petalfoil.equilibrium.point_rates import PointEquilibrium, point_response
-from petalfoil.equilibrium.solution import Solution
-from petalfoil.errors import UsageError
+from petalfoil.equilibrium.solution import Solution, total_residual
+from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.parts import scalars_of
 from petalfoil.results.schema import SCALARS
 from petalfoil.walls import wall_kind
@@ -41,6 +41,10 @@ ResultsOf: TypeAlias = Callable[[Case, Solution], Results]
 KINK = 1e-6
 """A contact that opens or closes within this relative change of a parameter makes a kink: its derivative would hold for
 no change that a user can mean."""
+
+
+FOREIGN = 1e-6
+"""Residual of a state above which it is that of another case; a solution has 1e-8."""
 
 
 @dataclass(frozen=True)
@@ -110,8 +114,21 @@ class DerivativesOf:
 
     @cached_property
     def own(self) -> Equations:
-        """The equations of the case itself."""
-        return equations_of(self.case, under_load=self.solution.load is not None)
+        """The equations of the case itself.
+
+        Raises
+        ------
+        ConvergenceError
+            The solution is not one of theirs.
+        """
+        own, found = equations_of(self.case, under_load=self.solution.load is not None), self.solution
+        residual = total_residual(own.problem.at(displacement=found.problem.displacement), found.state)
+        if not residual <= FOREIGN:
+            raise ConvergenceError(
+                f"no derivative: the equations of the case hold at this state to {residual:.1e} only",
+                advice="ask for the derivatives of the case that the state was solved for",
+            )
+        return own
 
     @cached_property
     def thinnest(self) -> float:
