@@ -216,6 +216,24 @@ def test_a_question_is_answered_from_its_declaration(page: Page) -> None:
     page.locator(".question .refusal:visible", has_text="eccentricities").wait_for()
 
 
+def test_a_point_of_a_map_opens_its_case(page: Page) -> None:
+    page.get_by_role("tab", name="Map").click()
+    page.get_by_label("values over").fill("160 um, 190 um")
+    page.get_by_role("button", name="Run map").click()
+    answered(page, "map: done")
+    point = page.locator(".past .scatterlayer .point").last
+    point.wait_for()
+    point.scroll_into_view_if_needed()
+    page.wait_for_timeout(500)
+    box = point.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    page.wait_for_timeout(300)
+    page.mouse.down()
+    page.mouse.up()
+    page.wait_for_function("document.querySelector('[aria-label^=\"petals.thickness \"]').value === '190 µm'")
+
+
 def test_the_3d_view_alone_uses_webgl(page: Page) -> None:
     assert page.locator("canvas").count() == 0
     page.get_by_role("button", name="3-D").click()

@@ -22,6 +22,7 @@ The page:
 - ``case_panel``    the case: fields and sliders
 - ``results_panel`` results beside those of the pinned design
 - ``questions``     the analyses as tabs
+- ``map_panel``     a result over one or two parameters
 - ``downloads``     what leaves the page as a file
 - ``charts``        charts of film, series, motions, and the 3-D view
 - ``section_chart`` the cross-section

@@ -13,9 +13,10 @@ import numpy as np
 
 from petalfoil.results.schema import SCALARS, VARIABLES, Shown
 from petalfoil.results.summary import shown_as
-from petalfoil.studio.protocol import Found
+from petalfoil.studio.protocol import Found, Mapped
 from petalfoil.studio.section_chart import VIRIDIS, Chart, Floats, State, Trace
 from petalfoil.studio.themes import Theme
+from petalfoil.units import format_quantity
 
 FRAMES = 90
 """Places of the journal that the animation of a motion shows: the last turns in a few seconds."""
@@ -246,6 +247,38 @@ def _play_button(theme: Theme) -> dict[str, Any]:
         "font": {"color": theme.ink},
         "bgcolor": theme.bushing,
     }
+
+
+def map_chart(found: Mapped, name: str, theme: Theme) -> Chart:
+    """A result over one parameter as a line, over two as a contour map; each case is a point."""
+    shown = label_of(name)
+    values = np.asarray(found.results[name], dtype=np.float64) * shown.factor
+    scales = {path: unit_of(places, found.units[path]) for path, places in found.parameters.items()}
+    places = [[float(f"{place / scales[path][1]:.9g}") for place in row] for path, row in found.parameters.items()]
+    titles = [f"{path} [{scales[path][0]}]" if scales[path][0] else path for path in found.parameters]
+    dot = {"type": "scatter", "marker": {"color": theme.ink, "size": 7}, "showlegend": False}
+    if len(places) == 1:
+        line = {**dot, "mode": "lines+markers", "x": places[0], "y": _or_gap(values), "line": {"color": theme.accent}}
+        layout = theme.layout(xaxis=theme.axis(titles[0]), yaxis=theme.axis(titled(name)), uirevision=name)
+        return {"data": [line], "layout": layout, "config": theme.config("map")}
+    bar = {"title": {"text": titled(name), "side": "right"}, "thickness": 14}
+    rows = [_or_gap(row) for row in values.T]
+    contour = {"type": "contour", "x": places[0], "y": places[1], "z": rows, "colorscale": _scale(), "colorbar": bar}
+    x, y = (grid.ravel().tolist() for grid in np.meshgrid(*places, indexing="ij"))
+    cases = {**dot, "mode": "markers", "x": x, "y": y, "hovertemplate": "%{x}, %{y}<extra>open</extra>"}
+    layout = theme.layout(xaxis=theme.axis(titles[0]), yaxis=theme.axis(titles[1]), uirevision=name)
+    return {"data": [contour | {"hoverinfo": "z"}, cases], "layout": layout, "config": theme.config("map")}
+
+
+def unit_of(values: Sequence[float], unit: str) -> tuple[str, float]:
+    """A unit in which the largest of some values is read easily, and its size in the SI unit."""
+    largest = max(map(abs, values), default=0.0)
+    if unit in ("1", "") or largest == 0.0:
+        return ("" if unit == "1" else unit), 1.0
+    number, _, words = format_quantity(largest, unit, digits=12).partition(" ")
+    if not words:  # degrees are written without a space
+        return "°", math.pi / 180.0
+    return words, largest / float(number)
 
 
 def chart_of(found: Found, axes: Sequence[str], theme: Theme) -> Chart:

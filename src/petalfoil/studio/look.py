@@ -52,7 +52,7 @@ body { background: var(--ground); color: var(--ink); }
                            font-variant-numeric: tabular-nums; border-color: var(--line) !important;
                            white-space: pre-wrap !important; }
 .results th { color: var(--faint); }
-.results tbody tr { cursor: default; } .past .results tbody tr { cursor: pointer; }
+.results tbody tr { cursor: default; } .history tbody tr { cursor: pointer; }
 .results .warned { color: var(--warned); font-weight: 600; }
 .results .failed { color: var(--failed); font-weight: 600; }
 .warning { color: var(--warned); font-size: .85rem; margin-top: 6px; overflow-wrap: anywhere; }

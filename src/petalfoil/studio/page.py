@@ -15,6 +15,7 @@ from petalfoil.studio.charts import empty, film_chart, space_chart
 from petalfoil.studio.design import MOST_BYTES, Design
 from petalfoil.studio.downloads import download_menu, quiet_button
 from petalfoil.studio.look import STYLE
+from petalfoil.studio.map_panel import MapPanel
 from petalfoil.studio.questions import Questions
 from petalfoil.studio.results_panel import ResultsPanel
 from petalfoil.studio.section_chart import has_section, section_chart
@@ -68,7 +69,7 @@ class Page:
             Aspect.PROBLEMS: self._case_panel_problems,
             Aspect.STATE: self._show_state,
             Aspect.STATUS: self._show_status,
-            Aspect.ANSWERS: self._questions.show,
+            Aspect.ANSWERS: self._show_answers,
             Aspect.TRIED: self._show_tried,
             Aspect.LOG: self._show_log,
         }
@@ -127,18 +128,34 @@ class Page:
 
     def _build_past(self) -> None:
         with ui.tabs().props("dense no-caps align=left") as tabs:
-            ui.tab("history", "History")
-            ui.tab("log", "Log")
-        with ui.tab_panels(tabs, value="history"):
-            with ui.tab_panel("history"):
-                self._tried = ui.table(columns=_history_columns(), rows=[], row_key="number").classes("results")
-                self._tried.props("dense hide-pagination").props["rows-per-page-options"] = [0]
-                self._tried.on(
-                    "rowClick", lambda event: self.session.go_back(int(event.args[1]["number"])), [[], ["number"], None]
-                )
-                ui.label("A click opens the design again.").classes("grid-note")
-            with ui.tab_panel("log"):
-                self._log = ui.element("div").classes("log").props("role=log")
+            for name in ("History", "Map", "Log"):
+                ui.tab(name)
+        panels = {name: ui.element("div") for name in ("History", "Map", "Log")}
+
+        def show(chosen: str) -> None:
+            for name, panel in panels.items():
+                panel.set_visibility(name == chosen)
+
+        tabs.on_value_change(lambda event: show(str(event.value)))
+        tabs.set_value("History")
+        with panels["History"]:
+            self._build_history()
+        with panels["Map"]:
+            self._map = MapPanel(self.session)
+        with panels["Log"]:
+            self._log = ui.element("div").classes("log").props("role=log")
+
+    def _build_history(self) -> None:
+        self._tried = ui.table(columns=_history_columns(), rows=[], row_key="number").classes("results history")
+        self._tried.props("dense hide-pagination").props["rows-per-page-options"] = [0]
+        self._tried.on(
+            "rowClick", lambda event: self.session.go_back(int(event.args[1]["number"])), [[], ["number"], None]
+        )
+        ui.label("A click opens the design again.").classes("grid-note")
+
+    def _show_answers(self) -> None:
+        self._questions.show()
+        self._map.show()
 
     # ------------------------------------------------------------------------------------------ following
 
@@ -213,6 +230,7 @@ class Page:
         self._dark.set_value(self.session.is_dark)
         self._show_state()
         self._questions.redraw()
+        self._map.redraw()
 
     async def _uploaded(self, event: events.UploadEventArguments) -> None:
         """Open a case that was uploaded; what is no case is refused."""

@@ -28,6 +28,8 @@ class Work(Enum):
 
     ANSWER = "answer"
     """Run an analysis."""
+    STUDY = "study"
+    """Run an analysis over one or two parameters."""
     NETCDF, PNG, SVG, REPORT = "nc", "png", "svg", "html"
     """Make a file of the records of an answer."""
 
@@ -52,6 +54,8 @@ class Task:
         Answer on a coarse 2-D grid instead of the case's.
     records : tuple of Record
         Records of the answer that a file is made of.
+    vary : mapping
+        Values of parameters by path, as typed.
     """
 
     number: int
@@ -61,6 +65,7 @@ class Task:
     arguments: Mapping[str, Any] = field(default_factory=dict)
     coarse: bool = False
     records: tuple[Record, ...] = ()
+    vary: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -156,12 +161,37 @@ class Found:
     is_series: bool = False
 
 
+@dataclass(frozen=True, kw_only=True)
+class Mapped:
+    """Results over one or two parameters.
+
+    Attributes
+    ----------
+    parameters : mapping
+        Values of each parameter by path, SI.
+    units : mapping
+        SI unit of each, by path.
+    results : mapping
+        Results by name over the parameters in order, SI; NaN where a case has no answer.
+    missing : int
+        Number of cases without an answer.
+    seconds : float
+        Wall time that it took [s].
+    """
+
+    parameters: Mapping[str, tuple[float, ...]]
+    units: Mapping[str, str]
+    results: Arrays
+    missing: int
+    seconds: float
+
+
 @dataclass(frozen=True)
 class Done:
     """A task is done: what was found, or the bytes of a file."""
 
     number: int
-    result: Found | bytes
+    result: Found | Mapped | bytes
 
 
 Message = Task | Cancel | Ready | Progress | Cancelled | Failure | Done

@@ -11,7 +11,7 @@ import asyncio
 import secrets
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Coroutine, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 from typing import Any
@@ -20,13 +20,17 @@ from petalfoil.case import Case, ModelKind
 from petalfoil.errors import DefinitionError
 from petalfoil.studio.design import Design
 from petalfoil.studio.engine import Engine, Job, Outcome
-from petalfoil.studio.protocol import Cancelled, Done, Failure, Found, Work
+from petalfoil.studio.protocol import Cancelled, Done, Failure, Found, Mapped, Work
 from petalfoil.walls import Capability, wall_kind
 
 FINE_CELLS = 64
 """Cells per pitch of a 2-D grid above which a coarse answer comes first: below, the answer itself is as quick."""
 MOST_TRIED, MOST_LINES = 40, 200
 """Designs and lines of the log that a session remembers."""
+
+
+MAP = "map"
+"""Name under which the failure of a map stands among those of the analyses."""
 
 
 class Aspect(Enum):
@@ -106,6 +110,7 @@ class Session:
         self.pinned: Shown | None = None
         self.answers: dict[str, Shown] = {}
         self.failures: dict[str, str] = {}
+        self.map: Mapped | None = None
         self.tried: list[Tried] = []
         self.status = Status()
         self.log: deque[str] = deque(maxlen=MOST_LINES)
@@ -179,11 +184,23 @@ class Session:
             self.failures[verb] = "the case is refused: mend the fields that are marked"
             self._tell(Aspect.ANSWERS)
             return
-        if self._question is not None:
-            self._engine.cancel(self._question)
-        task = asyncio.get_running_loop().create_task(self._answer(verb, dict(arguments)))
-        self._questions.add(task)
-        task.add_done_callback(self._questions.discard)
+        self._start(self._answer(verb, work=Work.ANSWER, verb=verb, arguments=dict(arguments)))
+
+    def study(self, vary: Mapping[str, str]) -> None:
+        """Map the design over one or two parameters; a question that still runs is cancelled."""
+        case = self.case()
+        if case is None:
+            self.failures[MAP] = "the case is refused: mend the fields that are marked"
+            self._tell(Aspect.ANSWERS)
+            return
+        self._start(self._answer(MAP, work=Work.STUDY, verb=live_verb(case), vary=dict(vary)))
+
+    def open_place(self, place: Mapping[str, Any]) -> None:
+        """Open the design at a place of the map: values by path."""
+        design = self.design
+        for path, value in place.items():
+            design = design.with_value(path, value)
+        self.open(design, "opened from the map")
 
     def cancel(self) -> None:
         """Stop whatever is computed for this session."""
@@ -251,30 +268,35 @@ class Session:
             self.problems = {key: text for key, text in outcome.problems if key}
             self._tell(Aspect.PROBLEMS)
 
-    async def _answer(self, verb: str, arguments: dict[str, Any]) -> None:
+    def _start(self, answer: Coroutine[Any, Any, None]) -> None:
+        """Begin a question; one that still runs is cancelled."""
+        if self._question is not None:
+            self._engine.cancel(self._question)
+        task = asyncio.get_running_loop().create_task(answer)
+        self._questions.add(task)
+        task.add_done_callback(self._questions.discard)
+
+    async def _answer(self, name: str, *, work: Work, **asked: Any) -> None:
         toml = self.design.to_toml()
-        self.failures.pop(verb, None)
+        self.failures.pop(name, None)
         self._question = job = self._engine.submit(
-            self.key,
-            Work.ANSWER,
-            is_long=True,
-            on_progress=self._progress,
-            verb=verb,
-            case_toml=toml,
-            arguments=arguments,
+            self.key, work, is_long=True, on_progress=self._progress, case_toml=toml, **asked
         )
-        self._say(f"{verb}: computing", 0.0)
+        self._say(f"{name}: computing", 0.0)
         self._tell_queue(job)
         outcome = await job.outcome
         if self._question is job:
             self._question = None
-        if isinstance(outcome, Done) and isinstance(outcome.result, Found):
-            self.answers[verb] = Shown(outcome.result, toml, arguments)
-            self._say(f"{verb}: done in {outcome.result.seconds:.2g} s", None)
-        elif isinstance(outcome, Failure):
-            self.failures[verb] = _words(outcome)
-            self._say(f"{verb}: no answer", None)
-            self._note(f"{verb}: {_words(outcome)}")
+        if isinstance(outcome, Failure):
+            self.failures[name] = _words(outcome)
+            self._say(f"{name}: no answer", None)
+            self._note(f"{name}: {_words(outcome)}")
+        elif isinstance(outcome, Done) and not isinstance(outcome.result, bytes):
+            if isinstance(outcome.result, Mapped):
+                self.map = outcome.result
+            else:
+                self.answers[name] = Shown(outcome.result, toml, asked["arguments"])
+            self._say(f"{name}: done in {outcome.result.seconds:.2g} s", None)
         self._tell(Aspect.ANSWERS)
 
     def _remember(self, design: Design, found: Found) -> None:

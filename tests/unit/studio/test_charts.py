@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,12 +14,12 @@ from petalfoil.analysis import known_verbs
 from petalfoil.case import Case, ModelKind
 from petalfoil.case import toml as case_toml
 from petalfoil.errors import DefinitionError, UsageError
-from petalfoil.studio.charts import chart_of, film_chart, space_chart, usual_axes
+from petalfoil.studio.charts import chart_of, film_chart, map_chart, space_chart, unit_of, usual_axes
 from petalfoil.studio.downloads import csv_of
-from petalfoil.studio.protocol import Found, Task, Work
+from petalfoil.studio.protocol import Found, Mapped, Task, Work
 from petalfoil.studio.results_panel import rows_of
 from petalfoil.studio.section_chart import has_section, section_chart
-from petalfoil.studio.tasks import MOST_UNKNOWNS, coarse, found_analysis, perform, stored_answer
+from petalfoil.studio.tasks import MOST_CASES, MOST_UNKNOWNS, coarse, found_analysis, perform, stored_answer
 from petalfoil.studio.themes import DARK, LIGHT
 from tests.cases import case, tables
 
@@ -132,3 +133,51 @@ def test_a_huge_grid_a_file_and_an_unknown_question_are_refused() -> None:
         found("orbit", {"restart": "/etc/passwd"})
     with pytest.raises(UsageError, match="known: balance"):
         found("explode")
+
+
+def test_a_map_holds_the_answers_of_its_cases() -> None:
+    asked = task(keys={"model.cells_per_pitch": 12})
+    over = {"petals.thickness": "0.17 mm, 0.19 mm"}
+    answer = perform(replace(asked, work=Work.STUDY, vary=over), lambda part, text: None)
+    assert isinstance(answer, Mapped)
+    assert_allclose(answer.parameters["petals.thickness"], (170e-6, 190e-6))
+    assert (answer.units["petals.thickness"], answer.missing) == ("m", 0)
+    alone = found(keys={"model.cells_per_pitch": 12, "petals.thickness": "0.19 mm"})
+    assert_allclose(answer.results["min_film_thickness"][1], alone.scalars["min_film_thickness"], rtol=1e-9)
+    (line,) = map_chart(answer, "min_film_thickness", LIGHT)["data"]
+    assert_allclose(line["x"], [170.0, 190.0])
+    with pytest.raises(UsageError, match=f"up to {MOST_CASES} cases"):
+        perform(replace(asked, work=Work.STUDY, vary={"petals.thickness": "0.1 mm : 0.2 mm : 900"}), lambda p, t: None)
+
+
+def test_a_map_over_two_parameters_has_a_point_for_each_case() -> None:
+    parameters = {"petals.thickness": (1e-4, 2e-4), "petals.count": (6.0, 7.0, 8.0)}
+    values = np.array([[1e-6, 2e-6, np.nan], [3e-6, 4e-6, 5e-6]])
+    flat = Mapped(
+        parameters=parameters,
+        units={"petals.thickness": "m", "petals.count": "1"},
+        results={"min_film_thickness": values},
+        missing=1,
+        seconds=1.0,
+    )
+    contour, cases = map_chart(flat, "min_film_thickness", DARK)["data"]
+    assert (contour["x"], contour["y"]) == ([100.0, 200.0], [6.0, 7.0, 8.0])
+    assert_allclose(contour["z"][1], [2.0, 4.0])
+    assert contour["z"][2][0] is None
+    assert list(zip(cases["x"], cases["y"], strict=True))[1] == (100.0, 7.0)
+
+
+@pytest.mark.parametrize(
+    ("values", "unit", "shown", "size"),
+    [
+        ((1e-4, 2e-4), "m", "µm", 1e-6),
+        ((6.0, 8.0), "1", "", 1.0),
+        ((0.1, 0.5), "rad", "°", np.pi / 180.0),
+        ((4000.0, 8000.0), "rad/s", "rad/s", 1.0),
+        ((0.0, 0.0), "m", "m", 1.0),
+    ],
+)
+def test_axes_are_in_units_that_a_reader_likes(values: tuple[float, ...], unit: str, shown: str, size: float) -> None:
+    words, found_size = unit_of(values, unit)
+    assert words == shown
+    assert_allclose(found_size, size, rtol=1e-9)
