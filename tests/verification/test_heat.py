@@ -297,6 +297,14 @@ def test_a_bearing_warms_up_on_the_way() -> None:
     assert quick["friction_torque"].values[-1] > quick["friction_torque"].values[0]
 
 
+def test_a_warm_shaft_starts_harder() -> None:
+    """30 K above the bushing the rig needs more than twice the torque."""
+    warm = rig(heat={**NETWORK, **CAPACITIES, "shaft_start_temperature": 323.15})
+    first, second = (runup(of, to=100.0, points=3, warm_up=1.0) for of in (rig(), warm))
+    assert float(second["friction_torque"][0]) > 1.8 * float(first["friction_torque"][0])
+    assert_allclose(float(second["shaft_temperature"][0]), 323.15, atol=1e-2)
+
+
 def test_an_implicit_step_stores_what_it_does_not_pass_on() -> None:
     network = HeatNetwork.of(rig()).after(Temperatures.even(300.0), 2.0)
     T, film = Temperatures(310.0, 305.0, 304.0, 301.0), FilmHeat(0.0, 0.0, 0.0, 0.0, 0.0)

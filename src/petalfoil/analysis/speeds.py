@@ -66,14 +66,16 @@ class SpeedLine:
         number = scales.bearing_number(self.case.gas.viscosity, speed, R_j)
         problem, load = self.base.at(bearing_number=number), load_of(self.case, self.load, self.base.layout)
         warm = self.temperatures
+        if warm is None and after is not None:
+            warm = network_in_time(self.case).start
         if self.known is None:
             found = balance_cold(problem.at(temperatures=warm), load)
         else:
             found = rebalance(self.known, problem.at(temperatures=warm), load)
-        if after is None:
+        if after is None or warm is None:
             self.known = with_heat(self.case, found)
         else:
-            self.known = warm_up_step(self.case, found, warm or network_in_time(self.case).cold, after)
+            self.known = warm_up_step(self.case, found, warm, after)
         self.temperatures = self.known.problem.temperatures
         return self.known
 

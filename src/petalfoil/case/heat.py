@@ -61,6 +61,10 @@ class Heat(Definition):
     """By default that of the surroundings."""
     cooling_temperature: Annotated[float, _temperature("temperature of the cooling flow as it comes")] | None = None
     """By default that of the surroundings."""
+    shaft_start_temperature: Annotated[float, _temperature("temperature of the shaft when a warm-up begins")] | None = (
+        None
+    )
+    """By default that of the surroundings: a start from cold."""
     shaft_capacity: Annotated[float, _capacity("heat capacity of the shaft's part", "C_s")] = 0.0
     """For a warm-up in time; so are the next two."""
     pack_capacity: Annotated[float, _capacity("heat capacity of the pack", "C_p")] = 0.0

@@ -204,7 +204,7 @@ def raised(known: Solution, network: HeatNetwork) -> Solution:
         ahead = min(1.0, part + step)
         there = warmed(found, replace(network, power=ahead))
         if there is None and step <= LEAST_PART:
-            raise runaway(found, part)
+            raise runaway(found, network, part)
         if there is None:
             step *= 0.5
             continue
@@ -212,13 +212,14 @@ def raised(known: Solution, network: HeatNetwork) -> Solution:
     return found
 
 
-def runaway(found: Solution, part: float) -> ThermalRunawayError:
-    """The error of a bearing that has no steady temperature with more than a part of its friction power."""
+def runaway(found: Solution, network: HeatNetwork, part: float) -> ThermalRunawayError:
+    """The error of a bearing whose heat does not balance with more than a part of its friction power."""
     warm = found.problem.temperatures
     shaft = "" if warm is None else f", with the shaft at {warm.shaft:.0f} K,"
+    what = "no steady temperature" if network.before is None else "thermal runaway within a time step"
     return ThermalRunawayError(
-        f"no steady temperature: the heat balance has one up to {100.0 * part:.0f} % of the friction power{shaft} and "
-        "none beyond: as the shaft grows the film loses more than is carried away",
+        f"{what}: the heat balances up to {100.0 * part:.0f} % of the friction power{shaft} and not beyond: as the "
+        "shaft grows the film loses more than is carried away",
         history=current_run().history,
         advice="lower the speed or the load, widen the clearance, or carry more heat away (the conductances of [heat])",
     )

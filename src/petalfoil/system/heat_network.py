@@ -95,6 +95,11 @@ class HeatNetwork:
         """Temperatures of a bearing that has stood still."""
         return Temperatures.even(self.ambient)
 
+    @property
+    def start(self) -> Temperatures:
+        """Temperatures when a warm-up begins: cold, but for a shaft that was told to be warm."""
+        return self.cold._replace(shaft=self.heat.shaft_start_temperature or self.ambient)
+
     @cached_property
     def paths(self) -> tuple[Array, Array]:
         """What leaves the nodes by given paths and what is stored: `G T - sources`, (4, 4) [W/K] and (4,) [W]."""
