@@ -11,12 +11,14 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from petalfoil.analysis.derivatives import DerivativesOf, Results, equilibrium_results
+from petalfoil.analysis.derivatives import DerivativesOf, Results, equilibrium_results, results_with_growth
 from petalfoil.analysis.liftoff_derivatives import refined, speed_derivatives
 from petalfoil.analysis.operating_point import at_position, under_load
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
 from petalfoil.case.parameters import with_values
+from petalfoil.dynamics.film_stability import leading_eigenvalue
+from petalfoil.dynamics.leading_mode import LeadingMode
 from petalfoil.equilibrium.run_context import RunContext
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError, DefinitionError, UsageError
@@ -24,7 +26,7 @@ from petalfoil.walls import register, unregister
 from tests.cases import case
 from tests.random_packages import random_case, wide_case
 from tests.verification.film_helpers import table
-from tests.verification.resolved import compared, parameters_with_effect
+from tests.verification.resolved import compared, parameters_with_effect, solved_again
 from tests.walls.slider import Slider
 
 EXACT = 1e-6
@@ -188,6 +190,26 @@ def test_contacts_that_are_all_at_nodes_give_the_same_either_way() -> None:
     as_points = replace(at_nodes, as_points=True)
     assert as_points.with_points is None
     assert as_points.by("gas.viscosity") == at_nodes.by("gas.viscosity")
+
+
+@pytest.mark.parametrize("path", ["operation.speed", "petals.thickness"])
+def test_the_growth_rate_follows_to_first_order(path: str) -> None:
+    of = case(**{"model.cells_per_pitch": 8})
+    solution = at_position(of).answer
+    derivatives = DerivativesOf(of, solution, results_with_growth(solution))
+    variation = derivatives.variation(path)
+    found = derivatives.along(variation)
+    variation = variation.finer(found.fineness)
+    rates = []
+    for steps, weight in variation.stencil:
+        there_case, there = variation.at(steps)
+        again_solved = solved_again(derivatives, there)
+        rate = LeadingMode.of(again_solved).eigenvalue(again_solved)
+        rates.append(weight * rate.real * there_case.operation.speed / variation.step)
+    size = max(abs(found.above["growth_rate"]), abs(derivatives.values["growth_rate"]) / variation.size)
+    assert_allclose(found.above["growth_rate"], sum(rates), atol=1e-5 * size)
+    eigenvalue = leading_eigenvalue(solution)
+    assert_allclose(derivatives.values["growth_rate"], eigenvalue.real * of.operation.speed, rtol=1e-5)
 
 
 # ---------------------------------------------------------------------------------------------- lift-off

@@ -21,6 +21,7 @@ from petalfoil.analysis.records import position
 from petalfoil.analysis.variation import ABOVE, BELOW, FILM_CHANGE, Stencil, Variation, equations_of, quotient
 from petalfoil.case import Case
 from petalfoil.case.parameters import parameter_of
+from petalfoil.dynamics.leading_mode import LeadingMode
 from petalfoil.equilibrium.parameter_response import (
     Equations,
     HeldEquilibrium,
@@ -220,6 +221,28 @@ def equilibrium_results(case: Case, solution: Solution) -> dict[str, float]:
     parts = (found.forces(), found.film(), wall_kind(case).scalars(all_fields(found)), position(case, solution))
     results = {name: float(value) for name, value in scalars_of(*parts).items() if isinstance(value, float)}
     return {name: value for name, value in results.items() if name not in PLACES}
+
+
+GROWTH = ("growth_rate", "growth_frequency")
+"""Results of the leading eigenvalue, which ask for its vectors."""
+
+
+def results_with_growth(solution: Solution) -> ResultsOf:
+    """The results of `equilibrium_results` and those of the leading eigenvalue about `solution`.
+
+    Raises
+    ------
+    ConvergenceError
+        The eigenvalue has no derivative.
+    """
+    mode = LeadingMode.of(solution)
+
+    def results(case: Case, moved: Solution) -> Results:
+        rate, omega = mode.eigenvalue(moved), case.operation.speed
+        growth = (rate.real * omega, abs(rate.imag) * omega)
+        return {**equilibrium_results(case, moved), **dict(zip(GROWTH, growth, strict=True))}
+
+    return results
 
 
 PLACES = ("min_film_thickness_angle", "min_film_thickness_z", "peak_pressure_angle")

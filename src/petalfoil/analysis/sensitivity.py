@@ -10,7 +10,7 @@ from petalfoil.analysis.arguments import Load, Position, Quantity, Speed
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.crossings import CONTACT_FRACTION
 from petalfoil.analysis.declaration import analysis
-from petalfoil.analysis.derivatives import DerivativesOf, equilibrium_results
+from petalfoil.analysis.derivatives import GROWTH, DerivativesOf, equilibrium_results, results_with_growth
 from petalfoil.analysis.liftoff import Limit, own_load
 from petalfoil.analysis.liftoff_derivatives import speed_derivatives
 from petalfoil.analysis.operating_point import Vector, applied_load, at, at_position, under_load
@@ -236,4 +236,5 @@ def sources_of(case: Case, asked: Asked, limit: float) -> Sequence[Source]:
         return speed_derivatives(case, own_load(case), limit, as_points=asked.as_points)
     load = case.operation.load
     solution = at_position(case).answer if load is None else under_load(case, load)[0]
-    return [DerivativesOf(case, solution, equilibrium_results, asked.as_points)]
+    results = results_with_growth(solution) if set(asked.quantities) & set(GROWTH) else equilibrium_results
+    return [DerivativesOf(case, solution, results, asked.as_points)]

@@ -2,6 +2,7 @@
 
 =========================  ====================================================================
 `film_stability.py`        whether an equilibrium is stable at a fixed journal position
+`leading_mode.py`          how the eigenvalue of that follows a changed equilibrium
 `reduced_impedance.py`     impedance over frequency, from a reduced model
 `critical_mass.py`         smallest unstable mass of a rigid rotor
 `natural_modes.py`         damped natural motions of a rigid rotor

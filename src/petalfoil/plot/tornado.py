@@ -72,7 +72,7 @@ def _draw(ax: Axes, name: str, ds: xr.Dataset) -> None:
     label = QUANTITIES[name].name if name in QUANTITIES else for_figure(name.replace("_", " "))
     style.dress(ax, f"change of the {label} [{unit}]")
     ax.grid(False, axis="y")
-    reach = max(float(np.max(np.abs(effect))), float(np.max(np.abs(opposite))))
+    reach = max(float(np.max(np.abs(effect))), float(np.max(np.abs(opposite)))) or 1.0  # nothing has an effect
     ax.set_xlim(-1.1 * reach, 1.25 * reach)
 
 
