@@ -128,3 +128,23 @@ def test_values_show_the_digits_that_their_bars_leave() -> None:
     assert values.text(plain, 1.0) == "8.09 ± 0.42"
     assert values.text(zero, 1.0) == "0"
     assert json.dumps(values.grids("3d")) == "[24, 48, 96]"
+
+
+@pytest.mark.slow
+def test_the_paper_s_bearing_is_optimized_within_its_limits(tmp_path: Path) -> None:
+    script = module(EXAMPLES / "optimize_paper.py")
+    found = script.optimized(8, tmp_path, workers=0, budget=16)
+    (best,) = found["best"]
+    assert best["results"]["bearing_force"] > found["paper"]["bearing_force"]
+    assert best["results"]["min_film_thickness"] > 5e-6 * (1.0 - 1e-4)
+    assert best["results"]["max_bending_stress"] < 350e6 * (1.0 + 1e-4)
+    assert "8 petals: " in script.line(found)
+
+
+@pytest.mark.slow
+def test_petals_that_differ_scatter_the_lift_off_of_the_rig(tmp_path: Path) -> None:
+    script = module(EXAMPLES / "scatter_rig.py")
+    told = script.scattered("± 5 um each", tmp_path, workers=0, samples=8)
+    assert told["cases"] == 8.0
+    assert told["quantile_95"] > told["quantile_05"]
+    assert "each: nominal " in script.line("each", told)

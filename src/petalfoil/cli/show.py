@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -17,6 +17,9 @@ from petalfoil.cli.outputs import Outputs
 from petalfoil.errors import UsageError
 from petalfoil.results.layout import Answer, Point, Series
 from petalfoil.results.store import load
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 HELP = """Show a result file once more, without running anything: table, figure, files for other programs.
 
@@ -46,6 +49,9 @@ def show(result: Path, *, as_json: bool, plot: Path | None, **files: Any) -> Non
         exports = declared_exports()
         outputs = Outputs.checked(as_json=as_json, plot=plot, exports=chosen(exports.values(), files))
         ds = load(result)
+        if is_study(ds):
+            show_study(ds, result, as_json=as_json, plot=plot)
+            return
         analysis = find(str(ds.attrs["analysis"]))
         own = {export.option for export in analysis.exports} if analysis else set()
         for option in exports:
@@ -53,6 +59,22 @@ def show(result: Path, *, as_json: bool, plot: Path | None, **files: Any) -> Non
                 raise UsageError(f"--{option}: a result of {ds.attrs['analysis']} has nothing for such a file")
         unknown = Series() if "point" in ds.dims else Point()  # of an analysis that is not declared here
         outputs.deliver(Answer.stored(ds, analysis.layout_of(ds) if analysis else unknown), ds)
+
+
+def is_study(ds: xr.Dataset) -> bool:
+    """Whether a result is that of many cases."""
+    return {"vary", "settings"} <= ds.attrs.keys()
+
+
+def show_study(ds: xr.Dataset, result: Path, *, as_json: bool, plot: Path | None) -> None:
+    """Give a stored study out."""
+    from petalfoil.cli.study_outputs import deliver
+
+    if plot is not None:
+        from petalfoil import plot as figures
+
+        figures.save(figures.study(ds), plot)
+    deliver(ds, result, as_json=as_json)
 
 
 def declared_exports() -> dict[str, Export]:

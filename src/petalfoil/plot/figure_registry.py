@@ -26,6 +26,7 @@ FIGURES: dict[str, Draw | str] = {
     "stability": "stability_maps:stability",
     "orbit": "journal_orbit:orbit",
     "optimize": "study_optimum:optimum",
+    "sobol": "study_sobol:sobol",
     "sweep": "study_sweeps:sweep",
     "tolerance": "study_tolerance:tolerance",
     "sensitivity": "tornado:tornado",

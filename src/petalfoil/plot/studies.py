@@ -28,7 +28,7 @@ def study(ds: xr.Dataset, names: tuple[str, ...] = ()) -> Figure:
         Lines, contours or parallel coordinates of a sweep; histograms of a tolerance study; the
         designs of an optimisation; Sobol' indices.
     """
-    draw = {"tolerance": tolerance, "optimize": optimum, "sensitivity": sobol}.get(str(ds.attrs["analysis"]), sweep)
+    draw = {"tolerance": tolerance, "optimize": optimum, "sobol": sobol}.get(str(ds.attrs["analysis"]), sweep)
     return draw(ds, names)
 
 
@@ -45,7 +45,7 @@ def study_figures(ds: xr.Dataset) -> dict[str, Figure]:
     dict of matplotlib.figure.Figure
         Figures by name; none where no result varies.
     """
-    drawn = {"sweep": _sweep, "tolerance": _tolerance, "optimize": _optimum, "sensitivity": _sobol}
+    drawn = {"sweep": _sweep, "tolerance": _tolerance, "optimize": _optimum, "sobol": _sobol}
     try:
         return drawn.get(str(ds.attrs["analysis"]), _sweep)(ds)
     except UsageError:  # no case has a result that varies: the page tells why each failed

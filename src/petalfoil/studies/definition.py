@@ -15,7 +15,6 @@ from petalfoil.results.atomic import replacing
 from petalfoil.studies.question import Question
 
 FILE = "study.toml"
-KINDS = ("sweep", "tolerance", "sensitivity", "optimize")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,7 +24,7 @@ class Study:
     Attributes
     ----------
     kind : str
-        `sweep`, `tolerance`, `sensitivity` or `optimize`.
+        `sweep`, `tolerance`, `sobol` or `optimize`.
     case : Case
         The base case.
     question : Question

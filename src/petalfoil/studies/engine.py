@@ -28,6 +28,8 @@ PATIENCE = 10.0
 """Time to find a scheduler [s]."""
 START = 120.0
 """Time that workers on this machine have to begin [s]: each loads the package, on a machine that may be busy."""
+LOOK = "1s"
+"""How often processes look after themselves: what they do then is overhead."""
 RETIRE_AT = 0.95
 """Part of its memory at which a worker is ended and begun anew, as `distributed` has it by default."""
 EXTRA = "studies on several workers need the package dask: pip install 'petalfoil[studies]', or use --workers 0"
@@ -102,14 +104,14 @@ class OnCluster:
         before, own = self._times(), time.process_time()
         try:
             for task in islice(waiting, AHEAD * self.workers):
-                running[task.key] = task
+                running[name_of(task)] = task
                 completed.add(self._submit(task))
             while running:
                 future = next(completed)
                 outcome = _outcome(future, running.pop(future.key))
                 future.release()
                 for task in islice(waiting, 1):
-                    running[task.key] = task
+                    running[name_of(task)] = task
                     completed.add(self._submit(task))
                 self.effort.solver += outcome.seconds
                 yield outcome
@@ -118,11 +120,16 @@ class OnCluster:
             self.effort.workers += sum(now - before.get(pid, 0.0) for pid, now in self._times().items())
 
     def _submit(self, task: Task) -> Any:
-        return self.client.submit(answered, task, key=task.key, pure=False)
+        return self.client.submit(answered, task, key=name_of(task), pure=False)
 
     def _times(self) -> dict[tuple[str, int], float]:
         """Processor time of each worker process so far [s]."""
         return {(name, pid): spent for name, (pid, spent) in self.client.run(_process_time).items()}
+
+
+def name_of(task: Task) -> str:
+    """Name of a task on the cluster, which keeps a record for good of each first part of a name that it meets."""
+    return f"case-{task.key}"
 
 
 def _process_time() -> tuple[int, float]:
@@ -188,7 +195,11 @@ def _local(workers: int, memory: float | None) -> Iterator[Engine]:
         "distributed.worker.profile.enabled": False,  # a look at every thread each 10 ms
         "distributed.scheduler.allowed-failures": ATTEMPTS,
         "distributed.worker.memory.terminate": RETIRE_AT,
-        "distributed.admin.system-monitor.interval": "2s",
+        "distributed.admin.system-monitor.interval": LOOK,
+        "distributed.scheduler.http.routes": [],  # nothing is served but the work
+        "distributed.worker.http.routes": [],
+        "distributed.admin.tick.interval": LOOK,  # 50 times a second by default, in every process
+        "distributed.worker.memory.monitor-interval": LOOK,
     }
     limit = "auto" if memory is None else int(memory)
     with (
@@ -199,7 +210,7 @@ def _local(workers: int, memory: float | None) -> Iterator[Engine]:
             host="127.0.0.1",
             protocol="tls",
             security=True,
-            dashboard_address=None,
+            dashboard_address="127.0.0.1:0",
             memory_limit=limit,
             silence_logs=50,
         ) as cluster,

@@ -17,7 +17,7 @@ from typing import TypeAlias
 
 import xarray as xr
 
-from petalfoil.errors import UsageError
+from petalfoil.errors import StoreError, UsageError
 from petalfoil.results.store import save
 from petalfoil.studies import store as folders
 from petalfoil.studies.dataset import write_table
@@ -29,8 +29,8 @@ from petalfoil.studies.store import Store
 
 Progress: TypeAlias = Callable[[float, str], None]
 
-MODULES = {"sweep": "sweep", "tolerance": "tolerance", "sensitivity": "sobol", "optimize": "optimize"}
-"""File of each kind of study."""
+KINDS = ("sweep", "tolerance", "sobol", "optimize")
+"""Kinds of study, each in the file of its name."""
 
 
 @dataclass(frozen=True)
@@ -170,8 +170,16 @@ def key_of(study: Study, base: str, point: Point) -> str:
 
 
 def kind_of(study: Study) -> Kind:
-    """The kind of a study."""
-    kind: Kind = import_module(f"petalfoil.studies.{MODULES[study.kind]}").KIND
+    """The kind of a study.
+
+    Raises
+    ------
+    StoreError
+        Its definition names none.
+    """
+    if study.kind not in KINDS:
+        raise StoreError(f"this version knows no study of the kind {study.kind!r}; known: {', '.join(KINDS)}")
+    kind: Kind = import_module(f"petalfoil.studies.{study.kind}").KIND
     return kind
 
 

@@ -92,7 +92,7 @@ def sobol_study(
         raise UsageError(f"{samples} base samples are not a power of two from {LEAST} on: try {_power(samples)}")
     settings = {"samples": samples, "of": [result_of(name) for name in of], "seed": 0}
     plain_vary = {path: text if isinstance(text, str) else list(text) for path, text in vary.items()}
-    study = Study(kind="sensitivity", case=case, question=question, vary=plain_vary, settings=settings)
+    study = Study(kind="sobol", case=case, question=question, vary=plain_vary, settings=settings)
     question.refuse_overridden(list(vary))
     plan_of(study)
     return study

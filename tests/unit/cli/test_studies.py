@@ -57,6 +57,9 @@ def test_a_study_is_shown_again_and_drawn(swept: tuple[Path, Result], tmp_path: 
     assert told["cases"] == {"converged": 4, "invalid case": 2}
     assert told["results"]["bearing_force"]["least"] < told["results"]["bearing_force"]["greatest"]
     assert (tmp_path / "f.png").stat().st_size > 5_000
+    again = run("show", str(swept[0] / "study.nc"), "--json", "--plot", str(tmp_path / "h.png"))
+    assert json.loads(again.stdout)["results"] == told["results"]
+    assert (tmp_path / "h.png").stat().st_size > 5_000
     wrong = run("study", "show", str(swept[0]), "--of", "bearing_forc", "--plot", str(tmp_path / "g.png"))
     assert wrong.exit_code == 2
     assert "the study has no result 'bearing_forc'; it has" in wrong.stderr
@@ -157,7 +160,7 @@ def test_sensitivity_with_samples_is_a_study(two_d: str, tmp_path: Path) -> None
         *words, "--eccentricity", "0 um, -5 um", "--of", "bearing_force", "--workers", "0", "--out", str(tmp_path / "s")
     )
     assert done.exit_code == 0, done.output
-    assert "sensitivity of solve: 32 cases, 32 converged" in done.stdout
+    assert "sobol of solve: 32 cases, 32 converged" in done.stdout
     assert "operation.speed" in done.stdout
     assert "8 of 8" in done.stdout
     assert "PATH=RANGE" in run("sensitivity", "--samples", "8", "--help").stdout
