@@ -46,12 +46,14 @@ SYNONYMS = {
 
 SAME_WORD = {
     "built-in": "clamped",
+    "cantilevered": "clamped",
     "fixed": "clamped",
     "flat": "2d",
     "pinned": "hinged",
     "rigid": "clamped",
     "simply supported": "hinged",
     "spatial": "3d",
+    "welded": "clamped",
 }
 """Choices of before and of other codes, and the word that is meant."""
 

@@ -15,7 +15,7 @@ import typer
 from petalfoil import __version__
 from petalfoil.cli.signals import exit_code_of, stopping_in_order
 from petalfoil.cli.streams import emit, say, silence
-from petalfoil.errors import ConvergenceError, PetalfoilError
+from petalfoil.errors import ConvergenceError, DefinitionError, PetalfoilError
 
 FAULT = 1
 NOT_CONVERGED = 3
@@ -57,7 +57,9 @@ def handled(as_json: bool = False) -> Iterator[None]:
 
 
 def _explain(error: PetalfoilError, as_json: bool) -> None:
-    say(f"Error: {error}")
+    is_list = isinstance(error, DefinitionError)  # several problems, a line each; what they quote is on one line
+    for line in f"Error: {error}".split("\n") if is_list else [f"Error: {error}"]:
+        say(line)
     if not isinstance(error, ConvergenceError):
         return
     if error.advice:

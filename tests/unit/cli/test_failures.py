@@ -115,3 +115,13 @@ def test_interrupted_before_anything_was_finished(cli, played, case) -> None:
     result = cli("solve", case)
     assert (result.exit_code, result.stdout) == (130, "")
     assert result.stderr == "interrupted: nothing was finished\n"
+
+
+def test_several_problems_of_a_case_stand_in_lines_of_their_own(cli, tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text('[petals]\nmount = "welded"\n"wid\\nth" = 1\n', encoding="utf-8")
+    lines = cli("check", str(path)).stderr.splitlines()
+    assert re.fullmatch(r"Error: .*case.toml: \d+ problems", lines[0])
+    assert all(line.startswith("  - ") for line in lines[1:])
+    assert any("Did you mean 'clamped'?" in line for line in lines)
+    assert any(r"petals.wid\nth: is not a known key" in line for line in lines)  # a break in a key makes no line
