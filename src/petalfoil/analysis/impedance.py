@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from petalfoil.case import Case
 from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
 from petalfoil.dynamics.reduced_impedance import Impedance
+from petalfoil.equilibrium.element_contacts import near_nodes
+from petalfoil.equilibrium.element_response import ElementMotion
 from petalfoil.equilibrium.linear_response import SmallMotion
-from petalfoil.equilibrium.point_contacts import near_nodes
-from petalfoil.equilibrium.point_response import PointMotion
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import Motion
 from petalfoil.equilibrium.solution import Solution
@@ -54,18 +54,18 @@ def elastic(case: Case, answer: Solution) -> Motion:
 def elastic_and_sliding(case: Case, answer: Solution) -> tuple[Motion, SlidingContacts | None]:
     """Small motions about `answer`, petals with friction stick; and the contacts under load that would slide.
 
-    Where they are found, contacts are points with places of their own; else those of the nodes of the answer.
+    They are those of petals with continuous slopes where such an equilibrium is found, else of the nodes of `answer`.
 
     Raises
     ------
     ConvergenceError
         The pack is bottomed out: the journal cannot move without bending what has no clearance to bend.
     """
-    points, friction = near_nodes(answer), friction_of(case, answer.problem.layout)
-    if points is not None:
-        friction = friction and friction_at_points(friction, points.equations)
-        at_points = None if friction is None else SlidingContacts.at(friction, points.equations.state.points.reaction)
-        return PointMotion(points, at_points and at_points.sticking(points.equations.n)), at_points
+    found, friction = near_nodes(answer), friction_of(case, answer.problem.layout)
+    if found is not None:
+        friction = friction and friction_at_points(friction, found.pack, found.points)
+        on_elements = None if friction is None else SlidingContacts.at(friction, found.points.reaction)
+        return ElementMotion(found, on_elements and on_elements.sticking(found.equations.n)), on_elements
     sliding = sliding_at(case, answer)
     motion = SmallMotion.about(answer, None if sliding is None else sliding.sticking(len(answer.x)))
     if not motion.contacts.constraints.determinate:

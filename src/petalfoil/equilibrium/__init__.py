@@ -17,6 +17,8 @@
 `travelling_contacts.py`   contacts of that response that move between nodes
 `contact_sets.py`          contact points and stretches: from active nodes, and corrected by signs
 `point_contacts.py`        equilibria with contact points as unknowns
-`point_response.py`        the response about these
+`asperity_contacts.py`     equilibria with contact pressures over low asperities
+`element_contacts.py`      which of the two is near an equilibrium with contacts at nodes
+`element_response.py`      the response about these
 =========================  ====================================================================
 """

@@ -12,17 +12,79 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.solvers.reduced_model import MovedSystem
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.coupled import CoupledProblem
+from petalfoil.walls.element_pack import ElementPack
 
 Array = NDArray[np.float64]
 Values = NDArray[Any]
 """Real at zero frequency, complex otherwise."""
 
 AT_POINTS = "contact points on petals with continuous slopes"
+AT_ASPERITIES = "contact pressures over asperities of 5 nm, petals with continuous slopes"
 AT_NODES = "contacts at nodes, isolated ones moved between them"
 """Where the contacts of a linear response are."""
+
+
+class TangentEquations(Protocol):
+    """Equations of film and petals at an equilibrium, and their tangent in all unknowns, deflections first."""
+
+    @property
+    def n(self) -> int:
+        """All unknowns."""
+
+    @property
+    def problem(self) -> CoupledProblem:
+        """Speed and position."""
+
+    @property
+    def film_thickness(self) -> Array:
+        """Film over the reference length [1]."""
+
+    @property
+    def steady(self) -> sp.csc_array:
+        """The tangent, (n, n)."""
+
+    @property
+    def stored(self) -> sp.csc_array:
+        """Derivative of what the film stores, (n, n)."""
+
+    def forcing(self, rate: float = 0.0) -> Array:
+        """Derivative of the rows by the journal's displacement, with `rate` times that of what the film stores."""
+
+    @property
+    def force_rows(self) -> Array:
+        """Derivative of the force on the journal by the unknowns, (n_position, n)."""
+
+    @property
+    def force_direct(self) -> Array:
+        """Derivative of the force on the journal by its displacement, unknowns held, (n_position, n_position)."""
+
+    @property
+    def force(self) -> Array:
+        """Force of film and contacts on the journal over the unit of force, (n_position,) [1]."""
+
+
+class ElementEquilibrium(Protocol):
+    """An equilibrium of petals with continuous slopes."""
+
+    @property
+    def equations(self) -> TangentEquations:
+        """The equations at its state."""
+
+    @property
+    def pack(self) -> ElementPack:
+        """Its petals."""
+
+    @property
+    def points(self) -> ContactPoints:
+        """Its contacts, as points."""
+
+    @property
+    def contact_slopes(self) -> str:
+        """Where its contacts are, for people."""
 
 
 class Response(Protocol):

@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 
 from petalfoil.case import Case
 from petalfoil.physics.dry_friction import Friction
+from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.solvers.problem import ContactProblem, Linearized
 from petalfoil.system.bearing_layout import BearingLayout
-from petalfoil.system.point_equations import PointEquations
+from petalfoil.walls.element_pack import ElementPack
 
 Array = NDArray[np.float64]
 
@@ -213,9 +214,8 @@ def friction_of(case: Case, layout: BearingLayout) -> Friction | None:
     return Friction(surface.petal_friction, none, wall.slip, wall.reaction_share, width)
 
 
-def friction_at_points(friction: Friction, equations: PointEquations) -> Friction:
+def friction_at_points(friction: Friction, pack: ElementPack, points: ContactPoints) -> Friction:
     """The same friction at contact points: a gap for each, on the journal without slip."""
-    points = equations.state.points
-    on_petals = sp.diags_array((points.every_curve >= equations.whole.pack.mesh.count).astype(np.float64))
-    slip = equations.whole.pack.slip(points)
+    on_petals = sp.diags_array((points.every_curve >= pack.mesh.count).astype(np.float64))
+    slip = pack.slip(points)
     return replace(friction, stiffness=np.zeros(slip.shape[0]), slip=slip, reaction_share=sp.csr_array(on_petals))

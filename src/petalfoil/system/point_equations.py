@@ -210,9 +210,14 @@ class PointEquations:
         A row of the wall is not compared with less than the rounding of its `K w`.
         """
         wall, film, value, slope = self.residual
+        wall_scale, film_scale = self.row_scales
+        return np.concatenate([wall / wall_scale, film / film_scale, value, slope])
+
+    @property
+    def row_scales(self) -> tuple[Array, Array]:
+        """What residuals of wall and film are compared with."""
         rounding = WALL_ROUNDING * np.finfo(float).eps * (self.whole.stiffness_size @ np.abs(self.state.w))
-        scale = np.maximum(1.0, rounding / RESIDUAL_TOLERANCE)
-        return np.concatenate([wall / scale, film / self.film.row_scale, value, slope])
+        return np.maximum(1.0, rounding / RESIDUAL_TOLERANCE), self.film.row_scale
 
     @cached_property
     def steady(self) -> sp.csc_array:
@@ -272,6 +277,12 @@ class PointEquations:
         film = self.whole.layout.border.row_derivative
         travel = (slope.T * points.reaction) @ (points.spread * self.travels)
         return np.concatenate([np.zeros((len(film), self.whole.n_wall)), film, value.T, travel], axis=1)
+
+    @property
+    def force_direct(self) -> Array:
+        """Derivative of the force on the journal by its displacement, unknowns held, (d, d): none."""
+        size = len(self.problem.displacement)
+        return np.zeros((size, size))
 
     @property
     def force(self) -> Array:

@@ -1,9 +1,9 @@
-"""Linear response of film and petals about an equilibrium with contact points (model, question 6).
+"""Linear response of film and petals about an equilibrium of Hermite elements (model, question 6).
 
-The unknowns are those of the equilibrium, reactions and places of the points included. With its tangent `J`, what the
-film stores `S`, and the derivatives `F_e`, `S_e` by the journal's position,
+The unknowns are those of the equilibrium, reactions and places of its contact points included. With its tangent `J`,
+what the film stores `S`, and the derivatives `F_e`, `S_e` by the journal's position,
 
-    (J + s S) dX = -(F_e + s S_e) de ,     dF = R dX                                                   (E16)
+    (J + s S) dX = -(F_e + s S_e) de ,     dF = R dX + R_e de                                          (E16)
 
 in `exp(s tau)`. Contacts stay closed while their points travel. Petals that stick to each other add to `J`.
 """
@@ -19,8 +19,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.point_contacts import PointContacts
-from petalfoil.equilibrium.small_motion import AT_POINTS
+from petalfoil.equilibrium.small_motion import ElementEquilibrium
 from petalfoil.solvers.reduced_model import MovedSystem
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.coupled import CoupledProblem
@@ -31,18 +30,18 @@ Values = NDArray[Any]
 
 
 @dataclass(frozen=True)
-class PointMotion:
-    """The system about one equilibrium with contact points, whatever the frequency.
+class ElementMotion:
+    """The system about one equilibrium, whatever the frequency.
 
     Attributes
     ----------
-    contacts : PointContacts
+    contacts : ElementEquilibrium
         The equilibrium.
     sticking : (n, n) sparse or None
         What friction between petals that stick adds to the tangent (E11).
     """
 
-    contacts: PointContacts
+    contacts: ElementEquilibrium
     sticking: sp.csc_array | None = None
 
     @property
@@ -53,7 +52,7 @@ class PointMotion:
     @property
     def contact_slopes(self) -> str:
         """Where its contacts are, for people."""
-        return AT_POINTS
+        return self.contacts.contact_slopes
 
     @property
     def film_thickness(self) -> Array:
@@ -85,34 +84,34 @@ class PointMotion:
     def moved_system(self, solver: LinearSolver) -> MovedSystem:
         """The same for a reduced model; one factorisation."""
         rows = self.contacts.equations.force_rows
-        none = np.zeros((len(rows), len(rows)))
+        direct = self.contacts.equations.force_direct
         return MovedSystem(
             solve=solver.factor(self.steady).solve,
             S=self.contacts.equations.stored,
             forcing=self.forcing,
             force=(rows.T, np.zeros_like(rows.T)),
-            direct=(none, none),
+            direct=(direct, np.zeros_like(direct)),
         )
 
-    def respond(self, nu: float, solver: LinearSolver) -> PointResponse:
+    def respond(self, nu: float, solver: LinearSolver) -> ElementResponse:
         """The response at whirl ratio `nu`; one factorisation."""
         return self.growing(1j * nu, solver)
 
-    def growing(self, s: complex, solver: LinearSolver) -> PointResponse:
+    def growing(self, s: complex, solver: LinearSolver) -> ElementResponse:
         """The response to a motion in `exp(s tau)`; one factorisation."""
         steady, stored = self.forcing
         matrix = sp.csc_array(self.steady + s * self.contacts.equations.stored) if s else self.steady
         solve = solver.factor(matrix).solve
-        return PointResponse(self, solve, solve(-(steady + s * stored) if s else -steady))
+        return ElementResponse(self, solve, solve(-(steady + s * stored) if s else -steady))
 
 
 @dataclass(frozen=True)
-class PointResponse:
+class ElementResponse:
     """Response to the journal's displacement at one state and frequency.
 
     Attributes
     ----------
-    motion : PointMotion
+    motion : ElementMotion
         The state.
     solve : callable
         Unknowns from right sides, (n,) or (n, k).
@@ -120,14 +119,15 @@ class PointResponse:
         Change of the unknowns by a unit of each coordinate of the journal.
     """
 
-    motion: PointMotion
+    motion: ElementMotion
     solve: Callable[[Values], Values]
     units: Values
 
     @property
     def force_gradient(self) -> Values:
         """`dF/de` of film and contacts on the journal, (n_position, n_position), over unit of force and length [1]."""
-        return np.asarray(self.motion.contacts.equations.force_rows @ self.units)
+        equations = self.motion.contacts.equations
+        return np.asarray(equations.force_rows @ self.units + equations.force_direct)
 
     def moved(self, forces: Values) -> Values:
         """Change of the unknowns by forces on them, the journal held in place; (n, k) each."""

@@ -1,0 +1,176 @@
+"""Contact pressure that decays exponentially with the gap, on gap curves of Hermite elements (K13), (K14).
+
+    q = q_0 exp(-g / s)                                                                                (K13)
+
+is the contact of rough surfaces with exponentially distributed asperity heights of mean `s` (Greenwood and Williamson
+1966, doi:10.1098/rspa.1966.0242). For small `s` it is contact of smooth surfaces. A contact point becomes a pressure
+over the width `sqrt(s / g'')`, whatever it carries, and nothing has to be found but the pressure: no contact opens,
+closes or jumps. Gaps and pressures are sampled evenly in each element. Reactions bend their own element further, as
+those of points do (K11), which couples the samples of an element:
+
+    g = rows n + C b lam ,   lam = weight q ,   dlam = -(1 + W C b)^-1 W rows dn ,   W = lam / s         (K14)
+
+with the nodal gaps `n` of the element.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from petalfoil.mesh import hermite
+from petalfoil.physics.gap_curves import ContactPoints, Facing, GapCurves
+from petalfoil.physics.petal_elements import clamped_beam
+from petalfoil.sparsity import add_up
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+FULL_PRESSURE = 1.0
+"""`q_0`, the contact pressure at a gap of zero, over ambient pressure. Where it is ten times as much, gaps are wider by
+2.3 asperities."""
+
+NOTHING = 1e-12
+"""Stiffness of samples, over the unit of reaction over gap, below which their element has no contact."""
+
+
+@dataclass(frozen=True)
+class ContactSamples:
+    """Samples of all gap curves; the element at a root, which always lies on the bushing, has none.
+
+    Attributes
+    ----------
+    curves : GapCurves
+        The curves.
+    per_element : int
+        Samples per element.
+    unit_angle : float
+        Angle whose pressure of one is a reaction of one [rad].
+    """
+
+    curves: GapCurves
+    per_element: int
+    unit_angle: float
+
+    @cached_property
+    def _sampled(self) -> tuple[Index, Index]:
+        """Curve and element of each sampled element."""
+        curves = self.curves
+        curve = np.repeat(np.arange(len(curves.first)), curves.elements)
+        number = np.arange(len(curve)) - np.repeat(np.cumsum(curves.elements) - curves.elements, curves.elements)
+        at_root = np.array([facing is Facing.BUSHING for facing in curves.facing])[curve] & (number == 0)
+        return curve[~at_root], (curves.first[curve] + number)[~at_root]
+
+    @property
+    def element(self) -> Index:
+        """Elements that are sampled, (E,)."""
+        return self._sampled[1]
+
+    @cached_property
+    def place(self) -> Array:
+        """Places of the samples in an element, (S,)."""
+        return (np.arange(self.per_element) + 0.5) / self.per_element
+
+    @cached_property
+    def weight(self) -> Array:
+        """Reaction of a pressure of one at the samples of each element, (E, 1)."""
+        return self.curves.angle[self.element][:, None] / (self.per_element * self.unit_angle)
+
+    @cached_property
+    def columns(self) -> Index:
+        """Nodal (value, slope) pairs of each element, (E, 4)."""
+        return 2 * self.element[:, None] + np.arange(4)
+
+    @cached_property
+    def rows(self) -> Array:
+        """Gaps at the samples from the nodal pairs of their element, (E, S, 4)."""
+        rows = np.repeat(hermite.basis(self.place)[None], len(self.element), axis=0)
+        rows[:, :, 1::2] *= self.curves.angle[self.element][:, None, None]
+        return rows
+
+    @cached_property
+    def bending(self) -> Array:
+        """`b` between the samples of an element, (S, S)."""
+        return clamped_beam(self.place[:, None], self.place[None, :])
+
+    @cached_property
+    def compliance(self) -> Array:
+        """`C` of each element, (E,)."""
+        return self.curves.compliance[self.element]
+
+    def gaps(self, nodal: Array, pressure: Array) -> Array:
+        """Gaps at the samples from all nodal gaps and the pressures (E, S); (E, S)."""
+        smooth = np.einsum("esk,ek->es", self.rows, nodal[self.columns])
+        return np.asarray(smooth + self.compliance[:, None] * ((self.weight * pressure) @ self.bending))
+
+    def nodal(self, reaction: Array) -> Array:
+        """Generalised forces on the nodal gaps by reactions (E, S) of the samples; (2 n_node,)."""
+        forces = np.einsum("esk,es->ek", self.rows, reaction)
+        return add_up(self.columns.ravel(), forces.ravel(), len(self.curves.rest))
+
+    def as_points(self, pressure: Array) -> ContactPoints:
+        """One point in each element that carries load, at the centroid of its reactions."""
+        reaction = (self.weight * pressure).sum(axis=1)
+        loaded = np.flatnonzero(reaction > NOTHING * max(float(reaction.sum()), 1.0))
+        curve = self._sampled[0][loaded]
+        place = (pressure[loaded] @ self.place) / pressure[loaded].sum(axis=1)
+        position = self.element[loaded] - self.curves.first[curve] + place
+        order = np.lexsort((position, curve))
+        none = np.zeros(len(loaded), dtype=np.intp)
+        return ContactPoints(curve[order], position[order], none, reaction[loaded][order])
+
+
+@dataclass(frozen=True)
+class ContactResponse:
+    """How reactions follow nodal gaps (K14), and what is left of (K13) at the pressures given.
+
+    Attributes
+    ----------
+    samples : ContactSamples
+        The samples.
+    loaded : (L,) int array
+        Sampled elements with contact.
+    by_gaps : (L, S, 4) array
+        Loss of reaction by the nodal gaps of the element.
+    left : (L, S) array
+        Loss of reaction that the mismatch of pressure and gap asks for.
+    """
+
+    samples: ContactSamples
+    loaded: Index
+    by_gaps: Array
+    left: Array
+
+    @classmethod
+    def at(cls, samples: ContactSamples, pressure: Array, height: float, mismatch: Array) -> ContactResponse:
+        """At pressures (E, S), asperities of `height`, and the mismatch `g / s + ln(q / q_0)` (E, S)."""
+        stiffness = samples.weight * pressure / height
+        loaded = np.flatnonzero(np.max(stiffness, axis=1, initial=0.0) > NOTHING)
+        k, C = stiffness[loaded], samples.compliance[loaded]
+        coupled = np.eye(samples.per_element) + k[:, :, None] * (C[:, None, None] * samples.bending)
+        right = k[:, :, None] * samples.rows[loaded], (k * height * mismatch[loaded])[:, :, None]
+        solved = np.asarray(np.linalg.solve(coupled, np.concatenate(right, axis=2)), dtype=np.float64)
+        return cls(samples, loaded, solved[:, :, :4], solved[:, :, 4])
+
+    @cached_property
+    def stiffness(self) -> sp.csr_array:
+        """Generalised forces on the nodal gaps by these, (2 n_node, 2 n_node), symmetric."""
+        blocks = np.einsum("esk,esj->ekj", self.samples.rows[self.loaded], self.by_gaps)
+        columns, n = self.samples.columns[self.loaded], len(self.samples.curves.rest)
+        where = np.repeat(columns, 4, axis=1).ravel(), np.tile(columns, (1, 4)).ravel()
+        return sp.coo_array((blocks.ravel(), where), shape=(n, n)).tocsr()
+
+    def every(self, part: Array) -> Array:
+        """Values of the loaded elements (L, S) among all, (E, S)."""
+        out = np.zeros((len(self.samples.element), self.samples.per_element))
+        out[self.loaded] = part
+        return out
+
+    def change(self, nodal: Array) -> Array:
+        """Change of the reactions by a change of all nodal gaps, mismatch included; (E, S)."""
+        moved = np.einsum("esk,ek->es", self.by_gaps, nodal[self.samples.columns[self.loaded]])
+        return self.every(-(self.left + moved))

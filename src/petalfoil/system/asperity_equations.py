@@ -1,0 +1,161 @@
+"""Film and petals of Hermite elements with contact pressures over asperities.
+
+    wall     K w - A (P - 1) - rows^T lam = 0 ,   lam by (K13) from the gaps                           (C9)
+    film     net outflow of each cell = 0
+
+The pressures are iterated on beside deflections and film, and follow (K13) exactly in a solution.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from petalfoil.physics.asperity_contact import FULL_PRESSURE, ContactResponse, ContactSamples
+from petalfoil.physics.gap_curves import ContactPoints
+from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.point_equations import PointEquations
+
+Array = NDArray[np.float64]
+
+OPEN = 15.0
+"""Gap over the asperities from which the pressure is that of (K13) at every iterate."""
+
+
+@dataclass(frozen=True)
+class AsperityEquations:
+    """The equations at one state.
+
+    Attributes
+    ----------
+    smooth : PointEquations
+        Film and petals without contact.
+    samples : ContactSamples
+        Where contact pressures are.
+    pressure : (E, S) array
+        Contact pressures over ambient pressure.
+    height : float
+        Mean height of the asperities, over the reference length [1].
+    """
+
+    smooth: PointEquations
+    samples: ContactSamples
+    pressure: Array
+    height: float
+
+    @property
+    def problem(self) -> CoupledProblem:
+        """Speed and journal position."""
+        return self.smooth.problem
+
+    @property
+    def film_thickness(self) -> Array:
+        """At every film node, (strip, node, axial) [1]."""
+        return self.smooth.film_thickness
+
+    @property
+    def n(self) -> int:
+        """All unknowns."""
+        return self.smooth.n
+
+    @cached_property
+    def gaps(self) -> Array:
+        """Gaps at the samples, (E, S) [1]."""
+        return self.samples.gaps(self.smooth.nodal_gaps, self.pressure)
+
+    @property
+    def law(self) -> Array:
+        """Pressures of (K13) at the gaps, (E, S)."""
+        return np.asarray(FULL_PRESSURE * np.exp(-np.clip(self.gaps / self.height, -OPEN, 5.0 * OPEN)))
+
+    @property
+    def bears(self) -> NDArray[np.bool_]:
+        """Samples whose pressure is iterated on, (E, S)."""
+        return self.gaps < OPEN * self.height
+
+    @cached_property
+    def mismatch(self) -> Array:
+        """`g / s + ln(q / q_0)`, zero where (K13) holds, (E, S)."""
+        left = self.gaps / self.height + np.log(self.pressure / FULL_PRESSURE)
+        return np.where(self.bears, left, 0.0)
+
+    @cached_property
+    def contact(self) -> ContactResponse:
+        """How reactions follow the gaps."""
+        return ContactResponse.at(self.samples, self.pressure, self.height, self.mismatch)
+
+    @cached_property
+    def residual(self) -> tuple[Array, Array]:
+        """Wall and film."""
+        by_w = self.smooth.whole.curves.by_w
+        wall, film, *_ = self.smooth.residual
+        return wall - by_w.T @ self.samples.nodal(self.samples.weight * self.pressure), film
+
+    @cached_property
+    def scaled(self) -> Array:
+        """Residuals over their row scales, as without contact, then the mismatch of the law times the pressure."""
+        wall, film = self.residual
+        scales = self.smooth.row_scales
+        mismatch = self.mismatch * np.minimum(self.pressure, FULL_PRESSURE)
+        return np.concatenate([wall / scales[0], film / scales[1], mismatch.ravel()])
+
+    @property
+    def newton_residual(self) -> Array:
+        """Residual of Newton's method, with the reactions that the mismatch asks for; (n,)."""
+        wall, film = self.residual
+        by_w = self.smooth.whole.curves.by_w
+        return np.concatenate([wall + by_w.T @ self.samples.nodal(self.contact.every(self.contact.left)), film])
+
+    @cached_property
+    def steady(self) -> sp.csc_array:
+        """The tangent."""
+        by_w, n = self.smooth.whole.curves.by_w, self.n
+        contact = sp.coo_array(by_w.T @ self.contact.stiffness @ by_w)
+        among_all = sp.coo_array((contact.data, (contact.row, contact.col)), shape=(n, n))
+        return sp.csc_array(self.smooth.steady + among_all.tocsc())
+
+    @property
+    def stored(self) -> sp.csc_array:
+        """Derivative of what the film stores."""
+        return self.smooth.stored
+
+    def forcing(self, rate: float = 0.0) -> Array:
+        """Derivative of the rows by the journal's displacement, with `rate` times that of what the film stores."""
+        forcing = self.smooth.forcing(rate)
+        forcing[: self.smooth.whole.n_wall] += self._by_w_and_e
+        return forcing
+
+    @cached_property
+    def _by_w_and_e(self) -> Array:
+        """Contact forces on the petals by the journal's displacement, (n_wall, d)."""
+        curves = self.smooth.whole.curves
+        return np.asarray(curves.by_w.T @ (self.contact.stiffness @ curves.by_e))
+
+    @property
+    def force_rows(self) -> Array:
+        """Derivative of the force on the journal by the unknowns, (d, n)."""
+        rows = self.smooth.force_rows
+        rows[:, : self.smooth.whole.n_wall] -= self._by_w_and_e.T
+        return rows
+
+    @property
+    def force_direct(self) -> Array:
+        """Derivative of the force on the journal by its displacement, unknowns held, (d, d)."""
+        by_e = self.smooth.whole.curves.by_e
+        return np.asarray(-by_e.T @ (self.contact.stiffness @ by_e))
+
+    @property
+    def force(self) -> Array:
+        """Force of film and contacts on the journal over the unit of force, (d,)."""
+        by_e = self.smooth.whole.curves.by_e
+        contact = by_e.T @ self.samples.nodal(self.samples.weight * self.pressure)
+        return np.asarray(self.smooth.force + contact)
+
+    @property
+    def points(self) -> ContactPoints:
+        """One point for the contact in each element."""
+        return self.samples.as_points(self.pressure)
