@@ -234,6 +234,19 @@ def test_a_point_of_a_map_opens_its_case(page: Page) -> None:
     page.wait_for_function("document.querySelector('[aria-label^=\"petals.thickness \"]').value === '190 µm'")
 
 
+def test_a_worker_that_is_killed_is_told_and_the_page_goes_on(page: Page, studio: Studio) -> None:
+    page.locator(".table-of-case", has_text="model").last.locator(".q-item").first.click()
+    page.get_by_label("kind", exact=True).first.click()
+    page.get_by_role("option", name="3d").click()
+    page.get_by_text("first answer, coarse 2-D").wait_for()
+    for worker in studio.workers():
+        worker.kill()
+    page.get_by_text("the worker process ended unexpectedly").first.wait_for()
+    page.get_by_label("kind", exact=True).first.click()
+    page.get_by_role("option", name="2d").click()
+    answered(page)
+
+
 def test_the_3d_view_alone_uses_webgl(page: Page) -> None:
     assert page.locator("canvas").count() == 0
     page.get_by_role("button", name="3-D").click()

@@ -147,8 +147,8 @@ def _arrays(layout: Layout, records: Sequence[Record]) -> TextTable:
         raise ValueError("this layout has no table of arrays")
     lines = [line for record in records for line in layout.table.lines(record)]
     kept = [k for k in range(len(layout.table.columns)) if any(line[k] != ABSENT for line in lines)]
-    headings = [heading.partition("\n") for heading in layout.table.columns]
-    columns = (TextColumn(headings[k][0], headings[k][2]) for k in kept)
+    headings = list(layout.table.columns)
+    columns = (TextColumn(headings[k]) for k in kept)
     table = TextTable((*columns, TextColumn("", of_numbers=False)))
     for position, record in enumerate(records, start=1):
         table.lines += ((*(_text(line[k]) for k in kept), "") for line in layout.table.lines(record))

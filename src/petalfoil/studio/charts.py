@@ -41,7 +41,8 @@ def film_chart(found: Found, pinned: Found | None, theme: Theme) -> Chart:
         traces += _over_angle(State.of(pinned), (look, look))
     now = ({"line": {"color": theme.accent, "width": 2}}, {"line": {"color": theme.second, "width": 2}})
     traces += _over_angle(State.of(found), ({**now[0], "name": "now"}, {**now[1], "name": "now"}))
-    angle = theme.axis("bushing angle [°]", range=[0, 360], dtick=45, anchor="y2")
+    where = "bushing angle at the mid-plane [°]" if "space_pressure" in found.arrays else "bushing angle [°]"
+    angle = theme.axis(where, range=[0, 360], dtick=45, anchor="y2")
     layout = theme.layout(
         xaxis=angle,
         yaxis=theme.axis("p/p<sub>a</sub>", domain=[0.55, 1.0]),

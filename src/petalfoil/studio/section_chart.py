@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -31,6 +31,10 @@ RING = 0.05
 """Thickness of the bushing's ring over its radius."""
 BAND = 0.34
 """Height of the largest excess pressure over the drawn radius of the journal."""
+FOIL = 0.06
+"""Drawn distance of the bushing behind a foil that deflects, over the bore's radius."""
+ROUNDING = 1e-6
+"""Distance of a drawn wall from the bore, over its radius, below which it is the bore."""
 TOUCHING = 1e-6
 """Contact pressure over ambient pressure below which a reaction is rounding and not a contact."""
 CONTACTS = {
@@ -60,7 +64,12 @@ class State:
     def of(cls, found: Found) -> State:
         """A state with the default stretch."""
         bore, journal = (float(found.scalars[f"{name}_radius"]) for name in ("bushing", "journal"))
-        return cls(found, Stretch(bore, round_scale(bore, journal)))
+        plain = cls(found, Stretch(bore, round_scale(bore, journal)))
+        if "radius" in found.arrays:
+            return plain
+        outermost = float(plain.stretch.radius(plain.journal(plain.theta) + plain.array("film_thickness")).max())
+        deflects = outermost > (1.0 + ROUNDING) * bore
+        return cls(found, replace(plain.stretch, foil=outermost + FOIL * bore - bore)) if deflects else plain
 
     def scalar(self, name: str) -> float:
         """A result; NaN where there is none."""
@@ -104,8 +113,8 @@ def section_chart(found: Found, theme: Theme) -> Chart:
         Colours.
     """
     state = State.of(found)
-    traces = [*_solids(state, theme), *_petals(state, theme), *_film(state), *_contacts(state)]
-    bore, reach = state.stretch.bore, 1.2 * state.stretch.bore
+    traces = [*_solids(state, theme), *_petals(state, theme), *_film(state), *_foil(state, theme), *_contacts(state)]
+    bore, reach = state.stretch.bushing, 1.2 * state.stretch.bushing
     axis = {"visible": False, "range": [-reach, reach], "fixedrange": False}
     note = f"radial clearance drawn ×{state.stretch.scale:g}"
     layout = theme.layout(
@@ -127,7 +136,7 @@ def _polygon(points: Floats, **look: Any) -> Trace:
 
 
 def _solids(state: State, theme: Theme) -> Iterator[Trace]:
-    bore = state.stretch.bore
+    bore = state.stretch.bushing
     rim = np.stack([np.cos(CIRCLE), np.sin(CIRCLE)], axis=-1)
     ring = np.concatenate([bore * rim, (1.0 + RING) * bore * rim[::-1]])
     yield _polygon(ring, fillcolor=theme.bushing, name="bushing")
@@ -146,6 +155,15 @@ def _petals(state: State, theme: Theme) -> Iterator[Trace]:
             yield _joined(
                 outlines, fillcolor=theme.petals[side], line={"width": 0.6, "color": theme.ink}, name="petals"
             )
+
+
+def _foil(state: State, theme: Theme) -> Iterator[Trace]:
+    """The surface of a foil that deflects as a whole, such as the top foil of a bump foil bearing."""
+    if not state.stretch.foil:
+        return
+    theta = state.theta.ravel()
+    surface = state.stretch.points(state.journal(theta) + state.array("film_thickness").ravel(), theta)
+    yield _polygon(surface, fill="none", line={"width": 2, "color": theme.ink}, name="foil")
 
 
 def _joined(shapes: list[Floats], **look: Any) -> Trace:

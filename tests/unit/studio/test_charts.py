@@ -181,3 +181,16 @@ def test_axes_are_in_units_that_a_reader_likes(values: tuple[float, ...], unit: 
     words, found_size = unit_of(values, unit)
     assert words == shown
     assert_allclose(found_size, size, rtol=1e-9)
+
+
+def test_a_foil_that_deflects_stands_inside_the_bushing() -> None:
+    text = case("bump_foil").to_toml()
+    asked = Task(number=1, work=Work.ANSWER, verb="solve", case_toml=text, coarse=True)
+    answer = perform(asked, lambda part, text: None)
+    assert isinstance(answer, Found)
+    shapes = {trace["name"]: trace for trace in section_chart(answer, LIGHT)["data"] if "name" in trace}
+
+    def reach(name: str) -> float:
+        return float(np.max(np.hypot(shapes[name]["x"], shapes[name]["y"])))
+
+    assert answer.scalars["bushing_radius"] < reach("foil") < reach("bushing") / 1.05
