@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from petalfoil.analysis.coefficients import coefficients
     from petalfoil.analysis.converge import converge
     from petalfoil.analysis.curve import curve
+    from petalfoil.analysis.film_force import Film
     from petalfoil.analysis.liftoff import liftoff
     from petalfoil.analysis.orbit import orbit
     from petalfoil.analysis.runup import runup
@@ -52,6 +53,7 @@ __all__ = [
     "Case",
     "ConvergenceError",
     "DefinitionError",
+    "Film",
     "PackageError",
     "PetalfoilError",
     "StoreError",
@@ -83,6 +85,7 @@ __all__ = [
 
 _HOMES = {
     "Case": "petalfoil.case",
+    "Film": "petalfoil.analysis.film_force",
     "design_report": "petalfoil.report.case_report",
     "load": "petalfoil.results.store",
     "optimize": "petalfoil.studies.optimize",

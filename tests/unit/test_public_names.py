@@ -10,6 +10,7 @@ NAMES = {
     "Case",
     "ConvergenceError",
     "DefinitionError",
+    "Film",
     "PackageError",
     "PetalfoilError",
     "StoreError",

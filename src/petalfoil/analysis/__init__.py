@@ -48,6 +48,7 @@ What they share:
 `tilted_journal.py`   one equilibrium, its journal free to tilt or held
 `campbell.py`          branches of natural modes over speed
 `threshold.py`         the speed at which a rotor becomes unstable
+`film_force.py`        film and petals for another program's integrator
 `release.py`           where a large motion begins
 `orbit_motion.py`      a large motion, step by step
 `restart.py`           a motion that goes on from a result
