@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.interpolate import CubicSpline
 
-from petalfoil import Case, coefficients, stability
+from petalfoil import Case, coefficients, orbit, stability
 from petalfoil.analysis.campbell import BRANCHES, Branches
 from petalfoil.cli.tables import render
 from petalfoil.errors import UsageError
@@ -34,6 +35,7 @@ def over_speed():
 # ---------------------------------------------------------------------------------------------- Campbell diagram
 
 
+@pytest.mark.slow
 def test_a_point_has_the_modes_of_the_rotor_at_its_speed() -> None:
     there = over_speed().isel(point=1)
     alone = stability.record(PAIR, mass=MASS, speed=SPEEDS[1]).fields
@@ -55,6 +57,7 @@ def test_a_branch_keeps_its_form_and_its_frequency() -> None:
         assert np.all(np.diff(ds["damping_ratio"].values[:, branch]) < 0.0)
 
 
+@pytest.mark.slow
 def test_a_critical_speed_is_that_of_a_mode_there() -> None:
     ds = over_speed()
     crossed = ds["critical_speed"].values
@@ -67,6 +70,7 @@ def test_a_critical_speed_is_that_of_a_mode_there() -> None:
         assert_allclose(np.min(np.abs(modes / speed - 1.0)), 0.0, atol=2e-3)
 
 
+@pytest.mark.slow
 def test_a_diagram_that_was_stopped_goes_on(tmp_path: Path) -> None:
     save(over_speed(), tmp_path / "whole.nc")
     whole = stored(tmp_path / "whole.nc")
@@ -186,3 +190,36 @@ def test_the_critical_mass_makes_the_assembled_system_neutral() -> None:
     here = abs(determinant(neutral_rotor, speed, frequency))
     away = abs(determinant(neutral_rotor, speed, 1.01 * frequency))
     assert here < 1e-5 * away
+
+
+# ---------------------------------------------------------------------------------------------- motion
+
+
+def exponents(z: np.ndarray, step: float) -> np.ndarray:
+    """Exponents of a sum of exponentials at equal steps, by the matrix pencil."""
+    width = len(z) // 3
+    rows = np.array([z[k : k + width + 1] for k in range(len(z) - width)])
+    U, s, V = np.linalg.svd(rows[:, :-1], full_matrices=False)
+    U, s, V = U[:, :6], s[:6], V[:6]
+    return np.log(np.linalg.eigvals((U.conj().T @ rows[:, 1:] @ V.conj().T) / s[:, None])) / step
+
+
+@pytest.mark.slow
+def test_a_motion_grows_as_the_modes_say() -> None:
+    """Conical and cylindrical whirl from a disturbance of a nanometre: rates of growth to 1 %, frequencies to 0.1 %."""
+    quiet = PAIR.replace(**{"rotor.unbalance": 1e-10, "rotor.skew": 1e-9})
+    modes = stability.record(quiet, speed=7500.0 * RPM).fields
+    expected = {}
+    for form in (0, 1):
+        chosen = np.round(modes["mode_tilt"].astype(float)) == form
+        fastest = int(np.argmax(np.where(chosen, modes["mode_growth_rate"].astype(float), -np.inf)))
+        expected[form] = complex(modes["mode_growth_rate"][fastest], modes["natural_frequency"][fastest])
+    ds = orbit(quiet, revolutions=16.0, initial="balance", tolerance=1e-7)
+    time = ds["time"].values
+    instants = np.linspace(0.5 * time[-1], time[-1], 150)
+    for form, (x, y) in enumerate((("x", "y"), ("slope_x", "slope_y"))):
+        path = CubicSpline(time, ds[x].values + 1j * ds[y].values)(instants)
+        found = exponents(path - path.mean(), instants[1] - instants[0])
+        nearest = found[np.argmin(np.abs(found - expected[form]))]
+        assert_allclose(nearest.real, expected[form].real, rtol=1e-2)
+        assert_allclose(nearest.imag, expected[form].imag, rtol=1e-3)

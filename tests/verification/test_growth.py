@@ -155,6 +155,7 @@ def test_a_grown_shaft_that_does_not_fit_is_refused() -> None:
         plain(shaft={**STEEL, "bore_radius": 0.05})
 
 
+@pytest.mark.slow
 def test_the_energy_of_a_motion_counts_growth() -> None:
     """A run-up in which the journal grows onto its petals: the energy-balance error stays that of the steps."""
     hot = case("orbit_n8", **{"model.cells_per_pitch": 12, "shaft": {**STEEL, "density": 5e4}})

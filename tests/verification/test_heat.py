@@ -220,6 +220,7 @@ def test_paths_to_the_end_of_the_shaft_and_to_a_cooling_flow() -> None:
     assert_allclose(T.bushing, T.pack, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_named_gas_brings_its_properties() -> None:
     air = plain(gas={"name": "air", "ambient_pressure": "1 bar", "temperature": "20 degC"})
     gas = air.heat.of_gas(air.gas)
@@ -231,6 +232,7 @@ def test_a_named_gas_brings_its_properties() -> None:
 # ---------------------------------------------------------------------------------------------- every verb
 
 
+@pytest.mark.slow
 def test_verbs_that_visit_states_know_the_heat() -> None:
     hot = plain()
     alone = solve.record(hot).scalars
@@ -284,6 +286,7 @@ def test_the_load_capacity_is_that_of_the_warm_bearing() -> None:
 # ---------------------------------------------------------------------------------------------- warm-up
 
 
+@pytest.mark.slow
 def test_a_bearing_warms_up_on_the_way() -> None:
     """Cold at first, hotter on the way down; long enough it is as hot as in steady states."""
     hot, top = rig(), 6000.0 * RPM
@@ -297,6 +300,7 @@ def test_a_bearing_warms_up_on_the_way() -> None:
     assert quick["friction_torque"].values[-1] > quick["friction_torque"].values[0]
 
 
+@pytest.mark.slow
 def test_a_warm_shaft_starts_harder() -> None:
     """30 K above the bushing the rig needs more than twice the torque."""
     warm = rig(heat={**NETWORK, **CAPACITIES, "shaft_start_temperature": 323.15})

@@ -159,6 +159,7 @@ def test_the_moment_that_holds_a_tilt_balances_it() -> None:
     assert float(free["force_residual"]) < 1e-9
 
 
+@pytest.mark.slow
 def test_coefficients_under_a_moment_are_those_of_the_slopes_that_it_makes() -> None:
     held = balance.record(TILTED).scalars
     moment = (-float(held["moment_x"]), -float(held["moment_y"]))
@@ -170,6 +171,7 @@ def test_coefficients_under_a_moment_are_those_of_the_slopes_that_it_makes() -> 
     assert_allclose(both.fields["stiffness"], one.fields["stiffness"], rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_every_verb_knows_the_tilt() -> None:
     placed = TILTED.replace(**{"operation.load": None})
     alone = solve.record(placed).scalars
