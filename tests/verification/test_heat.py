@@ -374,6 +374,19 @@ def test_thermal_runaway_begins_where_an_independent_scan_says() -> None:
     assert_allclose(begins, 0.5 * (low + high), rtol=1e-2)
 
 
+@pytest.mark.slow
+def test_the_speed_of_a_runaway_under_load_parts_steady_from_unsteady() -> None:
+    hot = rig()
+    with pytest.raises(
+        ThermalRunawayError, match=r"no steady temperature above \d+ rpm under 46.4 N; at 70000 rpm"
+    ) as it:
+        balance(hot, speed=70000.0 * RPM)
+    begins = float(str(it.value).split("above ")[1].split(" rpm")[0]) * RPM
+    assert bool(balance(hot, speed=0.99 * begins)["converged"])
+    with pytest.raises(ThermalRunawayError):
+        balance(hot, speed=1.01 * begins)
+
+
 # ---------------------------------------------------------------------------------------------- refusals
 
 

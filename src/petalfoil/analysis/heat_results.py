@@ -30,8 +30,8 @@ class HeatResults:
     heat_balance_error: float
 
 
-def with_heat(case: Case, found: Solution) -> Solution:
-    """The equilibrium with its heat network, where the case has one.
+def with_heat(case: Case, found: Solution, *, gradually: bool = True) -> Solution:
+    """The equilibrium with its heat network, where the case has one; see `heated`.
 
     Raises
     ------
@@ -39,7 +39,7 @@ def with_heat(case: Case, found: Solution) -> Solution:
         There is no steady temperature.
     """
     network = HeatNetwork.of(case)
-    return found if network is None else heated(found, network)
+    return found if network is None else heated(found, network, gradually=gradually)
 
 
 def warm_up_step(case: Case, found: Solution, before: Temperatures, step: float) -> Solution:

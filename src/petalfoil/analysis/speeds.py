@@ -41,12 +41,15 @@ class SpeedLine:
         The last balance.
     temperatures : Temperatures or None
         The last temperatures of a heat network: those before the next step of a warm-up.
+    gradually : bool
+        Raise the friction power gradually where Newton's method does not lead from the last temperatures to the next.
     """
 
     case: Case
     load: tuple[float, float]
     known: Solution | None = None
     temperatures: Temperatures | None = None
+    gradually: bool = True
     base: CoupledProblem = field(init=False)
 
     def __post_init__(self) -> None:
@@ -73,7 +76,7 @@ class SpeedLine:
         else:
             found = rebalance(self.known, problem.at(temperatures=warm), load)
         if after is None or warm is None:
-            self.known = with_heat(self.case, found)
+            self.known = with_heat(self.case, found, gradually=self.gradually)
         else:
             self.known = warm_up_step(self.case, found, warm, after)
         self.temperatures = self.known.problem.temperatures

@@ -44,7 +44,7 @@ def beyond_thermal_limit(case: Case, load: Vector | None, failure: ThermalRunawa
     least = f"at any speed down to {speed * RPM / 2**HALVINGS:.0f} rpm"
     begins = f"{f'above {limit * RPM:.0f} rpm' if limit > 0.0 else least} {where}"
     return ThermalRunawayError(
-        f"no steady temperature {begins}; asked for {speed * RPM:.0f} rpm, where {failure}",
+        f"no steady temperature {begins}; at {speed * RPM:.0f} rpm {str(failure).partition(': ')[2]}",
         history=failure.history,
         advice=failure.advice,
     )
@@ -70,12 +70,13 @@ def under(case: Case, load: Vector) -> Steady:
     line = SpeedLine(case, load)
 
     def steady(speed: float) -> bool:
-        known = line.known
+        known, warm = line.known, line.temperatures
+        line.gradually = known is None
         try:
             line.at(speed)
         except ConvergenceError as failure:
             current_run().note("thermal limit", outcome=str(failure))
-            line.known = known
+            line.known, line.temperatures = known, warm
             return False
         return True
 

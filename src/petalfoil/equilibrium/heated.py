@@ -147,8 +147,10 @@ class HeatedEquations(ContactEquations):
         return StepVerdict.GO_ON if step.number + 1 < options.steps else StepVerdict.RENEW
 
 
-def heated(known: Solution, network: HeatNetwork) -> Solution:
+def heated(known: Solution, network: HeatNetwork, *, gradually: bool = True) -> Solution:
     """The equilibrium with the temperatures of its heat network, from an equilibrium at other ones.
+
+    From a neighbour with nearly the same temperatures nothing is gained by raising the power `gradually`.
 
     Raises
     ------
@@ -156,9 +158,9 @@ def heated(known: Solution, network: HeatNetwork) -> Solution:
         It has no steady temperature.
     """
     found = warmed(known, network)
-    if found is None:
-        found = raised(known, network)
-    return found
+    if found is None and not gradually:
+        raise runaway(known, network, 0.0)
+    return found or raised(known, network)
 
 
 def warmed(known: Solution, network: HeatNetwork) -> Solution | None:
