@@ -27,7 +27,7 @@ from petalfoil.walls import element_pack, wall_kind
 from tests.cases import case
 from tests.contract.taylor import assert_tangent
 from tests.random_packages import random_case
-from tests.verification.test_contact_slopes import BEARINGS, TURBOCHARGER, apart
+from tests.verification.test_contact_slopes import BEARINGS, TURBOCHARGER, apart, walk
 
 Array = NDArray[np.float64]
 
@@ -114,6 +114,17 @@ def test_slopes_on_the_default_grid_are_those_on_a_finer_one(name: str) -> None:
             found.append(impedance(motion, 0.0, bearing.operation.speed))
     assert apart(found[0][0], found[1][0]) <= 1e-3
     assert apart(found[0][1], found[1][1]) <= 5e-3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["turbocharger", STRETCHES])
+def test_stiffness_is_smooth_along_a_sweep(name: str) -> None:
+    """In 40 steps of 0.1 um it strays by less than 1e-5 from a quintic."""
+    found, speed = walk(BEARINGS[name], 40, 0.1e-6), BEARINGS[name].operation.speed
+    with running():
+        K = np.array([impedance(elastic(BEARINGS[name], answer), 0.0, speed)[0][1, 1] for answer in found])
+    place = np.linspace(-1.0, 1.0, len(K))
+    assert np.max(np.abs(K - np.polyval(np.polyfit(place, K, 5), place))) <= 1e-5 * np.mean(K)
 
 
 def test_a_result_says_where_its_contacts_are() -> None:
