@@ -7,6 +7,9 @@ from collections.abc import Iterator
 from enum import StrEnum
 from typing import Annotated, ClassVar
 
+from pydantic import field_validator
+
+from petalfoil.case.metals import Metal, metal_of
 from petalfoil.case.number_fields import Quantity
 from petalfoil.case.problems import Problem
 from petalfoil.case.wall_tables import WallTable
@@ -67,6 +70,12 @@ class BumpFoil(WallTable):
         ]
         | None
     ) = None
+    material: str | None = None
+    """Metal of bumps and top foil by name, in place of its modulus and Poisson's ratio."""
+    metal_temperature: Annotated[
+        float, Quantity(unit="K", meaning="temperature of the foil's metal", symbol="T_m", above=0.0, at_most=2000.0)
+    ] = 293.15
+    """Of effect on the modulus of a material."""
     youngs_modulus: (
         Annotated[float, Quantity(unit="Pa", meaning="Young's modulus", symbol="E_y", above=0.0, at_most=1e13)] | None
     ) = None
@@ -85,15 +94,33 @@ class BumpFoil(WallTable):
             return math.inf
         return self.bump_half_length * math.tan(0.5 * self.bump_half_angle)
 
+    @property
+    def metal(self) -> Metal | None:
+        """What is known of the material; None without one."""
+        return None if self.material is None else metal_of(self.material)
+
+    @property
+    def elastic(self) -> tuple[float, float]:
+        """Young's modulus [Pa] and Poisson's ratio of the foil, of its material or as given; nan where neither is."""
+        if self.metal is not None:
+            return self.metal.youngs_modulus(self.metal_temperature), self.metal.poisson_ratio
+        given = self.youngs_modulus, self.poisson_ratio
+        return math.nan if given[0] is None else given[0], math.nan if given[1] is None else given[1]
+
     def rigidity(self, thickness: float) -> float:
         """Bending stiffness of foil of a thickness, `E_y t^3 / (12 (1 - nu^2))` [N m]; nan without its metal."""
-        if self.youngs_modulus is None or self.poisson_ratio is None:
-            return math.nan
-        return self.youngs_modulus * thickness**3 / (12.0 * (1.0 - self.poisson_ratio**2))
+        modulus, poisson_ratio = self.elastic
+        return modulus * thickness**3 / (12.0 * (1.0 - poisson_ratio**2))
+
+    @field_validator("material")
+    @classmethod
+    def _is_known(cls, material: str | None) -> str | None:
+        return None if material is None else metal_of(material).name
 
     def problems(self) -> Iterator[Problem]:
         """Yield what keeps the stiffness of the foil from being known, or gives it twice."""
         given = [key for key in (*STRIP, "bump_half_angle") if getattr(self, key) is not None]
+        yield from self._metal_problems()
         either = "foundation_stiffness alone, or the strip: " + ", ".join(STRIP)
         metal = {"youngs_modulus", "poisson_ratio"}
         if self.foundation_stiffness is not None:
@@ -106,6 +133,8 @@ class BumpFoil(WallTable):
         else:
             needed, held = STRIP, self.feet is Feet.HELD and self.bump_half_angle is None
         for key in needed:
+            if self.material is not None and key in metal:
+                continue
             if getattr(self, key) is None:
                 why = "a top foil bends by it" if self.foundation_stiffness is not None else either
                 yield self._problem(key, f"is missing; expected {why}", None, why)
@@ -114,6 +143,12 @@ class BumpFoil(WallTable):
             yield self._problem("feet", f"'held' has no stiffness here; {need}", self.feet.value, need)
         elif self.bump_pitch is not None and self.bump_half_length is not None:
             yield from self._pitch_problems(self.bump_pitch, 2.0 * self.bump_half_length)
+
+    def _metal_problems(self) -> Iterator[Problem]:
+        for key in ("youngs_modulus", "poisson_ratio"):
+            if self.material is not None and getattr(self, key) is not None:
+                text = f"is given beside {self.section}.material = {self.material!r}; allowed: one of them"
+                yield self._problem(key, text, getattr(self, key), "a material or numbers")
 
     def _pitch_problems(self, pitch: float, chord: float) -> Iterator[Problem]:
         if pitch < chord:

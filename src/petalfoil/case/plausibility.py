@@ -204,16 +204,17 @@ def _unbalance(case: Case) -> Iterator[str]:
 
 
 def _metal(case: Case) -> Iterator[str]:
-    metal = None if case.petals is None else case.petals.metal
-    if case.petals is None or metal is None:
-        return
-    (low, high), temperature = metal.range, case.petals.metal_temperature
-    if not low <= temperature <= high:
-        yield (
-            f"petals.metal_temperature: the modulus of {metal.name} is known from {low - 273.15:.0f} to "
-            f"{high - 273.15:.0f} °C, not at {temperature - 273.15:.0f} °C: that of the nearer end is taken; give "
-            "petals.youngs_modulus and petals.poisson_ratio instead of a material"
-        )
+    for table in (case.petals, case.bump_foil):
+        metal = None if table is None else table.metal
+        if table is None or metal is None:
+            continue
+        (low, high), temperature = metal.range, table.metal_temperature
+        if not low <= temperature <= high:
+            yield (
+                f"{table.section}.metal_temperature: the modulus of {metal.name} is known from {low - 273.15:.0f} to "
+                f"{high - 273.15:.0f} °C, not at {temperature - 273.15:.0f} °C: that of the nearer end is taken; give "
+                f"{table.section}.youngs_modulus and {table.section}.poisson_ratio instead of a material"
+            )
 
 
 def _measured_shape(case: Case) -> Iterator[str]:

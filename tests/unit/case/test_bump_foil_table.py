@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from petalfoil.case import BumpFoil, Case
+from petalfoil.case import BumpFoil, Case, warnings_of
 from petalfoil.errors import DefinitionError
 from petalfoil.walls.bump_foil import foundation_stiffness
 from tests.cases import case
@@ -66,6 +66,21 @@ def test_what_does_not_make_a_foil_is_refused(table: dict[str, object], key: str
         with_foil(**table)
     assert key in str(refusal.value)
     assert words in str(refusal.value)
+
+
+def test_a_material_gives_modulus_and_poisson_ratio() -> None:
+    metal = {"youngs_modulus", "poisson_ratio"}
+    shape = {key: value for key, value in STRIP.items() if key not in metal}
+    named = with_foil(**shape, material="X-750", metal_temperature="279.5 degC")
+    typed = BumpFoil(**shape, youngs_modulus="199 GPa", poisson_ratio=0.29)
+    assert foundation_stiffness(named.bump_foil) == pytest.approx(foundation_stiffness(typed), rel=1e-12)
+    assert Case.from_toml(named.to_toml()) == named
+    with pytest.raises(DefinitionError, match=r"is given beside bump_foil\.material = 'inconel x-750'"):
+        with_foil(**STRIP, material="X-750")
+    with pytest.raises(DefinitionError, match=r"Did you mean 'inconel x-750'"):
+        with_foil(**shape, material="inconel x-75")
+    (told,) = warnings_of(named.replace(**{"bump_foil.metal_temperature": "600 degC"}), {})
+    assert told.startswith("bump_foil.metal_temperature: ")
 
 
 def test_a_journal_may_be_displaced_beyond_the_clearance_of_a_foil_that_gives_way() -> None:
