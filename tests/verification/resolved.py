@@ -120,12 +120,16 @@ def change_of(derivatives: DerivativesOf, variation: Variation) -> float:
 def scale_of(derivatives: DerivativesOf, name: str, gap_change: float) -> float:
     """What a change of a result is compared with.
 
-    Forces: the largest of them. Lengths: themselves, and what the parameter does to the gaps of the free wall
-    `gap_change` [m], from which a film that keeps its thickness is what is left. Angles and fractions: one.
+    Forces: the largest of them; moments: that times the length. Lengths: themselves, and what the parameter does to the
+    gaps of the free wall, `gap_change` [m], from which a film that keeps its thickness is what is left. Angles and
+    fractions: one.
     """
     values, unit = derivatives.values, SCALARS[name].units
+    largest = max(abs(value) for other, value in values.items() if SCALARS[other].units == "N")
     if unit == "N":
-        return max(abs(value) for other, value in values.items() if SCALARS[other].units == "N")
+        return largest
+    if name.startswith("moment"):
+        return largest * derivatives.case.bearing.length
     if unit == "m":
         return max(abs(values[name]), gap_change)
     if name == "knudsen_number":

@@ -127,6 +127,26 @@ def test_all_parameters_of_the_papers_bearings(bearing: str, load: float | None)
     assert_exact(derivatives_of(of if load is None else loaded(of, load)))
 
 
+PAIR = {"mass": "2 kg", "span": "0.1 m", "transverse_inertia": 0.01, "polar_inertia": 0.002}
+OTHERS: dict[str, Case] = {
+    "bump foil": case("bump_foil", **{"model.cells_per_pitch": 12, "model.axial_cells": 4}),
+    "two bearings": case("plain_journal", **{"model.cells_per_pitch": 12, "model.axial_cells": 4}, rotor=PAIR),
+    "moment": case(
+        "plain_journal", **{"model.cells_per_pitch": 12, "model.axial_cells": 4, "operation.moment": (0.0, 0.01)}
+    ),
+    "continuous edges": case(**{"model.cells_per_pitch": 8, "model.edges": "continuous"}),
+}
+"""Bearings beside the paper's, each with equations of its own."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", OTHERS)
+def test_other_walls_and_shafts_under_a_load(name: str) -> None:
+    derivatives = derivatives_of(loaded(OTHERS[name], 20.0))
+    paths = parameters_with_effect(derivatives.case, under_load=True)
+    assert_exact(derivatives, [path for path in paths if path != "bump_foil.top_foil_thickness"])
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("number", range(30))
 def test_thirty_random_bearings(number: int) -> None:

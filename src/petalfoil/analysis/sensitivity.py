@@ -16,7 +16,7 @@ from petalfoil.analysis.liftoff_derivatives import speed_derivatives
 from petalfoil.analysis.operating_point import Vector, applied_load, at, at_position, under_load
 from petalfoil.analysis.records import asked_position, effort, record_of
 from petalfoil.analysis.runs import Points
-from petalfoil.analysis.sensitivity_table import LAYOUT, RESULTS, Line, Source, lines_of, ordered
+from petalfoil.analysis.sensitivity_table import LAYOUT, RESULTS, Line, Source, lines_of, ordered, rounding_of
 from petalfoil.analysis.solve import placed
 from petalfoil.analysis.words import Choice, Names, known
 from petalfoil.case import Case
@@ -204,7 +204,7 @@ def _points(case: Case, asked: Asked, limit: float, progress: Progress | None) -
             lines += lines_of(path, sources, asked.step)
             if progress is not None:
                 progress(number / len(asked.paths), f"sensitivity: {path}")
-        felt = [line for line in lines if line.row.is_felt or not asked.all_of_them]
+        felt = [line for line in lines if not asked.all_of_them or is_felt(case, line)]
         cost = effort(run.seconds)
         records = [
             record_of("sensitivity", case, line.row, *state_of(case, asked.verb), cost, line.outcome)
@@ -214,6 +214,11 @@ def _points(case: Case, asked: Asked, limit: float, progress: Progress | None) -
     if records and silent:
         records[-1] = replace(records[-1], remarks=(f"without effect: {', '.join(silent)}",))
     yield from records
+
+
+def is_felt(case: Case, line: Line) -> bool:
+    """Whether a line tells of an effect beyond rounding."""
+    return line.row.is_felt(rounding_of(case, line.row.quantity))
 
 
 def state_of(case: Case, verb: str) -> tuple[object, ...]:

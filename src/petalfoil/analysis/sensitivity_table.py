@@ -9,13 +9,14 @@ from typing import Protocol
 
 from petalfoil.analysis.derivatives import Derivative, Results
 from petalfoil.analysis.variation import Variation
+from petalfoil.case import Case
 from petalfoil.case.parameters import Parameter
-from petalfoil.errors import ConvergenceError
+from petalfoil.errors import ConvergenceError, DefinitionError, PetalfoilError
 from petalfoil.results.layout import Series
 from petalfoil.results.parts import Outcome
 from petalfoil.results.record import Record
 from petalfoil.results.schema import SCALARS, DataType, Role, Shown, Variable
-from petalfoil.results.summary import cell
+from petalfoil.results.summary import ROUNDING, cell
 from petalfoil.units import format_quantity
 
 FELT = 1e-7
@@ -117,17 +118,31 @@ class Row:
         size = abs(self.effect if math.isnan(self.relative_effect) else self.relative_effect)
         return -1.0 if math.isnan(size) else size
 
-    @property
-    def is_felt(self) -> bool:
-        """Whether the parameter has an effect beyond rounding, or none is known."""
+    def is_felt(self, rounding: float) -> bool:
+        """Whether the parameter has an effect beyond rounding, or none is known.
+
+        `rounding` is what is nothing but rounding of the result, in its unit.
+        """
         if math.isnan(self.effect):
             return True
-        return abs(self.effect) > FELT * abs(self.parameter_change / self.parameter_size * self.quantity_value)
+        least = FELT * abs(self.parameter_change / self.parameter_size * self.quantity_value)
+        return abs(self.effect) > max(least, rounding)
 
     @property
     def parameter_size(self) -> float:
         """Magnitude of the parameter; its change where it is zero."""
         return abs(self.parameter_value) or abs(self.parameter_change)
+
+
+def rounding_of(case: Case, quantity: str) -> float:
+    """Forces and displacements below this are rounding: that of ambient pressure on the bearing, and of its radius."""
+    bearing = case.bearing
+    pressed = case.gas.ambient_pressure * bearing.journal_radius * bearing.length
+    return {"N": pressed, "m": bearing.journal_radius}.get(SCALARS[quantity].units, 0.0) * LOST * ROUNDING
+
+
+LOST = 100.0
+"""Digits that a difference quotient loses of a result that is zero, as a factor."""
 
 
 @dataclass(frozen=True)
@@ -140,16 +155,16 @@ class Line:
 
 def lines_of(path: str, sources: Mapping[str, Source], step: float) -> list[Line]:
     """The rows of one parameter for each result; where a result has no derivative, its row says why."""
-    lines, done = [], dict[int, Derivative | ConvergenceError]()
+    lines, done = [], dict[int, Derivative | PetalfoilError]()
     for quantity, source in sources.items():
         variation = source.variation(path)
         if id(source) not in done:
             try:
                 done[id(source)] = source.along(variation)
-            except ConvergenceError as failure:
+            except (ConvergenceError, DefinitionError) as failure:  # the case may not allow the change alone
                 done[id(source)] = failure
         row, found = asked_row(variation, (quantity, source.values[quantity]), step), done[id(source)]
-        if isinstance(found, ConvergenceError):
+        if isinstance(found, PetalfoilError):
             lines.append(Line(row, Outcome(converged=False, status=f"not converged: {found}")))
         else:
             lines.append(
@@ -161,6 +176,7 @@ def lines_of(path: str, sources: Mapping[str, Source], step: float) -> list[Line
 def asked_row(variation: Variation, result: tuple[str, float], step: float) -> Row:
     """What a row tells of its parameter and its result."""
     parameter, (quantity, value) = variation.parameter, result
+    value = value if abs(value) > rounding_of(variation.case, quantity) else 0.0
     change = step * (variation.value or variation.size)
     return Row(
         parameter=parameter.path,

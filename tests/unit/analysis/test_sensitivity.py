@@ -57,6 +57,23 @@ def test_the_figure_has_a_panel_for_each_result(under_load: xr.Dataset) -> None:
     assert_allclose(longest, 100.0 * np.abs(under_load["relative_effect"].values).max(), rtol=1e-12)
 
 
+def test_a_result_that_is_zero_by_symmetry_has_no_relative_effect() -> None:
+    centred = SMALL.replace(**{"operation.eccentricity": (0.0, 0.0)})
+    with pytest.warns(UserWarning, match="without effect: .*petals.thickness"):
+        ds = petalfoil.sensitivity(centred, of="force_y")
+    assert "operation.eccentricity.y" in ds["parameter"].values
+    assert "petals.thickness" not in ds["parameter"].values
+    assert np.all(np.isnan(ds["relative_effect"].values))
+
+
+def test_a_parameter_that_cannot_vary_alone_says_why() -> None:
+    bumps = case("bump_foil", **{"model.cells_per_pitch": 12, "model.axial_cells": 4})
+    ds = petalfoil.sensitivity(bumps, "bump_foil.top_foil_thickness, gas.viscosity")
+    status = dict(zip(ds["parameter"].values, ds["status"].values, strict=True))
+    assert status["gas.viscosity"] == "converged"
+    assert "a top foil bends by it" in status["bump_foil.top_foil_thickness"]
+
+
 def test_a_parameter_that_is_zero_has_an_absolute_change() -> None:
     ds = petalfoil.sensitivity(SMALL, "petals.first_root", of="bearing_force")
     assert str(ds["change_text"].values[0]).endswith("°")
