@@ -185,7 +185,7 @@ def _options(words: str) -> str:
 
 
 def _variable(name: str, variable: Variable, dims: Iterable[str]) -> tuple[str, ...]:
-    return f"`{name}`", ", ".join(dims), variable.units or "–", variable.long_name
+    return f"`{name}`", ", ".join(dims), symbol_text(variable.units) or "–", variable.long_name
 
 
 class ResultVariables(Written):
@@ -205,7 +205,7 @@ class ResultVariables(Written):
         kind = self.arguments[0]
         chosen = self.KINDS.get(kind) or {n: v for n, v in schema.SCALARS.items() if v.role.value == kind}
         rows = [
-            (f"`{name}`", symbol_text(v.symbol), v.units or "–", ", ".join(v.dims), v.long_name)
+            (f"`{name}`", symbol_text(v.symbol), symbol_text(v.units) or "–", ", ".join(v.dims), v.long_name)
             for name, v in chosen.items()
         ]
         yield from table(("name", "symbol", "unit", "dimensions", "meaning"), rows)

@@ -196,7 +196,8 @@ def _limits(request: Request) -> Iterator[str]:
             "The film is that of an infinitely long bearing, without side leakage: bearing forces are upper bounds, "
             'far above those of a bearing shorter than its diameter. `model.kind = "3d"` computes the finite length.'
         )
-    yield "The gas is ideal and isothermal, the flow laminar and without inertia."
+    known = "the gas temperature that the case states" if case.heat is None else "a temperature from the heat network"
+    yield f"The gas is ideal, the film isothermal at {known}, the flow laminar and without inertia."
     if not case.model.slip:
         yield "The gas does not slip at the walls (model.slip)."
     if wall_kind(case).can(Capability.RUBBING):
@@ -204,7 +205,7 @@ def _limits(request: Request) -> Iterator[str]:
             "Petals are thin elastic shells without mass. Sliding along each other dissipates nothing beyond what "
             "surface.petal_friction says, so damping is underestimated."
         )
-        yield "All petals are alike, as the case describes them; manufacturing scatter is not in these numbers."
+        yield "Petals are as the case describes them; the scatter of manufacture is not in these numbers."
     yield "Surfaces are smooth down to the contact film thickness; journal rubbing contributes torque only."
     yield "The rotor is rigid."
 
