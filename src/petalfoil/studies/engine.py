@@ -17,7 +17,7 @@ from typing import Any, Protocol
 import psutil
 
 from petalfoil.errors import UsageError
-from petalfoil.studies.question import DIED, Outcome, Task, answered
+from petalfoil.studies.question import DIED, Outcome, Task, analysis_of, answered
 
 AHEAD = 3
 """Tasks for each worker that wait on the cluster: the next one is there when a worker has finished, and no more of the
@@ -100,10 +100,13 @@ class OnCluster:
         from distributed import as_completed
 
         waiting, running = iter(tasks), {}
+        first = list(islice(waiting, AHEAD * self.workers))
+        for verb in {task.question.verb for task in first}:
+            self.client.run(_load, verb)
         completed = as_completed()
         before, own = self._times(), time.process_time()
         try:
-            for task in islice(waiting, AHEAD * self.workers):
+            for task in first:
                 running[name_of(task)] = task
                 completed.add(self._submit(task))
             while running:
@@ -130,6 +133,11 @@ class OnCluster:
 def name_of(task: Task) -> str:
     """Name of a task on the cluster, which keeps a record for good of each first part of a name that it meets."""
     return f"case-{task.key}"
+
+
+def _load(verb: str) -> None:
+    """Import an analysis, so that the first case does not wait for it."""
+    analysis_of(verb)
 
 
 def _process_time() -> tuple[int, float]:
