@@ -59,6 +59,35 @@ class Audits:
     energy_balance_error: float
 
 
+class StepFigures:
+    """Figures of every step: one number of each name, eight bytes each in arrays that double as they fill."""
+
+    def __init__(self) -> None:
+        self._names: tuple[str, ...] = ()
+        self._values = np.zeros((0, 0))
+        self._count = 0
+
+    def append(self, row: dict[str, float]) -> None:
+        """Add the figures of a step, which has the same names as those before."""
+        if not self._names:
+            self._names, self._values = tuple(row), np.empty((FRAMES, len(row)))
+        if self._count == len(self._values):
+            self._values = np.concatenate([self._values, np.empty_like(self._values)])
+        self._values[self._count] = [row[name] for name in self._names]
+        self._count += 1
+
+    def __len__(self) -> int:
+        return self._count
+
+    def __getitem__(self, step: int) -> dict[str, float]:
+        """Figures of one step."""
+        return dict(zip(self._names, self._values[: self._count][step].tolist(), strict=True))
+
+    def column(self, name: str) -> Array:
+        """One figure of all steps, (step,)."""
+        return self._values[: self._count, self._names.index(name)].copy()
+
+
 @dataclass
 class Trace:
     """Everything kept of one motion.
@@ -67,7 +96,7 @@ class Trace:
     ----------
     case, system
         The bearing and its rotor, and the same in the units of the problem.
-    rows : list
+    rows : StepFigures
         Figures of every step, SI.
     frames : deque
         The latest pictures: instants at equal angles of the shaft.
@@ -77,7 +106,7 @@ class Trace:
 
     case: Case
     system: RotorBearing
-    rows: list[dict[str, float]] = field(default_factory=list)
+    rows: StepFigures = field(default_factory=StepFigures)
     frames: deque[Instant] = field(default_factory=lambda: deque(maxlen=FRAMES))
     last: Instant | None = None
     _due: float = -np.inf
@@ -190,7 +219,7 @@ class Trace:
 
     def column(self, name: str) -> Array:
         """One figure over all steps."""
-        return np.array([row[name] for row in self.rows])
+        return self.rows.column(name)
 
     def histories(self) -> tuple[Array, Named]:
         """Time [s] and everything over it."""
