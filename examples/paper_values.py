@@ -39,7 +39,7 @@ written by
 
 A value is grid-converged by Richardson extrapolation from the last three of the nested grids above each table, with its
 error bar. **Bold**: the observed order of convergence is within 0.5 (`CREDIBLE`) of the order of the method, 2
-(`DECLARED_ORDER`), and the bar is 1.25 (`richardson.SAFETY`) times the distance of the finest grid from the value.
+(`DECLARED_ORDER`), and the bar is 1.75 (`richardson.SAFETY`) times the distance of the finest grid from the value.
 Plain: no such order is observed, because contacts begin at nodes and jump as grids are refined; the bar
 is 3 (`SUSPICION`) times the largest distance that the differences between the grids allow. `petalfoil converge` follows
 the same rules; see [analysis/richardson.py](../src/petalfoil/analysis/richardson.py).

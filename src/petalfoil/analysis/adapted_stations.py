@@ -27,8 +27,9 @@ from petalfoil.system.loaded import load_of
 
 Array = NDArray[np.float64]
 
-FIRST_CELLS, FIRST_AXIAL = 24, 16
-"""Grid of the coarse solution: a tenth of the time of the default grid."""
+FIRST_CELLS, FIRST_AXIAL = 12, 16
+"""Grid of the coarse solution, a twelfth of the time of the default grid. From 24 × 16 cells stations are the same
+within 2 %."""
 
 FLOOR = 0.3
 """Least density over the mean of what asks for stations. On 24 cells, 8 petals at 200 and 280 um: minimum film within

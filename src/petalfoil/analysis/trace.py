@@ -60,7 +60,7 @@ class Audits:
 
 
 class StepFigures:
-    """Figures of every step: one number of each name, eight bytes each in arrays that double as they fill."""
+    """Results of every step: one number of each name, eight bytes each in arrays that double as they fill."""
 
     def __init__(self) -> None:
         self._names: tuple[str, ...] = ()
@@ -68,7 +68,7 @@ class StepFigures:
         self._count = 0
 
     def append(self, row: dict[str, float]) -> None:
-        """Add the figures of a step, which has the same names as those before."""
+        """Add the numbers of a step, which have the same names as those before."""
         if not self._names:
             self._names, self._values = tuple(row), np.empty((FRAMES, len(row)))
         if self._count == len(self._values):
@@ -80,11 +80,11 @@ class StepFigures:
         return self._count
 
     def __getitem__(self, step: int) -> dict[str, float]:
-        """Figures of one step."""
+        """Numbers of one step."""
         return dict(zip(self._names, self._values[: self._count][step].tolist(), strict=True))
 
     def column(self, name: str) -> Array:
-        """One figure of all steps, (step,)."""
+        """One of the numbers over all steps, (step,)."""
         return self._values[: self._count, self._names.index(name)].copy()
 
 

@@ -12,6 +12,7 @@ import petalfoil
 from petalfoil.analysis.accuracy import finer, remark_on, shortfalls, size_of
 from petalfoil.analysis.arguments import Quantity
 from petalfoil.analysis.error_bars import WithErrorBars
+from petalfoil.analysis.richardson import SAFETY
 from petalfoil.analysis.runs import Single
 from petalfoil.case import Case
 from petalfoil.errors import ConvergenceError, UsageError
@@ -60,13 +61,13 @@ def test_without_an_accuracy_the_grid_stays() -> None:
     assert not record.remarks
 
 
-@pytest.mark.parametrize(("accuracy", "grid"), [(8e-3, 256), (2e-3, 512), (1e-3, 1024)])
+@pytest.mark.parametrize(("accuracy", "grid"), [(1e-2, 256), (2.5e-3, 512), (1e-3, 1024)])
 def test_grids_are_refined_until_the_bar_is_below_and_no_further(accuracy: float, grid: int) -> None:
     record, asked = refined(accuracy)
     assert record.errors is not None
     assert cells(record) == grid
     assert sorted(asked) == sorted(set(asked))  # no grid twice
-    bar = 1.25 * 3200.0 / grid**2
+    bar = SAFETY * 3200.0 / grid**2
     assert_allclose(record.errors["bearing_force"], bar, rtol=1e-6)
     assert bar <= accuracy * float(record.scalars["bearing_force"]) < 4.0 * bar  # half the cells would not do
     assert abs(float(record.scalars["bearing_force"]) - 10.0) <= bar

@@ -16,6 +16,7 @@ from petalfoil.analysis.coefficients import coefficients
 from petalfoil.analysis.declaration import Analysis, analysis
 from petalfoil.analysis.known_verbs import forget
 from petalfoil.analysis.liftoff import liftoff
+from petalfoil.analysis.richardson import SAFETY
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.solve import solve
 from petalfoil.analysis.stability import stability
@@ -78,7 +79,7 @@ def test_a_point_gets_bars_at_the_state_that_was_asked_for(point: Analysis) -> N
     record = point.record(FLAT, "7 N", error=True)
     assert_allclose(record.scalars["bearing_force"], 7.0 + BAR, rtol=1e-14)
     assert record.errors is not None
-    assert_allclose(record.errors["bearing_force"], 1.25 * BAR, rtol=1e-6)
+    assert_allclose(record.errors["bearing_force"], SAFETY * BAR, rtol=1e-6)
     assert point.record(FLAT, "7 N").errors is None
 
 
@@ -86,7 +87,7 @@ def test_each_point_of_a_series_gets_its_own(series: Analysis) -> None:
     records = list(series.records(FLAT, error=True))
     assert [record.errors is None for record in records] == [False, True, False]
     ds = series(FLAT, error=True)
-    assert_allclose(ds["bearing_force_error"], [1.25 * BAR, np.nan, 1.25 * BAR], rtol=1e-6)
+    assert_allclose(ds["bearing_force_error"], [SAFETY * BAR, np.nan, SAFETY * BAR], rtol=1e-6)
     stored = Answer.stored(ds, series.layouts[0])
     assert [record.errors is None for record in stored.records] == [False, True, False]
     assert "±" in render(stored)
