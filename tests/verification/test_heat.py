@@ -175,6 +175,8 @@ def test_power_balances_and_the_film_is_that_of_the_case_at_these_temperatures()
     cold = solve.record(still).scalars
     for name in ("force_x", "force_y", "min_film_thickness", "power_loss", "shaft_growth", "bushing_growth"):
         assert_allclose(found[name], cold[name], rtol=1e-8)
+    longer = (T.film / 293.15) ** (0.7 + 0.5)  # mean free path
+    assert_allclose(found["knudsen_number"], 67.26e-9 * longer / float(found["min_film_thickness"]), rtol=1e-3)
     assert_allclose(found["side_leakage"], float(cold["side_leakage"]) * 293.15 / T.film, rtol=1e-8)
 
 

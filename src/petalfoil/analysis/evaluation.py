@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -59,6 +60,13 @@ class Evaluation:
     def viscosity(self) -> float:
         """Viscosity of the gas in the film [Pa s]."""
         return self.case.gas.viscosity * self.answer.problem.viscosity_ratio
+
+    @property
+    def mean_free_path(self) -> float:
+        """Mean free path of the gas in the film at ambient pressure (F8) [m]."""
+        gas, warm = self.case.gas, self.answer.problem.temperatures
+        hotter = 1.0 if warm is None else warm.film / gas.temperature
+        return gas.mean_free_path * self.answer.problem.viscosity_ratio * math.sqrt(hotter)
 
     @property
     def normal_force(self) -> float:
@@ -119,7 +127,7 @@ class Evaluation:
             min_film_thickness=thinnest,
             min_film_thickness_angle=self._bushing_angle(thin.strip, thin.phi),
             min_film_thickness_z=None if film.axial.is_2d else thin.z,
-            knudsen_number=case.gas.mean_free_path / thinnest,
+            knudsen_number=self.mean_free_path / thinnest,
             peak_pressure=high.value,
             peak_pressure_angle=self._bushing_angle(high.strip, high.phi),
             friction_torque=torque,
