@@ -15,6 +15,7 @@ from petalfoil.analysis.balance import carrier
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.fields import all_fields
+from petalfoil.analysis.heat_results import heat_results
 from petalfoil.analysis.load_limit import Capacity, Limits, LoadRay, largest_load
 from petalfoil.analysis.operating_point import at
 from petalfoil.analysis.records import asked_position, effort, geometry, position, record_of
@@ -331,7 +332,9 @@ def carried(case: Case, capacity: Capacity) -> tuple[object, ...]:
     bearing, found = case.bearing, loaded.found
     coefficient = loaded.size / (case.bearings * bearing.length * (2.0 * bearing.journal_radius) ** 2)
     coefficient /= case.operation.speed
+    warm = heat_results(case, found.answer)
     return (
+        *(() if warm is None else (warm,)),
         position(case, found.answer),
         found.forces(),
         found.film(),

@@ -112,6 +112,15 @@ def test_what_says_nothing_is_refused(bearing: Case, arguments: dict[str, object
         petalfoil.capacity(bearing, **arguments)
 
 
+@pytest.mark.slow
+def test_a_heated_bearing_tells_its_temperatures_at_the_capacity() -> None:
+    hot = case("rig_hot", **{"model.cells_per_pitch": 24})
+    found = petalfoil.capacity(hot, contact_fraction=0.01)
+    at = petalfoil.balance(hot, float(found["load_capacity"]))
+    for result in ("contact_fraction", "film_temperature", "bushing_temperature"):
+        assert float(found[result]) == pytest.approx(float(at[result]), rel=1e-5)
+
+
 def found_or_bounded(seed: int, least: float = 1.5e-6) -> str:
     """How the search on a random bearing ended; the state that it gives keeps to the limit."""
     bearing = random_case(np.random.default_rng(seed), **{"model.cells_per_pitch": 16})
