@@ -20,13 +20,13 @@ robots = pytest.importorskip("tests.studio.robot")
 
 SESSIONS = 20
 SECONDS = float(os.environ.get("PETALFOIL_STUDIO_SECONDS", "20"))
-"""How long they work; five minutes were run by hand (docs/how-to/studio.md)."""
+"""How long they work; five minutes were run by hand (docs/decisions/019)."""
 OPENS = 120.0
 """Time in which twenty pages that are opened at once have results, on a machine that others use [s]."""
 PAUSE = 4.0
 """Mean time between two changes of a session [s]."""
 MOST_A_SESSION = 15e6
-"""Memory that the server takes for a session [bytes]: measured 4 to 7 MB."""
+"""Memory that the server takes for a session [bytes]: measured 2 to 3 MB."""
 
 
 def memory(studio: Studio) -> float:

@@ -41,9 +41,11 @@ def studio(
         if find_spec("nicegui") is None:
             raise UsageError("the studio needs NiceGUI and Plotly: pip install 'petalfoil[studio]'")
         from petalfoil.studio.design import Design
-        from petalfoil.studio.server import address_of, serve
 
         design = Design.starting() if case is None else Design.from_file(case)
+
+        from petalfoil.studio.server import address_of, serve
+
         address, listening = address_of(host, port, to_network=allow_network)
         try:
             serve(design, address, listening, lambda url: emit(f"{url}\n"), browse=not no_browser)

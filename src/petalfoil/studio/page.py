@@ -88,6 +88,7 @@ class Page:
             quiet_button("", "menu", lambda: self._drawer.toggle(), "case")
             ui.label("petalfoil studio").classes("brand")
             self._title = ui.label().classes("title")
+            self._grid = ui.label().classes("status")
             ui.element("div").classes("spring")
             self._words = ui.label().classes("status").props("aria-live=polite")
             self._progress = ui.linear_progress(0.0, show_value=False).classes("progress")
@@ -174,6 +175,7 @@ class Page:
         """Draw the present state, and its numbers."""
         shown, pinned, theme = self.session.state, self.session.pinned, self._theme()
         self._results.show()
+        self._grid.set_text("" if shown is None else shown.found.grid)
         self._pin.set_text("Unpin A" if shown and pinned and pinned.toml == shown.toml else "Pin as A")
         is_space = self._view.value == "space"
         self._section_place.set_visibility(not is_space)
