@@ -20,7 +20,7 @@ robots = pytest.importorskip("tests.studio.robot")
 
 SESSIONS = 20
 SECONDS = float(os.environ.get("PETALFOIL_STUDIO_SECONDS", "20"))
-"""How long they work; five minutes were run by hand (docs/decisions/019)."""
+"""How long they work; five minutes were run by hand (docs/decisions/020)."""
 OPENS = 120.0
 """Time in which twenty pages that are opened at once have results, on a machine that others use [s]."""
 PAUSE = 4.0
