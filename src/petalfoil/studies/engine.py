@@ -30,6 +30,8 @@ START = 120.0
 """Time that workers on this machine have to begin [s]: each loads the package, on a machine that may be busy."""
 LOOK = "1s"
 """How often processes look after themselves: what they do then is overhead."""
+MESSAGES = 100
+"""Messages that each process remembers for whoever looks for a mistake; they hold tasks and outcomes."""
 RETIRE_AT = 0.95
 """Part of its memory at which a worker is ended and begun anew, as `distributed` has it by default."""
 EXTRA = "studies on several workers need the package dask: pip install 'petalfoil[studies]', or use --workers 0"
@@ -206,6 +208,7 @@ def _local(workers: int, memory: float | None) -> Iterator[Engine]:
         "distributed.admin.system-monitor.interval": LOOK,
         "distributed.scheduler.http.routes": [],  # nothing is served but the work
         "distributed.worker.http.routes": [],
+        "distributed.admin.low-level-log-length": MESSAGES,
         "distributed.admin.tick.interval": LOOK,  # 50 times a second by default, in every process
         "distributed.worker.memory.monitor-interval": LOOK,
     }
