@@ -32,8 +32,8 @@ STATIC = [{name: float(value) for name, value in row.items()} for row in table("
 DYNAMIC = [{name: float(value) for name, value in row.items()} for row in table("r3_bump_KC_LD1.csv")]
 LINK_SPRINGS = [{name: float(value) for name, value in row.items()} for row in table("r3_link_spring.csv")]
 
-QUICK = [(1.0, 0.4), (5.0, 0.8)]
-"""Bearing number and relative eccentricity of the rows of the fast suite."""
+QUICK = [(5.0, 0.8)]
+"""Bearing number and relative eccentricity of the row of the fast suite, the one that is missed by most."""
 SLOW = [pair for pair in product((1.0, 5.0), (0.2, 0.4, 0.6, 0.8)) if pair not in QUICK]
 
 
