@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.equilibrium.point_contacts import MOST_GROWTH, diverged
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import AT_ASPERITIES
 from petalfoil.physics.asperity_contact import FULL_PRESSURE, ContactSamples
@@ -98,6 +99,8 @@ def newton(equations: AsperityEquations, tolerance: float) -> tuple[AsperityEqua
         equations = renewed(equations)
         if np.max(np.abs(equations.scaled)) <= tolerance:
             return equations, steps
+        if diverged(equations.smooth.state):
+            return None, steps
         try:
             factor = current_run().film_solver.factor(equations.steady)
         except SingularMatrixError:
@@ -123,6 +126,7 @@ def stepped(equations: AsperityEquations, change: Array) -> AsperityEquations:
     length = min(
         1.0,
         POSITIVE_FRACTION * fraction_to_boundary(state.P, dP),
+        fraction_to_boundary(MOST_GROWTH * state.P, -dP),
         POSITIVE_FRACTION * fraction_to_boundary(smooth.film_thickness.ravel(), whole.film_by_w @ dw),
         max(FARTHEST / max(farthest, FARTHEST), SHORTEST),
     )

@@ -30,6 +30,13 @@ STEPS = 48
 TRUST = 0.35
 """Farthest that a point travels in a step, in elements."""
 
+MOST_GROWTH = 4.0
+"""Largest growth of a film pressure in a step, over the pressure."""
+
+FARTHEST_STATE = 1e4
+"""Film pressure over ambient pressure, and deflection over the reference film (0.1 m), past which Newton's method
+diverges."""
+
 SHORTEST = 0.1
 """Shortest step over Newton's; it is taken even if the residual does not fall."""
 
@@ -63,6 +70,16 @@ class PointContacts:
     def contact_slopes(self) -> str:
         """Where its contacts are, for people."""
         return AT_POINTS
+
+    def at(self, problem: CoupledProblem) -> PointContacts:
+        """The equilibrium of a neighbouring problem.
+
+        Raises
+        ------
+        NoPointsError
+            None was found.
+        """
+        return with_points(self.equations.whole, problem, self.equations.state)
 
 
 class NoPointsError(ArithmeticError):
@@ -109,12 +126,20 @@ def newton(equations: PointEquations, most: int) -> tuple[PointEquations, int]:
         if residual <= RESIDUAL_TOLERANCE and residual > 0.1 * last:
             return equations, step
         last = residual
+        if diverged(equations.state):
+            raise NoPointsError("Newton's method diverges")
         try:
             factor = current_run().film_solver.factor(equations.steady)
         except SingularMatrixError:
             raise NoPointsError("the contacts do not determine the petals") from None
         equations = stepped(equations, factor.solve(-np.concatenate(equations.residual)))
     raise NoPointsError(f"contacts or the residual, {last:.1e}, still change after {STEPS} steps")
+
+
+def diverged(state: PointState) -> bool:
+    """Whether a state is that of no bearing."""
+    far = max(float(np.max(np.abs(state.w), initial=0.0)), float(np.max(state.P, initial=0.0)))
+    return not far <= FARTHEST_STATE
 
 
 def stepped(equations: PointEquations, change: Array) -> PointEquations:
@@ -126,6 +151,7 @@ def stepped(equations: PointEquations, change: Array) -> PointEquations:
     length = min(
         1.0,
         POSITIVE_FRACTION * fraction_to_boundary(state.P, dP),
+        fraction_to_boundary(MOST_GROWTH * state.P, -dP),
         POSITIVE_FRACTION * fraction_to_boundary(equations.film_thickness.ravel(), closing),
     )
     while True:
