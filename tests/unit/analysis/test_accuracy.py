@@ -128,6 +128,7 @@ def test_accuracies_that_make_no_sense_are_refused(wrong: object) -> None:
         petalfoil.solve(FLAT, accuracy=wrong)
 
 
+@pytest.mark.slow
 def test_a_solution_is_refined_to_the_accuracy() -> None:
     coarse = case("paper_n10", **{"model.cells_per_pitch": 32, "operation.eccentricity": (0.0, -2e-4)})
     ds = petalfoil.solve(coarse, accuracy="2 %")
