@@ -14,7 +14,7 @@ body { background: var(--ground); color: var(--ink); }
 .brand { font-weight: 700; white-space: nowrap; }
 .title { color: var(--faint); overflow: hidden; text-overflow: ellipsis; white-space: nowrap; max-width: 34vw; }
 .spring { flex: 1 1 0; }
-.status { color: var(--faint); font-size: .85rem; font-variant-numeric: tabular-nums; }
+.status, .grid-of-case { color: var(--faint); font-size: .85rem; font-variant-numeric: tabular-nums; }
 .progress { width: 110px; }
 .hidden { display: none; }
 .failure, .refusal { color: var(--failed); white-space: pre-wrap; overflow-wrap: anywhere; }

@@ -88,7 +88,7 @@ class Page:
             quiet_button("", "menu", lambda: self._drawer.toggle(), "case")
             ui.label("petalfoil studio").classes("brand")
             self._title = ui.label().classes("title")
-            self._grid = ui.label().classes("status")
+            self._grid = ui.label().classes("grid-of-case")
             ui.element("div").classes("spring")
             self._words = ui.label().classes("status").props("aria-live=polite")
             self._progress = ui.linear_progress(0.0, show_value=False).classes("progress")
