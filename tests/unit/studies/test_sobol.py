@@ -67,6 +67,7 @@ def test_blocks_without_an_answer_are_left_out_and_told() -> None:
     assert few["parameters"] == {}
 
 
+@pytest.mark.slow
 def test_the_indices_of_a_bearing_add_up_where_it_is_nearly_linear() -> None:
     vary = {"gas.viscosity": "± 2 %", "operation.speed": "3900 rad/s : 4100 rad/s"}
     ds = sobol_indices(PLAIN, vary, samples=16, execution=Execution(workers=0), eccentricity=(0.0, -5e-6))
