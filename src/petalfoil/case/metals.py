@@ -81,7 +81,8 @@ METALS = {
                 *((260.0, 186.8e9), (316.0, 182.7e9)),
             ),
             0.29, 7850.0, 12.1e-6, None, "hardened and tempered, any",
-            f"{_ROARK}; expansion: ASME BPVC II-D table TE-1, 70 to 200 °F; Poisson's ratio: ASTM A231",
+            f"{_ROARK}; expansion: ASME BPVC II-D table TE-1, 70 to 200 °F; Poisson's ratio: ASTM A231; "
+            "density: the usual value of steel, without a source",
         ),
         Metal(
             "stainless steel 302", ((20.0, 193e9),), 0.30, 7920.0, 17.3e-6, 517e6, "cold rolled, 75 ksi",
@@ -96,7 +97,7 @@ METALS = {
             "inconel 718", ((21.0, 200.0e9), (149.0, 198.6e9), (204.0, 196.5e9), (260.0, 193.1e9)),
             0.29, 8190.0, 13.2e-6, 1034e6, "annealed and aged, AMS 5596, least",
             "Special Metals SMC-045: dynamic modulus 29.0, 28.8, 28.5 and 28.0 Msi at 70, 300, 400 and 500 °F; "
-            "yield: AMS 5596",
+            "density, expansion and yield (150 ksi): usual values, not checked against a sheet",
         ),
         Metal(
             "beryllium copper c17200", ((20.0, 127e9),), 0.30, 8260.0, 17.8e-6, 960e6, "age hardened TF00, least",

@@ -194,4 +194,4 @@ def test_a_petal_bearing_is_optimized_within_few_designs() -> None:
 
 
 BEST_KNOWN = 19.436e-6
-"""Of three descents and of 200 trials of TPE [m]."""
+"""Of descents from three starts; 60 trials of TPE reach 18.83e-6 [m]."""
