@@ -217,3 +217,8 @@ def test_the_tangent_of_a_step_knows_the_loss() -> None:
     free = replace(step, rate=0.0).linearize(x).residual
     at_rate = step.linearize(x).residual - free
     assert_allclose(at_rate[: layout.n_wall], 30.0 * 0.2 * (layout.stiffness @ x[: layout.n_wall]), rtol=1e-9)
+
+
+def test_check_tells_no_clearance_above_a_foil_without_a_solid_height() -> None:
+    assert "pack_clearance" not in petalfoil.check(case("bump_foil"))
+    assert "pack_clearance" in petalfoil.check(case("paper_n8"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from petalfoil.analysis.declaration import analysis
@@ -23,7 +24,8 @@ class BearingNumbers:
     """Clearances, the bearing number on the clearance, and what decides whether slip matters."""
 
     radial_clearance: float
-    pack_clearance: float
+    pack_clearance: float | None
+    """None for a foil that has no solid height."""
     compressibility_number: float
     viscosity: float
     mean_free_path: float
@@ -70,7 +72,7 @@ def bearing_numbers(case: Case) -> BearingNumbers:
     thinnest = case.surface.contact_film_thickness if on_journal else case.radial_clearance
     return BearingNumbers(
         radial_clearance=case.radial_clearance,
-        pack_clearance=case.pack_clearance,
+        pack_clearance=case.pack_clearance if math.isfinite(case.pack_clearance) else None,
         compressibility_number=number,
         viscosity=case.gas.viscosity,
         mean_free_path=case.gas.mean_free_path,
