@@ -10,7 +10,7 @@ from typing import Annotated
 
 import numpy as np
 
-from petalfoil.analysis.arguments import Direction, Quantity, Speed, Speeds, Whole
+from petalfoil.analysis.arguments import Quantity, Speed, Speeds, Whole
 from petalfoil.analysis.balance import carrier
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.declaration import analysis
@@ -43,17 +43,19 @@ MinFilm = Annotated[
     Quantity(
         unit="m",
         option="min-film",
-        help='Least minimum film thickness: "5 um"; above the contact film thickness.',
+        help='Minimum film thickness to keep: "5 um"; above the contact film thickness.',
         above=0.0,
     ),
 ]
 Fraction = Annotated[
     float | None,
-    Quantity(unit="1", metavar="FRACTION", help="Largest contact fraction.", above=0.0, below=1.0),
+    Quantity(unit="1", metavar="FRACTION", help="Contact fraction that is allowed.", above=0.0, below=1.0),
 ]
 Stress = Annotated[
-    float | None, Quantity(unit="Pa", help='Largest maximum bending stress of the petals: "800 MPa".', above=0.0)
+    float | None,
+    Quantity(unit="Pa", help='Maximum bending stress of the petals that is allowed: "800 MPa".', above=0.0),
 ]
+LoadDirection = Annotated[float, Quantity(unit="rad", metavar="ANGLE", help="Direction of the load, from x toward y.")]
 Orientations = Annotated[
     int,
     Whole(metavar="COUNT", help="Directions of the load over one pitch, from --direction on.", at_least=1),
@@ -215,7 +217,7 @@ def capacity(  # noqa: PLR0913 - the options of the verb
     min_film_thickness: MinFilm = None,
     contact_fraction: Fraction = None,
     max_stress: Stress = None,
-    direction: Direction = DOWN,
+    direction: LoadDirection = DOWN,
     orientations: Orientations = 1,
     speed: Speed = None,
     speeds: Speeds = None,

@@ -34,9 +34,9 @@ class BearingNumbers:
 
 @analysis(Point())
 def check(case: Case) -> Record:
-    """Validate a case: derived results such as overlap and clearance, cross-section.
+    """Validate a case, print its derived geometry and draw its cross-section.
 
-    Nothing is run beyond the package at zero speed that the cross-section shows.
+    Only the foil pack at zero speed is solved, for the cross-section.
 
     Example: petalfoil check case.toml --plot section.svg
 

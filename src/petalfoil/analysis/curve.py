@@ -44,7 +44,7 @@ def curve(
     speed: Speed = None,
     progress: Progress | None = None,
 ) -> Points:
-    """Follow the load over the displacement of the journal, at one speed.
+    """Follow the bearing force over the displacement of the journal, at one speed.
 
     Points that do not converge are named and left blank. With --out the file
     is rewritten as points finish; Ctrl-C keeps what is finished, and --resume

@@ -61,7 +61,13 @@ Of = Annotated[
 ]
 Step = Annotated[
     float,
-    Quantity(unit="1", metavar="SHARE", help="Change of each parameter whose effect is told.", above=0.0, at_most=1.0),
+    Quantity(
+        unit="1",
+        metavar="FRACTION",
+        help="Relative change of each parameter, whose effect is printed.",
+        above=0.0,
+        at_most=1.0,
+    ),
 ]
 
 
@@ -122,7 +128,8 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
 
     From exact derivatives of the equilibrium, through geometry, grid and
     contacts: a table of parameters by their effect. "Contacts hold" is the
-    change up to which no contact begins or ends.
+    change up to which no contact begins or ends. With --samples the command
+    finds Sobol' indices instead: petalfoil sensitivity --samples 256 --help.
 
     Example: petalfoil sensitivity case.toml --ask liftoff --load "20 N" --plot tornado.png
 

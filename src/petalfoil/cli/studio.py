@@ -29,11 +29,11 @@ def studio(
     host: Host = "127.0.0.1",
     allow_network: AllowNetwork = False,
 ) -> None:
-    """Open a local web page: change a bearing, and see it answer.
+    """Open a local web page: change a bearing, and see its results.
 
     Prints the address, which holds a token, on standard output. The page
     is served to this machine alone and loads nothing from elsewhere.
-    Ctrl-C ends it. Needs: pip install 'petalfoil[studio]'
+    Ctrl-C ends it. Needs the extra "studio" of petalfoil.
 
     Example: petalfoil studio case.toml
     """

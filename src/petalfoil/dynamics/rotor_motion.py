@@ -67,7 +67,7 @@ class Inertia:
 
     @classmethod
     def of_mass(cls, mass: float) -> Inertia:
-        """A mass [kg] that moves parallel to its axis."""
+        """A mass [kg] whose axis keeps its direction."""
         return cls(mass * np.eye(2), np.zeros((2, 2)))
 
     @classmethod

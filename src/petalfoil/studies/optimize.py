@@ -52,7 +52,7 @@ def optimize(  # noqa: PLR0913 - the options of the command
     execution: Execution | None = None,
     **arguments: Any,
 ) -> xr.Dataset:
-    """Find the design whose results are best within limits, beginning at the case.
+    """Find the best design within limits, beginning at the case.
 
     ::
 

@@ -28,7 +28,7 @@ def sweep(
     execution: Execution | None = None,
     **arguments: Any,
 ) -> xr.Dataset:
-    """Ask an analysis of many cases, over a grid of parameters or a sample of them.
+    """Run an analysis on many cases, over a grid of parameters or a sample of them.
 
     ::
 

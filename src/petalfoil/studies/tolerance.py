@@ -44,7 +44,7 @@ def tolerance(  # noqa: PLR0913 - the options of the command
     execution: Execution | None = None,
     **arguments: Any,
 ) -> xr.Dataset:
-    """Ask an analysis of bearings that scatter about the case, and how likely they keep limits.
+    """Run an analysis on bearings that scatter about the case, and find how likely limits are kept.
 
     ::
 
