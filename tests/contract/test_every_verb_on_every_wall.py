@@ -70,8 +70,15 @@ def test_nothing_above_the_walls_asks_for_petals() -> None:
     assert asking == []
 
 
-@pytest.mark.parametrize("wall", WALLS)
-@pytest.mark.parametrize("verb", VERBS)
+LONG = {("stability", "petal"), ("liftoff", "petal"), ("liftoff", "bump foil"), ("coefficients", "petal")}
+"""Pairs that take more than a second."""
+
+PAIRS = [
+    pytest.param(verb, wall, marks=pytest.mark.slow if (verb, wall) in LONG else ()) for verb in VERBS for wall in WALLS
+]
+
+
+@pytest.mark.parametrize(("verb", "wall"), PAIRS)
 def test_a_verb_answers_or_says_what_the_wall_lacks(verb: str, wall: str, bearings: dict[str, Case]) -> None:
     bearing, need = bearings[wall], NEEDS.get(verb)
     if need is not None and not wall_kind(bearing).can(need):

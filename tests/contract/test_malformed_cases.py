@@ -382,6 +382,7 @@ def only_ours(make: Any) -> None:
     assert words or (made is not None and Case.from_toml(made.to_toml()) == made)
 
 
+@pytest.mark.slow
 @settings(max_examples=150)
 @given(st.lists(st.tuples(PATHS, JUNK), min_size=1, max_size=3))
 @example([("petals", None)])

@@ -116,6 +116,7 @@ def cone_point(problem: CoupledProblem, side: str, rng: np.random.Generator) -> 
     return PrimalDualPoint(x, s, lam)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [0.0, 0.3])
 @pytest.mark.parametrize("side", SIDES_OF_THE_KINK)
 @pytest.mark.parametrize("name", PETALS)

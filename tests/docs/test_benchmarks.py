@@ -35,6 +35,7 @@ def measured(path: Path, *options: str) -> list[dict[str, Any]]:
     return rows
 
 
+@pytest.mark.slow
 def test_a_quick_run_of_the_plain_journal(tmp_path: Path) -> None:
     rows = {row["name"]: row for row in measured(tmp_path / "rows.json", "--only", "journal", "others")}
     error = rows["journal_48x16_error"]["ratio"]

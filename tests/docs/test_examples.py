@@ -76,6 +76,7 @@ def module(path: Path) -> ModuleType:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.stem)
 def test_a_script_without_a_place_to_write_says_how_it_is_called(
     path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -111,6 +112,7 @@ def test_the_demo_writes_tables_figures_and_data(
     assert_allclose(curve["bearing_force"].values, [0.0, 11.6, 24.85], rtol=0.02, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_the_paper_s_values_are_those_of_the_script() -> None:
     values = module(EXAMPLES / "paper_values.py")
     page = text(ROOT / "docs" / "paper-values.md")

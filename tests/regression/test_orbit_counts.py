@@ -25,6 +25,7 @@ def counts(cells: int, revolutions: float) -> dict[str, int]:
     return {"factorisations": orbit.run.film.factorizations - before} | {name: int(told[name]) for name in names}
 
 
+@pytest.mark.slow
 def test_a_factorisation_serves_many_steps() -> None:
     found = counts(32, 4.0)
     assert found["factorisations"] <= 0.15 * found["steps"]

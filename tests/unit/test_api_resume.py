@@ -71,6 +71,7 @@ def test_a_series_that_goes_on_ends_as_if_it_had_not_been_stopped(name: str, tmp
             np.testing.assert_array_equal(a, b, err_msg=str(key))
 
 
+@pytest.mark.slow
 def test_points_that_are_done_are_not_computed_again() -> None:
     bearing, verb, given = SERIES["lift-off"]
     part = stopped_after(1, bearing, verb, given)

@@ -179,6 +179,7 @@ def walk(bearing: Case, steps: int, step: float) -> list[Solution]:
     return found
 
 
+@pytest.mark.slow
 def test_stiffness_is_smooth_along_a_sweep() -> None:
     """In steps of 0.1 um the stiffness of points strays by 0.1 % from a smooth curve, that of nodes by per cents."""
     bearing = BEARINGS["turbocharger"].replace(**{"model.cells_per_pitch": 64})

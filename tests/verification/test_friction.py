@@ -109,6 +109,7 @@ def exact_cycle_of_tip(mu: float) -> float:
     return 0.5 * abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mu", [0.1, pytest.param(0.3, marks=pytest.mark.slow)])
 def test_loop_of_a_strip_on_its_tip(mu: float) -> None:
     """Within 0.2 % on 64 cells; the last cell's turn stands for the tip's, so that the order is between 1 and 2."""

@@ -38,6 +38,7 @@ def test_has_an_equilibrium(number: int) -> None:
     assert 0.0 <= found["contact_fraction"] <= 1.0  # type: ignore[operator]
 
 
+@pytest.mark.slow
 def test_a_threshold_speed_where_equilibria_overlap() -> None:
     """The bracket of the threshold lost its change of sign, and the search ended in a ValueError."""
     found = petalfoil.stability(bearing(5000))

@@ -139,6 +139,7 @@ def test_a_balance_has_bars_on_its_position() -> None:
         assert abs(float(fine.scalars[name]) - float(record.scalars[name])) <= record.errors[name]
 
 
+@pytest.mark.slow
 def test_stability_and_coefficients_have_bars() -> None:
     found = stability.record(LOADED, error=True)
     assert found.errors is not None

@@ -58,6 +58,7 @@ def apart(of: Case, steps: int, turns: float = 1.0) -> float:
     return found
 
 
+@pytest.mark.slow
 def test_a_rigid_rotor_takes_the_way_of_orbit() -> None:
     assert apart(PETALS.replace(rotor={"mass": 3.0, "unbalance": 2e-6}), 40, 0.25) < 3e-3
 

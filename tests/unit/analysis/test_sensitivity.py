@@ -57,6 +57,7 @@ def test_the_figure_has_a_panel_for_each_result(under_load: xr.Dataset) -> None:
     assert_allclose(longest, 100.0 * np.abs(under_load["relative_effect"].values).max(), rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_result_that_is_zero_by_symmetry_has_no_relative_effect() -> None:
     centred = SMALL.replace(**{"operation.eccentricity": (0.0, 0.0)})
     with pytest.warns(UserWarning, match="without effect: .*petals.thickness"):

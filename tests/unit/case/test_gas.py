@@ -189,6 +189,7 @@ def test_any_state_is_a_gas_or_refused(name: str, temperature: float, pressure: 
     assert refused or 1e-7 < viscosity < 1e-3
 
 
+@pytest.mark.slow
 def test_the_library_waits_for_a_name() -> None:
     code = """
 import sys

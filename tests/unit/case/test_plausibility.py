@@ -136,6 +136,7 @@ def test_a_wide_error_bar_is_warned_of() -> None:
     assert warnings_of_errors({"bearing_force": 0.0}, {"bearing_force": 1.0}) == []
 
 
+@pytest.mark.slow
 def test_error_bars_of_a_coarse_grid_are_told_with_the_answer() -> None:
     coarse = case(PETALS, **{"model.cells_per_pitch": 8, "operation.eccentricity": ("0 um", "-200 um")})
     told = petalfoil.solve(coarse, error=True).attrs.get("warnings", "")

@@ -111,6 +111,7 @@ def test_a_ramp_ends_where_it_ends(cli: Run, rotor: str) -> None:
     assert_allclose([answer["x"][0], answer["y"][0]], [1e-6, 2e-6], rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_figure_and_animation(cli: Run, rotor: str, tmp_path: Path) -> None:
     figure, page = tmp_path / "orbit.png", tmp_path / "orbit.html"
     result = cli("orbit", rotor, "--duration", "0.2 ms", "--plot", str(figure), "--animate", str(page))

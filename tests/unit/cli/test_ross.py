@@ -48,6 +48,7 @@ def test_ross_gets_no_table_with_holes(cli, loads, case, tmp_path: Path) -> None
     assert not path.exists()
 
 
+@pytest.mark.slow
 def test_the_default_frequencies_are_dense_around_half_of_every_speed(cli, loads, case, tmp_path: Path) -> None:
     path = tmp_path / "bearing.toml"
     result = cli("coefficients", case, *SPEEDS, "--ross", str(path))
@@ -92,6 +93,7 @@ def test_ross_2_gets_one_value_a_speed(cli, loads, case, tmp_path: Path) -> None
     assert "speed" not in element
 
 
+@pytest.mark.slow
 def test_a_stored_result_is_exported_too(cli, loads, case, tmp_path: Path) -> None:
     out, first, again = (tmp_path / name for name in ("k.nc", "k.toml", "again.toml"))
     cli("coefficients", case, *SPEEDS, "--ross", str(first), "--out", str(out), "--node", "3", "--tag", "a")

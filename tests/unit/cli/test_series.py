@@ -164,6 +164,7 @@ def test_without_a_file_nothing_is_written(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_a_command_goes_on_from_its_own_file(cli, case, tmp_path: Path) -> None:
     out, whole = str(tmp_path / "curve.nc"), str(tmp_path / "whole.nc")
     three = ("curve", case, "--eccentricity", "0 um : 20 um : 3")

@@ -71,6 +71,7 @@ def test_a_figure_shows_itself_in_a_notebook(flat: xr.Dataset) -> None:
     assert shown.startswith(STARTS["png"])
 
 
+@pytest.mark.slow
 def test_showing_a_figure_neither_loads_pyplot_nor_opens_a_window() -> None:
     code = (
         "import sys, xarray as xr; from petalfoil import plot; "

@@ -69,6 +69,7 @@ def test_the_overview_shows_everything_of_a_motion(steady: xr.Dataset, texts: Te
         assert part in said
 
 
+@pytest.mark.slow
 def test_a_figure_is_drawn_from_the_file_alone(steady: xr.Dataset, tmp_path: File) -> None:
     save(steady, tmp_path / "orbit.nc")
     plot.save(plot.summary(load(tmp_path / "orbit.nc")), tmp_path / "orbit.png")
@@ -130,6 +131,7 @@ def test_the_overview_leaves_the_energy_balance_to_its_own_figure(steady: xr.Dat
     assert [ax for ax in plot.orbit_energy(steady).axes if "energy" in ax.get_ylabel()]
 
 
+@pytest.mark.slow
 def test_a_shaft_that_tilts_shows_its_slope(steady: xr.Dataset, texts: Texts) -> None:
     assert "shaft slope" not in texts(plot.orbit(steady))
     tilting = steady.assign(slope_x=("time", 2.0 * steady["x"].values), slope_y=("time", steady["y"].values))
@@ -255,6 +257,7 @@ def test_a_title_brings_no_control_character_to_the_page(steady: xr.Dataset, tmp
     assert r"<title>a\x1b[31mb\x07c\u202ed\nfake</title>" in (tmp_path / "orbit.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_a_gif_plays_its_pictures_for_ever(steady: xr.Dataset, tmp_path: File) -> None:
     plot.animate(steady, tmp_path / "orbit.gif")
     with Image.open(tmp_path / "orbit.gif") as picture:
