@@ -13,8 +13,8 @@ from petalfoil.case import Case, ModelKind
 from petalfoil.errors import DefinitionError
 from petalfoil.units.writing import format_quantity
 
-BYTES_WITH_PETALS = 700.0
-"""`c` of film and petals [bytes]: measured 430 to 660, over 4 000 to 160 000 unknowns."""
+BYTES_WITH_PETALS = 900.0
+"""`c` of film and petals [bytes]: measured 430 to 660 over 4 000 to 160 000 unknowns, to 780 with adapted stations."""
 
 BYTES_OF_FILM = 350.0
 """`c` of a film alone [bytes]: measured 220 to 330, over 2 000 to 130 000 unknowns."""
