@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, SerializerFunctionWrapHandler, ValidationError, model_serializer
 
 from petalfoil.case.problems import definition_error
 
@@ -31,3 +31,19 @@ class Definition(BaseModel):
     def entries(self) -> dict[str, object]:
         """Entries that make this definition again, by name."""
         return {name: getattr(self, name) for name in type(self).model_fields}
+
+
+class LookedUp(Definition):
+    """A definition that has some of its fields by a name, of a gas or a metal; these are written to no file."""
+
+    def is_written(self, field: str) -> bool:
+        """Whether a field is the user's own, and does not follow from the name."""
+        raise NotImplementedError
+
+    def entries(self) -> dict[str, object]:
+        """Entries that make this definition again, by name, without those that were looked up."""
+        return {name: value for name, value in super().entries().items() if self.is_written(name)}
+
+    @model_serializer(mode="wrap")
+    def _as_given(self, handler: SerializerFunctionWrapHandler) -> dict[str, object]:
+        return {name: value for name, value in handler(self).items() if self.is_written(name)}

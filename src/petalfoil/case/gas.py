@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import Annotated, ClassVar
 
-from pydantic import Field, SerializerFunctionWrapHandler, ValidationInfo, field_validator, model_serializer
+from pydantic import Field, ValidationInfo, field_validator
 
 from petalfoil.case import gas_properties
-from petalfoil.case.definition import Definition
+from petalfoil.case.definition import LookedUp
 from petalfoil.case.number_fields import UNSET, VALUE_PROBLEM, Quantity, refuse
 from petalfoil.units.reading import shown
 
@@ -19,7 +19,7 @@ AIR = 287.05
 """Gas constant [J/(kg K)] of a gas given by numbers that does not say it."""
 
 
-class Gas(Definition):
+class Gas(LookedUp):
     """Isothermal ideal gas.
 
     A gas by its `name` takes viscosity and gas constant from CoolProp at its state; both are written to no file then.
@@ -59,15 +59,8 @@ class Gas(Definition):
         mu, p_a = self.viscosity, self.ambient_pressure
         return mu / p_a * math.sqrt(0.5 * math.pi * self.gas_constant * self.temperature)
 
-    def entries(self) -> dict[str, object]:
-        """Entries that make this gas again."""
-        return {name: value for name, value in super().entries().items() if self._is_written(name)}
-
-    @model_serializer(mode="wrap")
-    def _as_given(self, handler: SerializerFunctionWrapHandler) -> dict[str, object]:
-        return {name: value for name, value in handler(self).items() if self._is_written(name)}
-
-    def _is_written(self, field: str) -> bool:
+    def is_written(self, field: str) -> bool:
+        """Not what the name of the gas gives."""
         return self.name is None or field not in self.by_name
 
     @field_validator("name")

@@ -15,9 +15,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from pydantic import Field, SerializerFunctionWrapHandler, ValidationInfo, field_validator, model_serializer
+from pydantic import Field, ValidationInfo, field_validator
 
-from petalfoil.case.definition import Definition
+from petalfoil.case.definition import LookedUp
 from petalfoil.case.metals import metal_of
 from petalfoil.case.number_fields import UNSET, VALUE_PROBLEM, Quantity, refuse
 from petalfoil.case.problems import Problem
@@ -38,7 +38,7 @@ _Expansion = Annotated[
 _Temperature = Annotated[float, Quantity(unit="K", meaning="mean temperature", symbol="T", above=0.0, at_most=3000.0)]
 
 
-class MetalPart(Definition):
+class MetalPart(LookedUp):
     """A part whose metal is given by its name or by numbers; what a name gives is written to no file."""
 
     by_material: ClassVar[frozenset[str]] = frozenset()
@@ -50,15 +50,8 @@ class MetalPart(Definition):
     temperature: _Temperature = REFERENCE_TEMPERATURE
     """Mean over the section; with a heat network it follows, and is left out."""
 
-    def entries(self) -> dict[str, object]:
-        """Entries that make this part again."""
-        return {name: value for name, value in super().entries().items() if self._is_written(name)}
-
-    @model_serializer(mode="wrap")
-    def _as_given(self, handler: SerializerFunctionWrapHandler) -> dict[str, object]:
-        return {name: value for name, value in handler(self).items() if self._is_written(name)}
-
-    def _is_written(self, field: str) -> bool:
+    def is_written(self, field: str) -> bool:
+        """Not what the material gives."""
         return self.material is None or field not in self.by_material
 
     @field_validator("material")

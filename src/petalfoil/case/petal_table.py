@@ -9,15 +9,9 @@ from enum import StrEnum
 from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
-from pydantic import (
-    BeforeValidator,
-    Field,
-    SerializerFunctionWrapHandler,
-    ValidationInfo,
-    field_validator,
-    model_serializer,
-)
+from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
+from petalfoil.case.definition import LookedUp
 from petalfoil.case.metals import Metal, metal_of
 from petalfoil.case.number_fields import UNSET, VALUE_PROBLEM, Count, PerPetal, PerPetalOrWord, Quantity, refuse
 from petalfoil.case.shape_file import as_shape
@@ -87,7 +81,7 @@ def mean(values: Sequence[Any]) -> Any:
     return first + math.fsum(value - first for value in values) / len(values)
 
 
-class Petals(WallTable):
+class Petals(LookedUp, WallTable):
     """A foil pack of petals (leaves); absent in a plain bearing.
 
     Petals are equal, or a list gives the thickness, coating, bend radius, root tilt or material of each, in the order
@@ -160,15 +154,7 @@ class Petals(WallTable):
         """What is known of the material; None without one."""
         return None if self.material is None else metal_of(self.material)
 
-    def entries(self) -> dict[str, object]:
-        """Entries that make these petals again."""
-        return {name: value for name, value in super().entries().items() if self._is_written(name)}
-
-    @model_serializer(mode="wrap")
-    def _as_given(self, handler: SerializerFunctionWrapHandler) -> dict[str, object]:
-        return {name: value for name, value in handler(self).items() if self._is_written(name)}
-
-    def _is_written(self, field: str) -> bool:
+    def is_written(self, field: str) -> bool:
         """Whether a field is the user's own: not one that follows from the material."""
         metal = self.metal
         if metal is None:
