@@ -11,7 +11,7 @@ export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup docs package demo test test-all test-studio test-long fuzz fuzz-verbs check lint types layers format bench constraints clean
+.PHONY: help setup docs package demo test test-all test-studio test-classic test-long fuzz fuzz-verbs check lint types layers format bench constraints clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -45,6 +45,10 @@ test: setup ## Fast tests
 
 test-studio: setup ## The page of `petalfoil studio` in a browser, under attack, and its processes
 	$(BIN)/python -m pytest -n 0 tests/studio
+
+test-classic: setup ## Tests of the paper's own method, with the numba that compiles it
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[classic]'
+	$(BIN)/python -m pytest -n 0 -m "compiled and not long" tests
 
 test-all: setup ## All tests
 	$(BIN)/python -m pytest -n $(JOBS) -m "not long" tests

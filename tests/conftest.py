@@ -7,6 +7,7 @@ import pytest
 from hypothesis import settings
 
 from petalfoil.case import Case
+from petalfoil.classic.kernels import numba_is_installed
 from petalfoil.equilibrium.run_context import RunContext, running
 from petalfoil.walls import register, unregister
 from tests.walls.elastic_foundation import ElasticFoundation
@@ -30,6 +31,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         folder = item.path.relative_to(HERE).parts[0] if item.path.is_relative_to(HERE) else ""
         if folder in FOLDERS:
             item.add_marker(getattr(pytest.mark, folder))
+        if "compiled" in item.keywords and not numba_is_installed():
+            item.add_marker(pytest.mark.skip(reason="needs numba: too slow in NumPy (make test-classic)"))
 
 
 @pytest.fixture(scope="module")

@@ -26,6 +26,10 @@ from petalfoil.results.dataset import to_dataset
 from tests.cases import case
 
 METHODS = pytest.mark.parametrize("method", Method)
+COMPILED = pytest.mark.parametrize(
+    "method", [pytest.param(one, marks=pytest.mark.compiled if one is Method.CLASSIC else ()) for one in Method]
+)
+"""The same for questions that take the classic method long in NumPy."""
 
 
 def bearing(method: Method) -> Case:
@@ -33,6 +37,7 @@ def bearing(method: Method) -> Case:
 
 
 @pytest.mark.slow
+@pytest.mark.compiled
 def test_the_records_of_all_methods_are_alike() -> None:
     records = [solve.record(bearing(method)) for method in Method]
     for part in ("scalars", "fields", "coords"):
@@ -42,7 +47,7 @@ def test_the_records_of_all_methods_are_alike() -> None:
     assert len({str(record.scalars["solution_path"]) for record in records}) == len(records)
 
 
-@METHODS
+@COMPILED
 def test_a_record_becomes_data_with_the_case_in_it(method: Method) -> None:
     data = to_dataset(solve.record(bearing(method)))
     assert Case.from_toml(data.attrs["case"]).model.method is method
@@ -50,7 +55,7 @@ def test_a_record_becomes_data_with_the_case_in_it(method: Method) -> None:
     assert int(data["iterations"]) > 0
 
 
-@METHODS
+@COMPILED
 def test_a_curve_goes_from_point_to_point(method: Method) -> None:
     told: list[float] = []
     records = list(curve.records(bearing(method), (0.0, 50e-6, 100e-6), progress=lambda share, _: told.append(share)))
@@ -78,6 +83,7 @@ def limited(monkeypatch: pytest.MonkeyPatch, **limits: int) -> None:
     monkeypatch.setattr(ClassicOptions, "__init__", few_steps)
 
 
+@pytest.mark.compiled
 def test_a_method_that_runs_out_of_steps_says_so_with_advice(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     limited(monkeypatch, max_outer=3)
     path = tmp_path / "case.toml"

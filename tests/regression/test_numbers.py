@@ -95,7 +95,7 @@ class Run:
     name: str
     call: Callable[[], xr.Dataset]
     kept: tuple[str, ...]
-    slow: bool = False
+    marks: tuple[str, ...] = ()
 
 
 POINT = ("bearing_force", "force_x", "min_film_thickness", "peak_pressure", "friction_torque", "growth_rate")
@@ -124,12 +124,12 @@ RUNS = (
     Run("solve plain 2-D", partial(petalfoil.solve, PLAIN_FLAT), (*POINT, "attitude_angle", *WORK)),
     Run("solve with error 2-D", partial(petalfoil.solve, FLAT.replace(**{"model.cells_per_pitch": 64}), error=True),
         ("bearing_force", "bearing_force@grid_error", "min_film_thickness@grid_error", "friction_torque@grid_error"),
-        slow=True),
+        marks=("slow",)),
     Run("solve with error plain",
         partial(petalfoil.solve, PLAIN.replace(**{"model.cells_per_pitch": 64, "model.axial_cells": 16}), error=True),
         ("bearing_force", "side_leakage", "bearing_force@grid_error", "side_leakage@grid_error")),
     Run("solve classic", partial(petalfoil.solve, FLAT.replace(**{"model.method": "classic"})),
-        (*POINT, "max_bending_stress", "iterations"), slow=True),
+        (*POINT, "max_bending_stress", "iterations"), marks=("slow", "compiled")),
     Run("converge 2-D", partial(petalfoil.converge, FLAT, coarsest=16),
         ("bearing_force", "min_film_thickness", "bearing_force_limit", "bearing_force_error", "force_x_order",
          "friction_torque_limit", "factorizations")),
@@ -148,7 +148,7 @@ RUNS = (
         ("bearing_force", "force_y", "contact_normal_force", "petal_friction_work", "starting_torque", "leg")),
     Run("static loop wide", partial(petalfoil.static, WIDE, "0 um : 100 um : 3", loop=True),
         ("bearing_force", "force_y", "contact_normal_force", "petal_friction_work", "starting_torque",
-         *WORK), slow=True),
+         *WORK), marks=("slow",)),
     Run("balance 2-D", partial(petalfoil.balance, FLAT, 20.0), (*BALANCED, *PETALS, *WORK, "carried_by")),
     Run("balance 3-D", partial(petalfoil.balance, SPATIAL, (2.0, -20.0)),
         (*BALANCED, *PETALS, *TOUCHING, *WORK, "carried_by")),
@@ -169,7 +169,7 @@ RUNS = (
         ("critical_mass", "whirl_ratio", "threshold_speed", "natural_frequency", "mode_growth_rate", "damping_ratio",
          "participation", "whirl_direction", *WORK)),
     Run("stability rubbing", partial(petalfoil.stability, COARSE, load=20.0, mass=3.0),
-        ("natural_frequency", "mode_growth_rate", "participation", *WORK), slow=True),
+        ("natural_frequency", "mode_growth_rate", "participation", *WORK), marks=("slow",)),
     Run("stability table plain", partial(petalfoil.stability, PLAIN, speeds=[1000.0, 2000.0], loads=[20.0, 40.0]),
         ("critical_mass", "whirl_ratio", *BALANCED, *WORK)),
     Run("stability table 2-D", partial(petalfoil.stability, FLAT, speeds=[500.0, 1000.0], loads=[5.0, 10.0]),
@@ -234,7 +234,7 @@ def compare(name: str, found: Any, stored: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    "run", [pytest.param(run, id=run.name, marks=[pytest.mark.slow] if run.slow else []) for run in RUNS]
+    "run", [pytest.param(run, id=run.name, marks=[getattr(pytest.mark, mark) for mark in run.marks]) for run in RUNS]
 )
 def test_numbers(run: Run) -> None:
     stored, found = table()[run.name], answer(run)

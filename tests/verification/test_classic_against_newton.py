@@ -12,7 +12,7 @@ from petalfoil.case import Case
 from petalfoil.results.record import Record
 from tests.cases import case
 
-pytest.importorskip("numba", reason="needs petalfoil[classic]: the NumPy loops take a hundred times longer")
+pytestmark = pytest.mark.compiled
 
 CASES_2D = [(f"paper_n{n}", {"model.cells_per_pitch": 12}) for n in (6, 8, 10)]
 CASES_3D = [("paper_n8_spatial", {"model.cells_per_pitch": 10, "model.axial_cells": 16})]  # 23 x 17 nodes per petal

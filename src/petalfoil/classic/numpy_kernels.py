@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 # ---------------------------------------------------------------------------------------------- film
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a march that diverges is told by its change, as in the compiled loop
 def march(P: Array, cells: FilmCells, settings: MarchSettings) -> tuple[int, float]:
     """March the pressures `P` (n_node,) explicitly in time until they change by less than the tolerance (58).
 

@@ -62,6 +62,7 @@ def test_the_bands_are_the_stiffness(kind: str) -> None:
     )
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("mount", ["clamped", "hinged"])
 @pytest.mark.parametrize("momentum", [False, True])
 def test_the_package_alone_descends_to_newton_s(mount: str, momentum: bool) -> None:
@@ -76,6 +77,7 @@ def test_the_package_alone_descends_to_newton_s(mount: str, momentum: bool) -> N
     assert_allclose(descent.reactions(W, load), wanted.lam, rtol=0.0, atol=1e-5 * np.max(wanted.lam))
 
 
+@pytest.mark.compiled
 def test_momentum_saves_steps() -> None:
     problem, taken = package(16), {}
     for momentum in (False, True):
@@ -114,6 +116,7 @@ def petal_by_petal(problem: CoupledProblem, descent: PackDescent, W: Array, swee
 
 
 @pytest.mark.slow
+@pytest.mark.compiled
 def test_petals_that_descend_one_by_one_stop_short_of_the_least_energy() -> None:
     """The pack is projected as a whole because a petal cannot displace a neighbour that is a fixed bound."""
     problem = package(8, 100e-6)

@@ -15,7 +15,7 @@ from petalfoil.classic.kernels import DescentSettings, Engine, MarchSettings, ke
 from petalfoil.classic.method_options import ClassicOptions
 from tests.unit.classic.bearings import KINDS, bearing
 
-pytest.importorskip("numba", reason="needs petalfoil[classic]: the NumPy loops take a hundred times longer")
+pytestmark = pytest.mark.compiled
 
 Array = NDArray[np.float64]
 

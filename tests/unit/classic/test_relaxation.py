@@ -15,6 +15,7 @@ from petalfoil.errors import ConvergenceError
 from tests.unit.classic.bearings import bearing, package
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("limits", "what"),
     [({"max_film_steps": 20_000}, "film"), ({"max_pack_steps": 20_000}, "pack"), ({"max_outer": 4}, "outer")],
@@ -41,6 +42,7 @@ def test_a_diverged_film_has_its_own_message() -> None:
         ClassicRun(problem).march_film(np.ones(closed.shape), closed, 1e-6)
 
 
+@pytest.mark.compiled
 def test_rows_are_told_as_they_come_and_the_run_can_be_watched() -> None:
     told, pulses = [], []
     run = ClassicRun(package(8), ClassicOptions(), tell=told.append, pulse=lambda: pulses.append(1))
@@ -52,6 +54,7 @@ def test_rows_are_told_as_they_come_and_the_run_can_be_watched() -> None:
     assert max(told[-1]["pressure_change"], told[-1]["film_change"]) <= 1e-5
 
 
+@pytest.mark.compiled
 def test_an_answer_as_a_start_is_not_taken_for_a_better_one() -> None:
     problem = package(8, 100e-6)
     rough = relax(ClassicRun(problem, ClassicOptions(epsilon=1e-3)))
@@ -62,6 +65,7 @@ def test_an_answer_as_a_start_is_not_taken_for_a_better_one() -> None:
     assert 2 < again.outer < fine.outer
 
 
+@pytest.mark.compiled
 def test_a_start_from_another_position_is_moved_out_of_the_journal() -> None:
     beside = relax(ClassicRun(package(8)))
     problem = package(8, 150e-6)
@@ -87,6 +91,7 @@ def test_the_relaxation_factor_is_halved_when_the_change_stops_to_fall() -> None
     assert (relaxation.smallest, relaxation.waited) == (0.9, 0)
 
 
+@pytest.mark.compiled
 def test_without_relaxation_the_run_finds_a_smaller_factor() -> None:
     run = ClassicRun(package(10), ClassicOptions(deflection_relaxation=1.0))
     relax(run)
