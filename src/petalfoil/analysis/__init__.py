@@ -53,6 +53,7 @@ What they share:
 `orbit_motion.py`      a large motion, step by step
 `restart.py`           a motion that goes on from a result
 `trace.py`             what a motion leaves behind
+`steps_ahead.py`       what a motion costs, told before it begins
 `grid_study.py`        nested grids
 `error_bars.py`        the error bars of any answer, from them
 `accuracy.py`          whether they are below an accuracy, and the next finer grid

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from petalfoil.case import Case
+from petalfoil.case import Case, Gas
 from petalfoil.equilibrium.heated import heated
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import UsageError
@@ -40,6 +40,26 @@ def with_heat(case: Case, found: Solution, *, gradually: bool = True) -> Solutio
     """
     network = HeatNetwork.of(case)
     return found if network is None else heated(found, network, gradually=gradually)
+
+
+def at_temperatures(case: Case, warm: Temperatures) -> Case:
+    """The isothermal case whose gas, shaft and bushing have given temperatures, as in a motion of some milliseconds."""
+    if case.heat is None:
+        return case
+    gas, hot = case.gas, case.heat.of_gas(case.gas)
+    sections: dict[str, object] = {
+        "heat": None,
+        "gas": Gas(
+            viscosity=gas.viscosity * hot.ratio(warm.film),
+            ambient_pressure=gas.ambient_pressure,
+            temperature=warm.film,
+            gas_constant=gas.gas_constant,
+        ),
+    }
+    for name, part, temperature in (("shaft", case.shaft, warm.shaft), ("bushing", case.bushing, warm.bushing)):
+        if part is not None:  # the modulus is that of the case, as in the network
+            sections[name] = part.model_copy(update={"temperature": temperature})
+    return case.replace(**sections)
 
 
 def warm_up_step(case: Case, found: Solution, before: Temperatures, step: float) -> Solution:

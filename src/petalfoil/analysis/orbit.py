@@ -63,6 +63,9 @@ Tolerance = Annotated[
 ]
 OVER_TIME = ("time", *(name for name, variable in HISTORIES.items() if variable.dims == ("time",)))
 
+WARMTH = ("shaft_temperature", "pack_temperature", "shaft_growth")
+"""Lines of the table of a motion with a heat network."""
+
 
 def summary(record: Record) -> Iterator[Row]:
     """Lines of the table: how far, how large, how close, and how far it can be trusted."""
@@ -82,6 +85,7 @@ def summary(record: Record) -> Iterator[Row]:
         yield Row("whirl ratio of the tilt", _ratio(float(scalars["tilt_whirl_ratio"])), "")
     yield cell("min_film_thickness", float(over["min_film_thickness"].min()))
     yield cell("contact_fraction", float(over["contact_fraction"].max()))._replace(label="largest contact fraction")
+    yield from (cell(name, float(scalars[name])) for name in WARMTH if name in scalars)
     yield Row("dominant whirl ratio", _ratio(float(scalars["dominant_whirl_ratio"])), "")
     for name in ("mass_balance_error", "energy_balance_error"):
         yield Row(name.replace("_balance_", "-balance "), number(float(scalars[name])), "")
@@ -136,7 +140,9 @@ def orbit(  # noqa: PLR0913 - the options of the verb
     is rewritten as the motion grows; Ctrl-C keeps what is done, and --restart
     goes on from it. Friction between petals (surface.petal_friction) counts
     the turning of their faces only, about a sixtieth of the slip in the
-    paper's bearing: the damping it gives is no prediction.
+    paper's bearing: the damping it gives is no prediction. With a heat network
+    (table heat) temperatures stay those of the balance where the motion begins,
+    of a start from rest those before it: a motion is shorter than a warm-up.
 
     Example: petalfoil orbit case.toml --revolutions 60 --plot orbit.png
 

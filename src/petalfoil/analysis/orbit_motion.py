@@ -2,34 +2,46 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.analysis.classic_method import newton_only
+from petalfoil.analysis.heat_results import at_temperatures
 from petalfoil.analysis.operating_point import at
 from petalfoil.analysis.records import effort, geometry, record_of
-from petalfoil.analysis.release import OrbitRequest, at_rest, first_position, system_of
-from petalfoil.analysis.restart import check_figures, continued, end_coordinates, end_state, instant_of
+from petalfoil.analysis.release import OrbitRequest, at_rest, first_position, system_of, temperatures_of
+from petalfoil.analysis.restart import (
+    check_figures,
+    continued,
+    end_coordinates,
+    end_state,
+    instant_of,
+    kept_temperatures,
+)
 from petalfoil.analysis.session import one_thread
+from petalfoil.analysis.steps_ahead import steps_ahead
 from petalfoil.analysis.trace import Trace
 from petalfoil.case import Case
 from petalfoil.dynamics.adaptive_steps import MarchOptions, march
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.equilibrium.run_context import RunContext, new_run
-from petalfoil.errors import UsageError
 from petalfoil.results.motion import figures_of, tilt_figures
 from petalfoil.results.parts import Outcome
 from petalfoil.results.record import Record
+from petalfoil.system.temperatures import Temperatures
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Array = NDArray[np.float64]
+
+LOG = logging.getLogger(__name__)
 
 TURN = 2.0 * np.pi
 
@@ -56,6 +68,18 @@ class Tilt:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Warmth:
+    """Temperatures that a motion keeps [K], and how much shaft and bushing have grown where it begins [m]."""
+
+    film_temperature: float
+    shaft_temperature: float
+    pack_temperature: float
+    bushing_temperature: float
+    shaft_growth: float
+    bushing_growth: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Stepping:
     """The steps in time."""
 
@@ -72,7 +96,7 @@ class Orbit:
     Attributes
     ----------
     case : Case
-        A bearing with its rotor.
+        A bearing with its rotor; with a heat network as it is at the temperatures that the motion keeps.
     request : OrbitRequest
         How it moves.
     system : RotorBearing
@@ -83,6 +107,12 @@ class Orbit:
         Where it ends [s].
     run : RunContext
         Counts of the start and of all steps.
+    asked : Case
+        The case that was asked for, with its heat network if it has one.
+    warm : Temperatures or None
+        Temperatures that the motion keeps: it is shorter than any warm-up.
+    foretold : tuple of str
+        Warnings of what it costs.
     """
 
     case: Case
@@ -91,7 +121,10 @@ class Orbit:
     start: Instant
     end: float
     run: RunContext
+    asked: Case
+    warm: Temperatures | None = None
     trace: Trace = field(init=False)
+    foretold: tuple[str, ...] = ()
     taken: int = 0
     residual: float = 0.0
     is_series: bool = False
@@ -113,22 +146,22 @@ class Orbit:
             No equilibrium was found to start from.
         """
         newton_only(case)
-        if case.heat is not None:
-            raise UsageError(
-                "a motion in time is shorter than any warm-up: leave [heat] out, and give shaft.temperature and "
-                "bushing.temperature as `balance` finds them"
-            )
         run, schedule = new_run(), request.schedule(case)
         if restart is None:
             with run.active():
-                placed = at(case, eccentricity=first_position(case, request))
+                warm = temperatures_of(case, request)
+                warmed = case if warm is None else at_temperatures(case, warm)
+                place = first_position(warmed, request)
+                placed = at(warmed, eccentricity=place)
                 system, time = system_of(placed, schedule, request.load), 0.0
                 start = at_rest(placed, system, request)
         else:
-            placed, time = case, continued(case, schedule, restart)
+            time, warm, place = continued(case, schedule, restart), kept_temperatures(case, restart), None
+            placed = case if warm is None else at_temperatures(case, warm)
             system = system_of(placed, schedule, request.load)
             start = instant_of(restart, system, time * system.rotor.clock.rate)
-        orbit = cls(placed, request, system, start, time + request.lasts(schedule, time), run)
+        end, asked = time + request.lasts(schedule, time), at(case, eccentricity=place)
+        orbit = cls(placed, request, system, start, end, run, asked, warm)
         if restart is not None:
             check_figures(restart, orbit.trace.rows[0])
         return orbit
@@ -141,6 +174,10 @@ class Orbit:
         ConvergenceError
             No step, however short, leads on.
         """
+        with self.run.active():
+            self.foretold = tuple(steps_ahead(self.system, self.start))
+        for warning in self.foretold:
+            LOG.warning("Warning: %s", warning)
         options = MarchOptions(tolerance=self.request.tolerance, longest=self.request.longest)
         begin, end = self.start.tau, self.end * self.system.rotor.clock.rate
         for stepped in self.run.during(march(self.system, self.start, end, options)):
@@ -168,12 +205,13 @@ class Orbit:
         time, over = self.trace.histories()
         coords, pictures = self.trace.pictures()
         last = self.trace.last or self.start
-        return record_of(
+        record = record_of(
             "orbit",
-            self.case,
-            *geometry(self.case),
+            self.asked,
+            *geometry(self.asked),
             self._summary(time, over),
             *self._tilt(time, over),
+            *self._warmth(),
             self.trace.audits(over),
             self._stepping(),
             effort(self.run.seconds, self.run),
@@ -182,6 +220,7 @@ class Orbit:
             fields={**over, **pictures, **end_state(last, self.system)},
             coords={"time": time, **coords, **end_coordinates(last)},
         )
+        return replace(record, warnings=(*self.foretold, *record.warnings))
 
     def _summary(self, time: Array, over: dict[str, Array]) -> MotionSummary:
         return MotionSummary(
@@ -197,6 +236,19 @@ class Orbit:
         if self.case.rotor is None or self.case.rotor.span is None:
             return ()
         return (Tilt(**tilt_figures(time, over), span=self.case.rotor.span),)
+
+    def _warmth(self) -> tuple[Warmth, ...]:
+        """What is told of a motion with a heat network; nothing of another."""
+        if self.warm is None:
+            return ()
+        growth = self.case.growth
+        return (
+            Warmth(
+                **{f"{node}_temperature": T for node, T in self.warm._asdict().items()},
+                shaft_growth=growth.journal(float(self.trace.rows[0]["shaft_speed"])),
+                bushing_growth=growth.bushing,
+            ),
+        )
 
     def _stepping(self) -> Stepping:
         refused = [row.get("outcome") for row in self.run.history if row["phase"] == "motion"]

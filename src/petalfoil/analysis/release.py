@@ -21,6 +21,8 @@ from petalfoil.system.build import build_pair, build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.friction import FrictionState, friction_of
+from petalfoil.system.heat_network import HeatNetwork
+from petalfoil.system.temperatures import Temperatures
 from petalfoil.system.time_step import StepProblem
 from petalfoil.system.unknowns import DEFLECTION
 
@@ -88,6 +90,21 @@ class OrbitRequest:
         if not np.isfinite(end):
             raise UsageError(f"the shaft never turns {turns:g} times at these speeds: give a duration instead")
         return end - start
+
+
+def temperatures_of(case: Case, request: OrbitRequest) -> Temperatures | None:
+    """Temperatures that a motion keeps: those of the balance where it begins, of a start from rest those before it.
+
+    Raises
+    ------
+    ConvergenceError
+        No position balances the load, or there is no steady temperature.
+    """
+    network, speed = HeatNetwork.of(case), request.schedule(case).speed(0.0)
+    if network is None or speed == 0.0:
+        return None if network is None else network.start
+    found, _ = under_load(at(case, speed, (0.0, 0.0)), constant_load(case, request.load))
+    return found.problem.temperatures
 
 
 def first_position(case: Case, request: OrbitRequest) -> Vector | None:

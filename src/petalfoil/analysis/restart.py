@@ -18,6 +18,7 @@ from petalfoil.errors import UsageError
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.friction import against_slip
+from petalfoil.system.temperatures import Temperatures
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE
 
 if TYPE_CHECKING:
@@ -123,6 +124,22 @@ def check_figures(result: xr.Dataset, figures: Mapping[str, float]) -> None:
         size = float(np.abs(result[name].to_numpy()).max())
         if not abs(told - found) <= SAME * size:
             raise _damaged(f"its {name} is {found:.6g}, but the motion ended with {told:.6g}")
+
+
+def kept_temperatures(case: Case, result: xr.Dataset) -> Temperatures | None:
+    """Temperatures that a motion kept, and keeps where it goes on; None without a heat network.
+
+    Raises
+    ------
+    UsageError
+        The case has a heat network, and the motion none.
+    """
+    if case.heat is None:
+        return None
+    names = [f"{node}_temperature" for node in Temperatures._fields]
+    if not {*names} <= {*map(str, result.variables)}:
+        raise UsageError("the motion to go on from has no heat network: leave [heat] out, or run it again")
+    return Temperatures(*(float(result[name]) for name in names))
 
 
 def _state(result: xr.Dataset, name: str, size: int) -> Array:

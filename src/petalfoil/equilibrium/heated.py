@@ -1,8 +1,9 @@
 """A bearing with its heat network: film, petals, contacts, temperatures and, under a load, the position in one Newton.
 
 The temperatures are bordered unknowns beside the journal's position. From the equilibrium at other temperatures two or
-three tangents lead on. Where they do not, the friction power is raised from nothing; where it cannot be raised to its
-whole, the bearing has no steady temperature.
+three tangents lead on. A pack that has bottomed out has no tangent: temperatures and equilibrium follow each other
+until it has one, or both have settled. Elsewhere the friction power is raised from nothing; where it cannot be raised
+to its whole, the bearing has no steady temperature.
 """
 
 from __future__ import annotations
@@ -12,8 +13,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution, from_contacts
+from petalfoil.equilibrium.under_load import rebalance
 from petalfoil.errors import ConvergenceError
 from petalfoil.solvers.contact_equations import (
     ContactEquations,
@@ -44,6 +47,9 @@ WARMEST_STEP = 0.2
 
 CORRECTIONS = 6
 """Refinements of a balance; the part of the leakage that the derivative leaves out takes one or two."""
+
+TURNS = 60
+"""Turns of temperatures and equilibrium of a bottomed-out pack; each leaves about 0.4 of the change before."""
 
 FIRST_PART, LEAST_PART = 0.25, 1.0 / 64.0
 """First step and least step of the friction power where it is raised from nothing."""
@@ -158,6 +164,8 @@ def heated(known: Solution, network: HeatNetwork, *, gradually: bool = True) -> 
         It has no steady temperature.
     """
     found = warmed(known, network)
+    if found is None and known.contacts is None:
+        found = by_turns(known, network)
     if found is None and not gradually:
         raise runaway(known, network, 0.0)
     return found or raised(known, network)
@@ -172,6 +180,45 @@ def warmed(known: Solution, network: HeatNetwork) -> Solution | None:
     if contacts is None:
         return None
     return polished(equations, contacts, known.solution_path)
+
+
+def by_turns(known: Solution, network: HeatNetwork) -> Solution | None:
+    """Temperatures of the equilibrium, then the equilibrium at these; None if that leads nowhere.
+
+    As soon as the pack is bottomed out no more, Newton's method goes on from there.
+    """
+    cold = known.problem.temperatures or network.cold
+    found = replace(known, problem=known.problem.at(temperatures=cold))
+    for turn in range(TURNS):
+        rows = HeatRows(network, found.problem, found.x, found.lam)
+        left = float(np.max(np.abs(rows.residual)) / rows.scale)
+        current_run().note("heat", turn=turn, imbalance=left)
+        if turn and left <= BALANCE:
+            return found
+        change = -np.linalg.solve(network.by_temperature(rows.temperatures, rows.film_heat), rows.residual)
+        part = min(1.0, WARMEST_STEP * network.gas.temperature / max(float(np.max(np.abs(change))), 1e-300))
+        warm = Temperatures(*(float(T) for T in rows.temperatures.nodes + part * change))
+        try:
+            found = settled_at(found, warm)
+        except ConvergenceError as failure:
+            current_run().note("heat", outcome=str(failure))
+            return None
+        there = None if found.contacts is None else warmed(found, network)
+        if there is not None:
+            return there
+    return None
+
+
+def settled_at(known: Solution, warm: Temperatures) -> Solution:
+    """The equilibrium at given temperatures, under the load of `known` or at its position.
+
+    Raises
+    ------
+    ConvergenceError
+        There is none.
+    """
+    problem = known.problem.at(temperatures=warm)
+    return solve_cold(problem) if known.load is None else rebalance(known, problem, known.load)
 
 
 def polished(equations: HeatedEquations, contacts: ActiveContacts, path: str) -> Solution | None:

@@ -1,0 +1,80 @@
+"""How many steps per turn a motion may take, told before they are taken."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.dynamics.time_state import Instant
+from petalfoil.dynamics.tr_bdf2 import RotorBearing
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.solvers.constraints import constrain
+from petalfoil.solvers.sparse_lu import SingularMatrixError
+from petalfoil.solvers.tangent import BorderedTangent, Tangent
+from petalfoil.system.coupled import CoupledProblem
+
+Array = NDArray[np.float64]
+
+STEPS_A_SWING = 16.0
+"""Steps in which a swing of the rotor is followed at the default tolerance: 12 to 28 were counted on solid contacts."""
+
+MANY = 1000.0
+"""Steps of a turn from which on they are told beforehand: usual motions take 25 to 200."""
+
+
+def steps_ahead(bearing: RotorBearing, start: Instant) -> Iterator[str]:
+    """Yield a warning where a turn may take very many steps.
+
+    Parameters
+    ----------
+    bearing : RotorBearing
+        The bearing and its rotor.
+    start : Instant
+        Where the motion begins.
+    """
+    rate, speed = bearing.rotor.clock.rate, bearing.rotor.schedule.top
+    swing = max(fastest_swing(bearing, start), hardest_landing(bearing, start))
+    if not speed > 0.0 or not swing > 0.0:
+        return
+    steps = STEPS_A_SWING * swing * rate / speed
+    if steps > MANY:
+        hertz, turn = swing * rate / (2.0 * math.pi), 2.0 * math.pi / speed
+        yield (
+            f"a turn of {turn:.3g} s may take {steps:.0f} steps of {1e6 * turn / steps:.3g} us: from where it is "
+            f"released the rotor swings on film and contacts at up to {hertz:.3g} Hz; use a shorter duration, a higher "
+            "speed or a larger tolerance"
+        )
+
+
+def hardest_landing(bearing: RotorBearing, start: Instant) -> float:
+    """Frequency at which the rotor bounces on solid contact, which stops it within a contact film thickness [1].
+
+    ``sqrt(a / h_c)`` with the acceleration `a` with which it is released; zero from a balance.
+    """
+    layout = bearing.problem.layout
+    thickness = layout.case.surface.contact_film_thickness / layout.scales.length
+    return float(np.sqrt(np.linalg.norm(start.change.v) / thickness))
+
+
+def fastest_swing(bearing: RotorBearing, start: Instant) -> float:
+    """Highest natural frequency of the rotor on the stiffness at `start` over the unit of time, film at rest [1].
+
+    Zero where the contacts there do not determine the stiffness. One factorisation.
+    """
+    step = bearing.problem.at(displacement=start.e, bearing_number=bearing.rotor.bearing_number(start.tau))
+    problem = CoupledProblem(step.layout, step.bearing_number, step.displacement, temperatures=step.temperatures)
+    constraints = constrain(problem.G, start.active)
+    if not constraints.determinate:
+        return 0.0
+    linearized = problem.linearize(start.x)
+    matrix = linearized.matrix(np.zeros(len(problem.weight)))
+    try:
+        factor = constraints.factor(matrix, current_run().probe_solver, problem.elimination_key)
+    except SingularMatrixError:
+        return 0.0
+    stiffness = -BorderedTangent.at(Tangent(matrix, constraints, factor), problem.border, linearized).gradient
+    squares = np.linalg.eigvals(np.linalg.solve(bearing.rotor.inertia, stiffness))
+    return float(np.sqrt(np.max(squares.real, initial=0.0)))
