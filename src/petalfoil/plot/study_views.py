@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from petalfoil.errors import UsageError
 from petalfoil.plot.labels import QUANTITIES, RPM, Quantity, quantity
 from petalfoil.results.schema import SCALARS, DataType, Role
+from petalfoil.results.summary import values_without_rounding
 from petalfoil.text import for_figure
 
 Floats = NDArray[np.float64]
@@ -73,7 +74,7 @@ def of_cases(ds: xr.Dataset) -> xr.Dataset:
 
 def in_unit(ds: xr.Dataset, name: str, shown: Quantity) -> Floats:
     """Values of a parameter or a result in the unit of the figure; infinite ones are left out."""
-    values = np.asarray(ds[name].values, dtype=np.float64) * shown.factor
+    values = values_without_rounding(ds, name) * shown.factor
     return np.where(np.isfinite(values), values, np.nan)
 
 
@@ -89,7 +90,8 @@ def _varying(ds: xr.Dataset) -> list[str]:
         variable = SCALARS.get(str(name))
         if variable is None or variable.kind is not DataType.FLOAT or variable.role is not Role.ANSWER:
             continue
-        finite = ds[name].values[np.isfinite(ds[name].values)] if ds[name].dims else np.empty(0)
+        values = values_without_rounding(ds, str(name)) if ds[name].dims else np.empty(0)
+        finite = values[np.isfinite(values)]
         if finite.size and float(np.ptp(finite)) > 1e-9 * float(np.abs(finite).max()):
             found.append(str(name))
     return found

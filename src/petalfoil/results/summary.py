@@ -5,10 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from decimal import Decimal
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from petalfoil.results.record import Record, Scalar
 from petalfoil.results.schema import SCALARS, DataType, Shown
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 class Row(NamedTuple):
@@ -175,6 +181,38 @@ def without_rounding(record: Record) -> dict[str, Scalar]:
         least = ROUNDING * max(scale, math.hypot(*here))
         reported |= {name: 0.0 for name in names if name in reported and abs(float(reported[name])) < least}
     return reported
+
+
+def values_without_rounding(ds: xr.Dataset, name: str) -> NDArray[np.float64]:
+    """Values of one result of many cases as tables and figures show them: 0 for what is nothing but rounding.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Results of many cases.
+    name : str
+        One of them.
+
+    Returns
+    -------
+    (...) array
+        Its values [SI].
+    """
+    values = np.asarray(ds[name].values, dtype=np.float64)
+    kinds = [kind for names, kind in _VECTORS if name in names]
+    if not kinds:
+        return values
+    sizes = [_largest(ds, size) for size in ("ambient_pressure", "journal_radius", "length")]
+    scale = math.prod(sizes) if kinds[0] == "N" else sizes[1]
+    return np.where(np.abs(values) < ROUNDING * scale, 0.0, values)
+
+
+def _largest(ds: xr.Dataset, name: str) -> float:
+    """Largest value of a size over all cases; 0 where the dataset does not hold it."""
+    if name not in ds:
+        return 0.0
+    values = np.asarray(ds[name].values, dtype=np.float64)
+    return float(np.max(values[np.isfinite(values)], initial=0.0))
 
 
 def cell(name: str, value: Scalar) -> Row:

@@ -11,11 +11,13 @@ import time
 from collections.abc import Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
+from importlib import metadata
 from itertools import islice
 from typing import Any, Protocol
 
 import psutil
 
+from petalfoil import __version__
 from petalfoil.errors import UsageError
 from petalfoil.studies.question import DIED, Outcome, Task, analysis_of, answered
 
@@ -243,4 +245,18 @@ def _remote(address: str) -> Iterator[Engine]:
         threads = sum(client.nthreads().values())
         if not threads:
             raise UsageError(f"--scheduler: {address} has no workers: start some with 'dask worker {address}'")
+        _refuse_others(client, address)
         yield OnCluster(client, threads)
+
+
+def _refuse_others(client: Any, address: str) -> None:
+    """Refuse workers without this package, or with another version of it."""
+    try:
+        found = set(client.run(metadata.version, "petalfoil").values())
+    except metadata.PackageNotFoundError:
+        found = {"none"}
+    if found != {__version__}:
+        raise UsageError(
+            f"--scheduler: the workers of {address} have petalfoil {', '.join(sorted(found))}, this is {__version__}: "
+            "install the same version on all of them"
+        )

@@ -9,7 +9,7 @@ from __future__ import annotations
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -215,15 +215,19 @@ def run_with_effort(
 ) -> tuple[xr.Dataset, Effort]:
     """The same, and the processor time that it took in this run."""
     how = execution or Execution()
-    with _folder(out) as folder, folders.begun(folder, study, anew=how.anew) as store:
+    with ExitStack() as stack:
+        if how.scheduler:  # one that is not there leaves no folder
+            answers = stack.enter_context(engine(None, how.scheduler, None))
+        folder = stack.enter_context(_folder(out))
+        store = stack.enter_context(folders.begun(folder, study, anew=how.anew))
         store.forget(ERROR)  # a mistake of the program may have been put right since
-        with engine(how.workers, how.scheduler, how.memory) as answers:
-            kind_of(study).conduct(study, Runner(study, store, answers, how))
-            effort = answers.effort
+        if not how.scheduler:
+            answers = stack.enter_context(engine(how.workers, "", how.memory))
+        kind_of(study).conduct(study, Runner(study, store, answers, how))
         ds = kind_of(study).assemble(study, store)
         if out is not None:
             complete(folder, study, ds)
-        return ds, effort
+        return ds, answers.effort
 
 
 def resume(folder: str | Path, execution: Execution | None = None) -> xr.Dataset:

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from petalfoil.results.schema import SCALARS, DataType, Role
-from petalfoil.results.summary import cell, in_order
+from petalfoil.results.summary import cell, in_order, values_without_rounding
 from petalfoil.studies.question import CONVERGED
 from petalfoil.units import format_quantity
 
@@ -48,8 +48,8 @@ def results(ds: xr.Dataset) -> list[str]:
     found = []
     for name in in_order([str(name) for name in ds.data_vars if name in SCALARS]):
         variable = SCALARS[name]
-        values = ds[name].values
         if ds[name].dims and variable.kind is DataType.FLOAT and variable.role is Role.ANSWER:
+            values = values_without_rounding(ds, name)
             finite = values[np.isfinite(values)]
             size = float(np.abs(finite).max()) if finite.size else 0.0
             if size > 0.0 and float(np.ptp(finite)) > SAME * size and not _is_rounding(ds, name, size):
@@ -68,7 +68,7 @@ def ranges(ds: xr.Dataset) -> Lines:
     """Least, median and greatest value of each result, in the units of tables."""
     lines = []
     for name in results(ds):
-        values = ds[name].values
+        values = values_without_rounding(ds, name)
         finite = values[np.isfinite(values)]
         parts = [cell(name, float(part)) for part in (finite.min(), np.median(finite), finite.max())]
         lines.append((parts[0].label.strip(), *(part.value for part in parts), parts[0].unit))

@@ -16,12 +16,13 @@ _SHOWN_AS: dict[str, tuple[float, str, tuple[int, ...]]] = {
     "kg/s": (1e3, "g/s", (-6, -3, 0, 3)),
     "m": (1.0, "m", (-9, -6, -3, 0)),
     "rad": (180.0 / math.pi, "°", ()),
+    "rad/s": (30.0 / math.pi, "rpm", ()),
     "s": (1.0, "s", (-6, -3, 0)),
 }
 
 
 def format_quantity(value: float, unit: str, *, digits: int = 4) -> str:
-    """Write a number for a reader, such as ``"25 µm"``; angles in degrees.
+    """Write a number for a reader, such as ``"25 µm"``; angles in degrees, speeds in rpm.
 
     Parameters
     ----------

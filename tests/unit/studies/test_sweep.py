@@ -13,12 +13,14 @@ from numpy.testing import assert_allclose
 
 import petalfoil
 from petalfoil.errors import StoreError, UsageError
+from petalfoil.plot.study_views import in_unit, result, shown_results
 from petalfoil.results.store import load
 from petalfoil.studies import store as folders
 from petalfoil.studies.definition import Study
 from petalfoil.studies.engine import InThisProcess
 from petalfoil.studies.question import CONVERGED, INVALID, Outcome, Question, Task, answered
 from petalfoil.studies.run import Execution, resume, stored
+from petalfoil.studies.summary import results
 from petalfoil.studies.sweep import sweep, sweep_study
 from tests.cases import case
 
@@ -243,3 +245,12 @@ def test_nothing_that_varies_is_refused() -> None:
         sweep(PLAIN, {}, "solve", execution=ALONE)
     with pytest.raises(UsageError, match=r"is not a range"):
         sweep(PLAIN, {"operation.speed": "1000 rpm : 2000 rpm"}, "solve", execution=ALONE)
+
+
+def test_the_force_of_a_centred_journal_is_zero_in_tables_and_figures(swept: tuple[Path, xr.Dataset]) -> None:
+    """Rounding of 1e-11 N that scatters from case to case is no result that varies."""
+    _, ds = swept
+    assert "bearing_force" in results(ds)
+    rounded = ds.assign({name: 1e-11 / ds["speed"] * (ds[name] * 0.0 + 1.0) for name in ("bearing_force", "force_y")})
+    assert not {"bearing_force", "force_y"} & {*results(rounded), *shown_results(rounded)}
+    assert_allclose(in_unit(rounded, "bearing_force", result(rounded, "bearing_force")), 0.0, atol=0.0)

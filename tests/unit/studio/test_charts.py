@@ -173,7 +173,7 @@ def test_a_map_over_two_parameters_has_a_point_for_each_case() -> None:
         ((1e-4, 2e-4), "m", "µm", 1e-6),
         ((6.0, 8.0), "1", "", 1.0),
         ((0.1, 0.5), "rad", "°", np.pi / 180.0),
-        ((4000.0, 8000.0), "rad/s", "rad/s", 1.0),
+        ((4000.0, 8000.0), "rad/s", "rpm", np.pi / 30.0),
         ((0.0, 0.0), "m", "m", 1.0),
     ],
 )
