@@ -18,6 +18,7 @@ In the order a call runs through them:
 - ``report``     what a design review asks about a bearing, on one page
 - ``reproduce``  the paper's figures and claims: a page and data
 - ``studio``     the page on which a bearing is changed and answers
+- ``docs``       the documentation in a browser
 
 Conventions: standard output carries the answer and nothing else; all that is said about the run goes to standard
 error. Exit codes: 0 done, 1 a fault of petalfoil, 2 bad case or bad usage, 3 no converged answer, 130 interrupted,

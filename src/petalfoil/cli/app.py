@@ -9,6 +9,7 @@ from typer.core import TyperCommand, TyperGroup
 
 from petalfoil import __version__
 from petalfoil.analysis import known_verbs
+from petalfoil.cli.docs import docs
 from petalfoil.cli.failures import handled
 from petalfoil.cli.report import report
 from petalfoil.cli.reproduce import reproduce
@@ -82,6 +83,7 @@ app = typer.Typer(
 app.command()(report)
 app.command()(reproduce)
 app.command()(studio)
+app.command()(docs)
 
 
 def _print_version(wanted: bool) -> None:
