@@ -35,7 +35,7 @@ LOAD, MICRON = (0.0, -20.0), 1e-6
 
 def bearing(friction: float = 0.3, width: float = 1e-9, speed: float = 8000.0) -> Case:
     changes = {"surface.petal_friction": friction, "surface.friction_width": width, "operation.speed": speed}
-    return case("paper_n8", **{"model.cells_per_pitch": 24, **changes})
+    return case("paper_n8", **{"model.cells_per_pitch": 24, "petals.theory": "inextensible", **changes})
 
 
 @cache

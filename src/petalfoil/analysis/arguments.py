@@ -274,10 +274,10 @@ def _is_sequence(value: object) -> TypeGuard[Sequence[Any]]:
 # ---------------------------------------------------------------------------------------------- shared arguments
 
 TURNING_ONLY = (
-    "surface.petal_friction counts the turning of the petals' faces only, about a sixtieth of the slip in the paper's "
-    "bearing: the damping it gives is no prediction."
+    "surface.petal_friction counts the turning of the petals' faces only here, about a sixtieth of the slip in the "
+    "paper's bearing: the loss it gives is no prediction."
 )
-"""What users of friction between petals are told."""
+"""What users of friction between petals are told where petals do not slide along themselves."""
 
 DOWNWARD = -math.pi / 2.0
 """Direction of the weight, along -y [rad]."""

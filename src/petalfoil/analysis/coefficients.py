@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from petalfoil.analysis.arguments import TURNING_ONLY, Flag, Load, Name, Quantity, Speed, Speeds, Values, Whole
+from petalfoil.analysis.arguments import Flag, Load, Name, Quantity, Speed, Speeds, Values, Whole
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.declaration import Export, analysis
 from petalfoil.analysis.evaluation import Evaluation
@@ -48,7 +48,8 @@ Amplitude = Annotated[
     float | None,
     Quantity(
         unit="m",
-        help=f'Amplitude of the whirl at which petals with friction rub: "1 um"; by default they stick. {TURNING_ONLY}',
+        help='Amplitude of the whirl at which petals with friction rub: "1 um"; by default they stick. In 2-D they '
+        "slide along themselves, in 3-D only their faces turn (petals.theory).",
         above=0.0,
     ),
 ]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.case import Case
+from petalfoil.case import Case, PetalTheory
 from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
 from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.equilibrium.element_contacts import near_nodes
@@ -18,6 +18,7 @@ from petalfoil.equilibrium.small_motion import Motion
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 from petalfoil.system.friction import friction_at_points, friction_of
+from petalfoil.system.point_equations import PointLayout
 
 Array = NDArray[np.float64]
 
@@ -59,13 +60,24 @@ def elastic_and_sliding(case: Case, answer: Solution) -> tuple[Motion, SlidingCo
     Raises
     ------
     ConvergenceError
-        The pack is bottomed out: the journal cannot move without bending what has no clearance to bend.
+        The pack is bottomed out: the journal cannot move without bending what has no clearance to bend. Or petals slide
+        along themselves, and no equilibrium with continuous slopes was found.
     """
     found, friction = near_nodes(answer), friction_of(case, answer.problem.layout)
     if found is not None:
-        friction = friction and friction_at_points(friction, found.pack, found.points)
-        on_elements = None if friction is None else SlidingContacts.at(friction, found.points.reaction)
-        return ElementMotion(found, on_elements and on_elements.sticking(found.equations.n)), on_elements
+        if friction is None:
+            return ElementMotion(found), None
+        whole = PointLayout(found.pack, answer.problem.layout)
+        on_elements = SlidingContacts.at(friction_at_points(friction, whole, found.points), found.points.reaction)
+        return ElementMotion(found, on_elements.friction), on_elements
+    if friction is not None and case.petal_theory is PetalTheory.SHELL:
+        raise ConvergenceError(
+            "no coefficients: neither contact points nor asperity pressures were found, and friction of petals that "
+            "slide along themselves needs them",
+            history=current_run().history,
+            advice='petals.theory = "inextensible" counts the turning of their faces alone, surface.petal_friction = 0 '
+            "nothing",
+        )
     sliding = sliding_at(case, answer)
     motion = SmallMotion.about(answer, None if sliding is None else sliding.sticking(len(answer.x)))
     if not motion.contacts.constraints.determinate:

@@ -37,7 +37,7 @@ from petalfoil.case.growth import Bushing, Growth, Shaft
 from petalfoil.case.heat import Heat, HotGas
 from petalfoil.case.package import Package, package_of
 from petalfoil.case.parameters import Parameter, parameter_of, parameters_of, parameters_of_petals, with_values
-from petalfoil.case.petal_table import Mount, Petals
+from petalfoil.case.petal_table import Mount, Petals, PetalTheory
 from petalfoil.case.plausibility import warnings_of, warnings_of_errors
 from petalfoil.case.rotor import Rotor
 from petalfoil.case.sections import Bearing, Edges, Method, Model, ModelKind, Operation, Surface
@@ -61,6 +61,7 @@ __all__ = [
     "Operation",
     "Package",
     "Parameter",
+    "PetalTheory",
     "Petals",
     "Rotor",
     "Shaft",

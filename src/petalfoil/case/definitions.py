@@ -24,7 +24,7 @@ from petalfoil.case.package import (
     packages_of,
     solid_height,
 )
-from petalfoil.case.petal_table import Petals
+from petalfoil.case.petal_table import Petals, PetalTheory
 from petalfoil.case.problems import Problem, refusal
 from petalfoil.case.rotor import Rotor
 from petalfoil.case.sections import ADAPTED, Bearing, Method, Model, ModelKind, Operation, Surface
@@ -150,6 +150,14 @@ class Case(Definition):
     def packages(self) -> tuple[Package, ...]:
         """The same as seen by each petal, where they are unequal; none for a plain bearing."""
         return () if self.petals is None else packages_of(self.bearing, self.petals)
+
+    @property
+    def petal_theory(self) -> PetalTheory:
+        """Whether petals slide along themselves and stretch, the default filled in."""
+        if self.petals is not None and self.petals.theory is not None:
+            return self.petals.theory
+        slides = self.surface.petal_friction > 0.0 and self.model.kind is ModelKind.TWO_D
+        return PetalTheory.SHELL if slides else PetalTheory.INEXTENSIBLE
 
     @property
     def growth(self) -> Growth:
@@ -315,6 +323,9 @@ class Case(Definition):
         yield from heat_problems(self.heat, given | others)
 
     def _method_problems(self) -> Iterator[Problem]:
+        if self.petal_theory is PetalTheory.SHELL and self.model.kind is ModelKind.THREE_D:
+            text = 'petals that stretch are modelled in 2-D alone; allowed: "inextensible", or model.kind = "2d"'
+            yield Problem("petals.theory", text, "shell", "inextensible")
         if self.model.method is Method.CLASSIC and self.petals is not None and len(set(self.petals.each)) > 1:
             text = 'the paper\'s method is for equal petals; allowed: "newton", or one value for all petals'
             yield Problem("model.method", text, "classic", "newton, or equal petals")

@@ -35,6 +35,13 @@ class Mount(StrEnum):
     CLAMPED = "clamped"
 
 
+class PetalTheory(StrEnum):
+    """Whether petals bend at a constant length of their mid-surface, or also stretch and slide along themselves."""
+
+    INEXTENSIBLE = "inextensible"
+    SHELL = "shell"
+
+
 _Angle = Annotated[float, Quantity(unit="rad", meaning="angle from the root", symbol="phi", at_least=0.0, below=6.3)]
 _Radius = Annotated[
     float, Quantity(unit="m", meaning="radius of the free mid-surface", symbol="r_0", above=0.0, at_most=10.0)
@@ -66,6 +73,11 @@ class Petal:
     def bending_stiffness(self) -> float:
         """Flexural rigidity of the metal, ``D = E_y δ0³ / (12 (1 − ν²))`` [N m]."""
         return self.youngs_modulus * self.thickness**3 / (12.0 * (1.0 - self.poisson_ratio**2))
+
+    @property
+    def membrane_stiffness(self) -> float:
+        """Membrane force by the strain along the petal, ``B = E_y δ0 / (1 − ν²)`` [N/m]."""
+        return self.youngs_modulus * self.thickness / (1.0 - self.poisson_ratio**2)
 
 
 def of_each(value: Any, count: int) -> tuple[Any, ...]:
@@ -124,6 +136,9 @@ class Petals(LookedUp, WallTable):
     """With `"chordal"` the free edge of the free petal lies on the bore (G4)."""
     mount: Mount
     """Root free to turn, or clamped."""
+    theory: PetalTheory | None = None
+    """`shell` in 2-D where petals have friction, unless given: they then slide along themselves and stretch. Without
+    friction both are the same in 2-D; 3-D knows `inextensible` alone."""
     # before the numbers that a material gives
     material: str | None = None
     """Metal whose modulus, Poisson's ratio and yield strength are looked up, such as `inconel x-750`."""

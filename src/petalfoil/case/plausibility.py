@@ -13,6 +13,7 @@ import numpy as np
 
 from petalfoil.case.definitions import Case
 from petalfoil.case.measured_shape import row_errors
+from petalfoil.case.petal_table import PetalTheory
 from petalfoil.case.sections import ModelKind
 from petalfoil.units.writing import format_quantity
 
@@ -157,10 +158,11 @@ def _of_inputs(case: Case, scalars: Scalars) -> Iterator[str]:
     if not list(_unusual(case)):  # a density that is wrong would be told twice
         yield from _turbulence(case, scalars)
     yield from _unbalance(case)
-    if case.surface.petal_friction > 0.0:
+    if case.surface.petal_friction > 0.0 and case.petal_theory is PetalTheory.INEXTENSIBLE:
         yield (
-            "surface.petal_friction: it counts the turning of the petals' faces only, about a sixtieth of the slip in "
-            "the paper's bearing: the damping it gives is no prediction"
+            'surface.petal_friction: with petals.theory = "inextensible" it counts the turning of the faces only, '
+            "about a sixtieth of the slip in the paper's bearing: the damping it gives is no prediction; in 2-D "
+            'petals.theory = "shell" counts the whole slip'
         )
     if case.rotor is not None and case.rotor.inertia_is_estimated:
         whole = case.rotor.with_inertias(case.bearing.journal_radius)

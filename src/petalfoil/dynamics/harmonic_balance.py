@@ -6,7 +6,7 @@ The directions of the journal's displacement are taken one at a time. With `R` t
 
     s + R kappa(|s|) s = s_0
 
-by Newton's method, in as many unknowns as contacts slide under load.
+(`R` with what petals stretch, (M4)) by Newton's method, in as many unknowns as contacts slide under load.
 """
 
 from __future__ import annotations
@@ -65,14 +65,12 @@ class SlidingContacts:
     def at(cls, friction: Friction, lam: Array) -> SlidingContacts:
         """Those of an equilibrium with the reactions `lam` (m,)."""
         normal = friction.normal(lam)
-        kept = np.flatnonzero(normal > 0.0)
-        slip, share = friction.slip[kept], friction.reaction_share[kept]
-        stick = friction.in_step(lam).stiffness[kept]
-        law = Friction(friction.coefficient, stick, slip, share, friction.width)
+        kept = np.flatnonzero((normal > 0.0) & (np.diff(friction.slip.indptr) > 0))
+        law = friction.in_step(lam).among(kept)
         return cls(law, law.coefficient * normal[kept])
 
     def sticking(self, n: int) -> sp.csc_array:
-        """What adds to the tangent where all of them stick, (n, n)."""
+        """What adds to the tangent where all of them stick and nothing stretches, (n, n)."""
         return friction_tangent(self.friction, self.friction.stiffness, n)
 
     def equivalent(self, slip: Complex, amplitude: float) -> tuple[Complex, Complex]:
@@ -124,7 +122,8 @@ class FrictionCycle:
             unit_forces = np.eye(min(AT_ONCE, count - first), count, first)
             forces = np.column_stack([against_slip(friction, force, n) for force in unit_forces])
             out[:, first : first + AT_ONCE] = slips(friction, self.response.moved(forces))
-        return out
+        stretch = 0.0 if friction.compliance is None else friction.compliance
+        return np.asarray(out + stretch, dtype=np.complex128)
 
     def settled(self, free: Complex, compliance: Complex) -> Complex:
         """Slips by a unit displacement (k,) that agree with their friction, from those without it.

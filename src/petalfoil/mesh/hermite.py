@@ -42,6 +42,25 @@ def rows(element: Index, t: Array, length: Array, derivative: int = 0) -> sp.csr
     return sp.csr_array((weights.ravel(), where), shape=(len(element), 2 * len(length) + 2))
 
 
+def integrals(element: Index, t: Array, length: Array) -> sp.csr_array:
+    """Weights of nodal (value, slope) pairs in the integral of a curve from its first node; (k, 2 nodes).
+
+    Places and `length` as in `rows`; the integral is by the same angle as `length`.
+    """
+    powers = np.arange(1, COEFFICIENTS.shape[1] + 1)
+    over = np.asarray(t)[:, None] ** powers @ (COEFFICIENTS / powers).T
+    whole = (COEFFICIENTS / powers).sum(axis=1)
+    before = np.arange(len(length)) < element[:, None]
+    each = np.where(before[:, :, None], whole, 0.0)
+    each[np.arange(len(element)), element] = over
+    each *= length[:, None]
+    each[:, :, 1::2] *= length[:, None]
+    out = np.zeros((len(element), 2 * len(length) + 2))
+    out[:, :-2] += each[:, :, :2].reshape(len(element), -1)
+    out[:, 2:] += each[:, :, 2:].reshape(len(element), -1)
+    return sp.csr_array(out)
+
+
 def located(angle: Array, nodes: Array) -> tuple[Index, Array]:
     """Element and place in it of each `angle` between the first and the last of the `nodes`."""
     element = np.clip(np.searchsorted(nodes, angle, side="right") - 1, 0, len(nodes) - 2)

@@ -51,6 +51,7 @@ class Friction:
     slip: sp.csr_array
     reaction_share: sp.csr_array
     width: float
+    compliance: Array | None = None
 
     def in_step(self, lam: Array) -> Friction:
         """The friction law in a step that starts with the reactions `lam` (m,)."""
@@ -60,6 +61,23 @@ class Friction:
         """Normal forces `N` of the cells from the reactions `lam` (m,); (k,)."""
         normal: Array = self.reaction_share @ np.maximum(lam, 0.0)
         return normal
+
+    @property
+    def flexibility(self) -> Array:
+        """Slip by the forces of sticking cells that carry load: of the contacts and of the petals, (k, k)."""
+        own = np.diag(1.0 / self.stiffness)
+        return own if self.compliance is None else own + self.compliance
+
+    def among(self, cells: NDArray[np.intp]) -> Friction:
+        """The law in some of the cells."""
+        compliance = None if self.compliance is None else self.compliance[np.ix_(cells, cells)]
+        return replace(
+            self,
+            stiffness=self.stiffness[cells],
+            slip=self.slip[cells],
+            reaction_share=self.reaction_share[cells],
+            compliance=compliance,
+        )
 
     def force(self, slip: Array, before: tuple[Array, Array], normal: Array) -> tuple[Array, Array]:
         """Friction force `T` and its derivative with respect to the slip (D2), (k,) each.

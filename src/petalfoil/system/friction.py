@@ -21,7 +21,8 @@ from petalfoil.physics.dry_friction import Friction
 from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.solvers.problem import ContactProblem, Linearized
 from petalfoil.system.bearing_layout import BearingLayout
-from petalfoil.walls.element_pack import ElementPack
+from petalfoil.system.point_equations import PointLayout
+from petalfoil.walls.pack_slip import slip_compliance, slip_rows
 
 Array = NDArray[np.float64]
 
@@ -214,8 +215,17 @@ def friction_of(case: Case, layout: BearingLayout) -> Friction | None:
     return Friction(surface.petal_friction, none, wall.slip, wall.reaction_share, width)
 
 
-def friction_at_points(friction: Friction, pack: ElementPack, points: ContactPoints) -> Friction:
+def friction_at_points(friction: Friction, whole: PointLayout, points: ContactPoints) -> Friction:
     """The same friction at contact points: a gap for each, on the journal without slip."""
+    pack, scales = whole.pack, whole.layout.scales
     on_petals = sp.diags_array((points.every_curve >= pack.mesh.count).astype(np.float64))
-    slip = pack.slip(points)
-    return replace(friction, stiffness=np.zeros(slip.shape[0]), slip=slip, reaction_share=sp.csr_array(on_petals))
+    slip, compliance = slip_rows(pack, points), None
+    if pack.faces.slides:
+        compliance = slip_compliance(pack, points) * (scales.force / scales.length)
+    return replace(
+        friction,
+        stiffness=np.zeros(slip.shape[0]),
+        slip=slip,
+        reaction_share=sp.csr_array(on_petals),
+        compliance=compliance,
+    )

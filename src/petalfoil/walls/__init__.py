@@ -6,6 +6,7 @@
 `elasticity.py`      elastic forces from deflections
 `petals.py`          a leaf pack
 `element_pack.py`    the same in cubic elements, 2-D
+`pack_slip.py`       slip at its contact points
 `bump_foil.py`       a bump foil under a smooth top foil
 `rigid.py`           a rigid bore: plain gas journal bearing
 `two_bearings.py`    a wall twice, on one shaft that tilts

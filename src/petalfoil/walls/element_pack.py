@@ -18,8 +18,9 @@ from scipy.interpolate import CubicSpline
 from petalfoil.mesh import hermite
 from petalfoil.mesh.pack import PackMesh
 from petalfoil.mesh.pitch import petal_angles
-from petalfoil.physics.gap_curves import ContactPoints, Facing, GapCurves
+from petalfoil.physics.gap_curves import Facing, GapCurves
 from petalfoil.physics.petal_elements import PetalElements
+from petalfoil.physics.petal_sliding import Faces
 from petalfoil.physics.shell import PetalShell
 from petalfoil.walls.base import Wall
 
@@ -45,15 +46,15 @@ class ElementPack:
         That pack.
     per_pitch : int
         Elements per pitch.
-    arms : (count,) array
-        Half the thickness of each petal over its metric radius: slip on a face by slope [1].
+    faces : Faces
+        What the petals slide on.
     """
 
     petals: tuple[PetalElements, ...]
     mesh: PackMesh
     wall: Wall
     per_pitch: int
-    arms: Array
+    faces: Faces
 
     @property
     def elements(self) -> PetalElements:
@@ -150,37 +151,17 @@ class ElementPack:
 
     def from_nodes(self, deflection: Array) -> Array:
         """Unknowns of petals whose nodes have `deflection` (n_wall,), by a cubic spline; (n,)."""
-        W = np.concatenate([np.zeros((self.mesh.count, 1)), deflection.reshape(self.mesh.count, -1)], axis=1)
+        inner = deflection[: self.mesh.count * (self.mesh.n_node - 1)].reshape(self.mesh.count, -1)
+        W = np.concatenate([np.zeros((self.mesh.count, 1)), inner], axis=1)
         curve = CubicSpline(self.mesh.phi, W, axis=1)
         phi = self.elements.phi
         pairs = np.stack([curve(phi), curve(phi, 1) * self.elements.slope_angle], axis=-1)
         first = 2 if self.elements.clamped else 1
         return np.asarray(pairs.reshape(self.mesh.count, -1)[:, first:].ravel())
 
-    def slip(self, points: ContactPoints) -> sp.csr_array:
-        """Slip at all contact points from the unknowns (D1), (j, n); rows of contacts on the journal are empty."""
-        curves, n = self.curves, self.mesh.count
-        element, _ = curves.locate(points.every_curve, points.every_position)
-        turned = curves.rows(points.every_curve, points.every_position, 1) @ self._turning
-        sliding = (points.every_curve >= n).astype(np.float64) / curves.angle[element]
-        return sp.csr_array(sp.diags_array(sliding) @ turned)
 
-    @cached_property
-    def _turning(self) -> sp.csr_array:
-        """As `curves.by_w`, with the sum of the deflections of both petals times their arms in place of the gap."""
-        n, nodes = self.mesh.count, self.nodes[Facing.PETAL]
-        pairs = np.arange(2 * n * len(self.elements.phi)).reshape(n, -1)
-        turned = sp.csr_array(sp.diags_array(np.repeat(self.arms, pairs.shape[1])) @ self.nodal)
-        mine = turned[pairs[:, 2 * nodes.start : 2 * nodes.stop].ravel()]
-        below = pairs[np.arange(1, n + 1) % n, : 2 * (nodes.stop - nodes.start)]
-        facing_bushing = self.nodes[Facing.BUSHING]
-        on_bushing = -turned[pairs[:, 2 * facing_bushing.start : 2 * facing_bushing.stop].ravel()]
-        parts = [self._by_w(Facing.JOURNAL), on_bushing, turned[below.ravel()] + mine]
-        return sp.csr_array(sp.vstack(parts, format="csr"))
-
-
-def element_pack(shells: Sequence[PetalShell], mesh: PackMesh, wall: Wall, arms: Array) -> ElementPack:
-    """The pack of `wall` in Hermite elements; `arms` as in `ElementPack`."""
+def element_pack(shells: Sequence[PetalShell], mesh: PackMesh, wall: Wall, faces: Faces) -> ElementPack:
+    """The pack of `wall` in Hermite elements."""
     pitch = 2.0 * np.pi / mesh.count
     phi = petal_angles(pitch, float(mesh.phi[-1]) / pitch, PETAL_CELLS)
     made: dict[int, PetalElements] = {}
@@ -189,4 +170,4 @@ def element_pack(shells: Sequence[PetalShell], mesh: PackMesh, wall: Wall, arms:
             made[id(shell)] = PetalElements(
                 phi, mesh.axial.length, shell.metric_radius, shell.bend_radius, shell.rigidity, shell.clamped
             )
-    return ElementPack(tuple(made[id(shell)] for shell in shells), mesh, wall, PETAL_CELLS, arms)
+    return ElementPack(tuple(made[id(shell)] for shell in shells), mesh, wall, PETAL_CELLS, faces)

@@ -10,13 +10,14 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.case import Case, Edges, Mount, Package, Petals
+from petalfoil.case import Case, Edges, Mount, Package, Petals, PetalTheory
 from petalfoil.case.petal_table import Petal
 from petalfoil.mesh.pack import PackMesh, pack_mesh
 from petalfoil.mesh.strips import exposed_strips
 from petalfoil.physics.contact import PetalSizes, pack_contacts
 from petalfoil.physics.dry_friction import petal_slip
 from petalfoil.physics.forces import node_area
+from petalfoil.physics.petal_sliding import Faces
 from petalfoil.physics.shell import PetalShell, bending_stress
 from petalfoil.walls.base import Wall, WallState, axial_grid
 from petalfoil.walls.elasticity import Elasticity
@@ -71,6 +72,18 @@ def petal_sizes(case: Case, mesh: PackMesh) -> PetalSizes:
         np.stack([free[package] for package in case.packages]),
         np.array([package.metric_radius for package in case.packages]),
         np.array([package.thickness for package in case.packages]),
+    )
+
+
+def petal_faces(case: Case) -> Faces:
+    """What the petals of `case` slide on."""
+    petals, _ = petals_of(case)
+    return Faces(
+        half_thickness=np.array([0.5 * package.thickness for package in case.packages]),
+        metric_radius=np.array([package.metric_radius for package in case.packages]),
+        bend_radius=np.array([package.bend_radius for package in case.packages]),
+        membrane=np.array([petal.membrane_stiffness for petal in petals.each]),
+        slides=case.petal_theory is PetalTheory.SHELL,
     )
 
 
@@ -139,8 +152,7 @@ class PetalWall(WallKind):
         if not wall.film.axial.is_2d:
             return None
         mesh = build_mesh(case)
-        sizes = petal_sizes(case, mesh)
-        return element_pack(build_shells(case, mesh), mesh, wall, 0.5 * sizes.thickness / sizes.metric_radius)
+        return element_pack(build_shells(case, mesh), mesh, wall, petal_faces(case))
 
     def pitch(self, case: Case) -> float | None:
         """Angle between neighbouring roots [rad]."""
@@ -207,5 +219,5 @@ class PetalWall(WallKind):
 def nodal(mesh: PackMesh, deflection: Array) -> Array:
     """Deflections (n,) at all nodes of the petals, zero at the roots; (petal, node, axial) [m]."""
     W = np.zeros(mesh.shape)
-    W[:, 1:] = deflection.reshape(mesh.count, -1, mesh.n_z)
+    W[:, 1:] = deflection[: W[:, 1:].size].reshape(mesh.count, -1, mesh.n_z)  # what else petals do is behind
     return W

@@ -1,0 +1,58 @@
+"""Slip at the contact points of a pack of Hermite elements, 2-D: turning and sliding of both faces (D1), (M2).
+
+A contact of petal `l` with the one below joins the outer face of `l` and the inner face of `l + 1`; one on the bushing
+has the outer face alone. With the unknowns of the pack and the friction forces `T` of all contacts
+
+    s = B w - C T                                                                                            (M4)
+
+A friction force loads the petals by `- B^T T`. Every contact has an outer face at a place of its own: `C` is positive
+definite, and petals that stick are as stiff as their membranes, not stiffer.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from petalfoil.physics.gap_curves import ContactPoints, Facing
+from petalfoil.physics.petal_sliding import INNER, OUTER, FacePlaces, face_compliance, face_slip
+from petalfoil.walls.element_pack import ElementPack
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+
+def touching_faces(pack: ElementPack, points: ContactPoints) -> tuple[Index, FacePlaces]:
+    """Contact of each face that touches bushing or petal, and its place; contacts on the journal slip on no petal."""
+    n, curves, facing = pack.mesh.count, pack.curves, list(pack.nodes)
+    element, place = curves.locate(points.every_curve, points.every_position)
+    element = element - curves.first[points.every_curve]
+    kind, above = np.divmod(points.every_curve, n)
+    first = np.array([nodes.start for nodes in pack.nodes.values()])[kind]
+    outer = np.flatnonzero(kind != facing.index(Facing.JOURNAL))
+    inner = np.flatnonzero(kind == facing.index(Facing.PETAL))
+    return np.concatenate([outer, inner]), FacePlaces(
+        petal=np.concatenate([above[outer], (above[inner] + 1) % n]),
+        element=np.concatenate([(first + element)[outer], element[inner]]),
+        place=np.concatenate([place[outer], place[inner]]),
+        side=np.concatenate([np.full(len(outer), OUTER), np.full(len(inner), INNER)]),
+    )
+
+
+def slip_rows(pack: ElementPack, points: ContactPoints) -> sp.csr_array:
+    """`B`: slip at all contact points from the unknowns, (j, n) [1]; rows of contacts on the journal are empty."""
+    contact, at = touching_faces(pack, points)
+    own = face_slip(pack.faces, at, pack.elements.element_angle).tocoo()
+    columns = 2 * len(pack.elements.phi) * at.petal[own.row] + own.col
+    shape = (len(points.reaction), pack.nodal.shape[0])
+    return sp.csr_array(sp.coo_array((own.data, (contact[own.row], columns)), shape=shape).tocsr() @ pack.nodal)
+
+
+def slip_compliance(pack: ElementPack, points: ContactPoints) -> Array:
+    """`C`: slip that friction forces take back by stretching the petals, (j, j) [m/N]."""
+    contact, at = touching_faces(pack, points)
+    of_faces = face_compliance(pack.faces, at, pack.elements.element_angle, pack.mesh.axial.length)
+    out = np.zeros((len(points.reaction), len(points.reaction)))
+    np.add.at(out, (contact[:, None], contact), of_faces)
+    return out
