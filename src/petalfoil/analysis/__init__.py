@@ -33,6 +33,7 @@ What they share:
 
 =====================  ===================================================================
 `operating_point.py`   the equilibrium that an analysis is about
+`neighbours.py`        equilibria that begin at the solution of a similar case of a study
 `displacements.py`     the journal displaced point by point
 `hysteresis.py`        the same at rest, with friction between petals
 `speeds.py`            a load followed over speed

@@ -12,6 +12,7 @@ import numpy as np
 from petalfoil.analysis.classic_method import by_classic, newton_only
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.heat_results import with_heat
+from petalfoil.analysis.neighbours import begun, keep
 from petalfoil.analysis.records import branch
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.analysis.thermal_limit import beyond_thermal_limit
@@ -113,12 +114,10 @@ def under_load(case: Case, load: Vector) -> tuple[Solution, Branch]:
         No position was found.
     """
     problem = build_problem(case)
-    try:
-        found = balance_cold(problem, load_of(case, load, problem.layout))
-    except ConvergenceError as failure:
-        raise beyond_capacity(problem, load, failure) from failure
-    found = in_heat(case, found, load)
-    rate = leading_eigenvalue(found)
+    found, rate = begun_under_load(problem, load)
+    if case.heat is not None:
+        found = in_heat(case, found, load)
+        rate = leading_eigenvalue(found)
     alone = branch(rate, case, 1, found.solution_path)
     if not rate.real > 0.0:
         return found, alone
@@ -131,6 +130,23 @@ def under_load(case: Case, load: Vector) -> tuple[Solution, Branch]:
     if other.real > 0.0:
         return found, alone
     return risen, branch(other, case, 2, "followed from rest under the load; another balance is unstable")
+
+
+def begun_under_load(problem: CoupledProblem, load: Vector) -> tuple[Solution, complex]:
+    """The first balance found, with the temperatures of the problem, and its leading eigenvalue.
+
+    Raises
+    ------
+    ConvergenceError
+        No position was found.
+    """
+    wanted = load_of(problem.layout.case, load, problem.layout)
+    try:
+        found, rate = begun(problem, wanted, lambda: balance_cold(problem, wanted))
+    except ConvergenceError as failure:
+        raise beyond_capacity(problem, load, failure) from failure
+    keep(found, alone=not rate.real > 0.0)
+    return found, rate
 
 
 def in_heat(case: Case, found: Solution, load: Vector | None) -> Solution:
@@ -194,13 +210,16 @@ def at_position(case: Case) -> OperatingPoint:
             "operation.moment is balanced together with a load: give one, or the slopes operation.tilt in its place"
         )
     problem = build_problem(case)
-    first = attempt(problem, BARRIERS[0])
+    first, rate = begun(problem, None, lambda: attempt(problem, BARRIERS[0]))
     found = list(filter(None, [first or by_barriers(problem, BARRIERS[1:])]))
-    rates = [leading_eigenvalue(answer) for answer in found]
+    rates = [leading_eigenvalue(answer) if first is None else rate for answer in found]
     several = wall_kind(case).can(Capability.SEVERAL_EQUILIBRIA)
     known = probe(build_problem(coarse(case))) if several else 1
     path = ""
-    if known > 1 or first is None or rates[0].real > 0.0:
+    alone = known == 1 and first is not None and not rate.real > 0.0
+    if first is not None:
+        keep(first, alone=alone)
+    if not alone:
         risen, jumps = ascend(problem)
         if risen is not None:
             found, rates = [risen, *found], [leading_eigenvalue(risen), *rates]

@@ -54,6 +54,8 @@ Memory = Annotated[
 ]
 Fields = Annotated[bool, typer.Option("--fields", help="Write film and petals of each case too, one file a case.")]
 Anew = Annotated[bool, typer.Option("--anew", help="Replace another study in the folder.")]
+NEIGHBOURS_HELP = "Begin cases at the nearest solution where that is quicker: equal to 1e-9, not bit for bit."
+Neighbours = Annotated[bool, typer.Option("--neighbours", help=NEIGHBOURS_HELP)]
 Sample = Annotated[
     str,
     typer.Option("--sample", metavar="SAMPLE", help='A sample instead of all combinations: "lhs 200", "sobol 256".'),
@@ -95,6 +97,7 @@ RUNNING = {
     "memory": (Memory, None),
     "fields": (Fields, False),
     "anew": (Anew, False),
+    "neighbours": (Neighbours, False),
     "as_json": (JSON, False),
 }
 """Options of every study, with their defaults."""
@@ -287,7 +290,15 @@ def executing(title: str, given: dict[str, Any]) -> Iterator[Execution]:
 
     memory = None if given["memory"] is None else memory_of(given["memory"])
     with bar(title) as report:
-        yield Execution(given["workers"], given["scheduler"], memory, given["fields"], given["anew"], report)
+        yield Execution(
+            given["workers"],
+            given["scheduler"],
+            memory,
+            given["fields"],
+            given["anew"],
+            given["neighbours"],
+            report,
+        )
 
 
 def memory_of(text: str) -> float:

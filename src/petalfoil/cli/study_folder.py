@@ -75,7 +75,7 @@ def resume(
         study = Study.load(folder)
         refuse_other_version(study)
         given = {"workers": workers, "scheduler": scheduler, "memory": memory, "fields": fields}
-        run_and_tell(study, folder, {**given, "anew": False, "as_json": as_json})
+        run_and_tell(study, folder, {**given, "anew": False, "neighbours": False, "as_json": as_json})
 
 
 def export(folder: Folder, to: Target, case: Number = None) -> None:

@@ -15,6 +15,8 @@ from petalfoil.results.atomic import replacing
 from petalfoil.studies.question import Question
 
 FILE = "study.toml"
+NEIGHBOURS = "neighbours"
+"""Setting of a study whose cases begin at the solutions of similar ones."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,6 +45,11 @@ class Study:
     vary: Mapping[str, Any]
     settings: Mapping[str, Any] = field(default_factory=dict)
     version: str = __version__
+
+    @property
+    def from_neighbours(self) -> bool:
+        """Whether cases begin at the nearest solution where that is quicker."""
+        return bool(self.settings.get(NEIGHBOURS, False))
 
     def to_toml(self) -> str:
         """All of it, as the file in the folder of the study."""
@@ -94,7 +101,7 @@ class Study:
             "the base case": (self.case.to_toml(), other.case.to_toml()),
             "what is asked": (self.question, other.question),
             "what varies": (dict(self.vary), dict(other.vary)),
-            "sample, limits or budget": (dict(self.settings), dict(other.settings)),
+            "sample, limits, budget or neighbours": (dict(self.settings), dict(other.settings)),
             "the version of petalfoil": (self.version, other.version),
         }
         return [words for words, (mine, its) in pairs.items() if mine != its]

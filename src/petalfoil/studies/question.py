@@ -10,6 +10,7 @@ import json
 import time
 import traceback
 from collections.abc import Mapping
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -18,6 +19,7 @@ from typing import Any, TypeAlias
 from petalfoil.analysis.arguments import StoredResult
 from petalfoil.analysis.declaration import Analysis
 from petalfoil.analysis.known_verbs import find, summaries
+from petalfoil.analysis.neighbours import Memory, beside
 from petalfoil.case import Case, with_values
 from petalfoil.case.hints import nearest
 from petalfoil.errors import ConvergenceError, PetalfoilError, UsageError
@@ -117,6 +119,8 @@ class Task:
         What is asked of it.
     fields : str
         File for its fields; empty where only scalars are wanted.
+    neighbours : bool
+        Whether it may begin at the solution of a similar case that this process has answered.
     """
 
     key: str
@@ -124,6 +128,7 @@ class Task:
     values: Values
     question: Question
     fields: str = ""
+    neighbours: bool = False
 
 
 @dataclass(frozen=True)
@@ -207,9 +212,10 @@ def _asked(task: Task) -> tuple[list[dict[str, Scalar]], str, str]:
     """Scalars of all points, status and reason."""
     case = with_values(_base(task.base), task.values)
     analysis = analysis_of(task.question.verb)
-    run = analysis.start(case, analysis.read(task.question.arguments))
-    for _ in analysis.advance(run):
-        pass
+    with _beside_others(task):
+        run = analysis.start(case, analysis.read(task.question.arguments))
+        for _ in analysis.advance(run):
+            pass
     records = run.records()
     if task.fields:
         _write(analysis, run, Path(task.fields))
@@ -218,6 +224,19 @@ def _asked(task: Task) -> tuple[list[dict[str, Scalar]], str, str]:
     if failed:
         return scalars, NOT_CONVERGED, _words(failed[0])
     return scalars, CONVERGED, _words(records[-1]) if records else ""
+
+
+def _beside_others(task: Task) -> AbstractContextManager[None]:
+    """The solutions of other cases of the study at hand, where the task may use them."""
+    if not task.neighbours:
+        return nullcontext()
+    asked = json.dumps([task.question.verb, task.question.arguments], sort_keys=True)
+    return beside(_memory(task.base, asked), task.values)
+
+
+@lru_cache(maxsize=2)  # a search asks for results and for their derivatives
+def _memory(base: str, asked: str) -> Memory:
+    return Memory()
 
 
 def _scalars(record: Record) -> dict[str, Scalar]:

@@ -10,7 +10,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from pathlib import Path
 from typing import TypeAlias
@@ -21,7 +21,7 @@ from petalfoil.errors import StoreError, UsageError
 from petalfoil.results.store import save
 from petalfoil.studies import store as folders
 from petalfoil.studies.dataset import write_table
-from petalfoil.studies.definition import FILE, Study
+from petalfoil.studies.definition import FILE, NEIGHBOURS, Study
 from petalfoil.studies.engine import Effort, Engine, engine
 from petalfoil.studies.plan import Point
 from petalfoil.studies.question import ERROR, Outcome, Question, Task
@@ -35,7 +35,7 @@ KINDS = ("sweep", "tolerance", "sobol", "optimize")
 
 @dataclass(frozen=True)
 class Execution:
-    """How a study is run; nothing of it changes an answer.
+    """How a study is run; nothing of it but `neighbours` changes a bit of an answer.
 
     Attributes
     ----------
@@ -49,6 +49,9 @@ class Execution:
         Whether all labelled data of each case are written too.
     anew : bool
         Whether another study in the folder is replaced.
+    neighbours : bool
+        Whether cases begin at the nearest solution that their worker has, where that is quicker. Answers then agree to
+        1e-9 with those of cases by themselves. It becomes part of the study, which goes on the same way.
     progress : callable or None
         Called with the part done (0 to 1) and a text.
     """
@@ -58,6 +61,7 @@ class Execution:
     memory: float | None = None
     fields: bool = False
     anew: bool = False
+    neighbours: bool = False
     progress: Progress | None = None
 
 
@@ -137,7 +141,7 @@ class Runner:
                 continue
             met.add(key)
             path = str(self.store.fields_of(key).resolve()) if self.execution.fields else ""
-            yield Task(key, self.base, point, asked, path)
+            yield Task(key, self.base, point, asked, path, self.study.from_neighbours)
 
 
 class _Pace:
@@ -215,6 +219,8 @@ def run_with_effort(
 ) -> tuple[xr.Dataset, Effort]:
     """The same, and the processor time that it took in this run."""
     how = execution or Execution()
+    if how.neighbours:
+        study = replace(study, settings={**study.settings, NEIGHBOURS: True})
     with ExitStack() as stack:
         if how.scheduler:  # one that is not there leaves no folder
             answers = stack.enter_context(engine(None, how.scheduler, None))

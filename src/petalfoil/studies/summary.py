@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from petalfoil.analysis.neighbours import FROM_NEIGHBOUR
 from petalfoil.results.schema import SCALARS, DataType, Role
 from petalfoil.results.summary import cell, in_order, values_without_rounding
 from petalfoil.studies.question import CONVERGED
@@ -33,7 +34,21 @@ def headline(ds: xr.Dataset) -> str:
     what = f"{ds.attrs['analysis']} of {ds.attrs['asked']}: {len(status)} cases, {counts[CONVERGED]} converged"
     optimum = extra(ds).get("optimum")
     found = "" if optimum is None else f"; {_found(optimum)}"
-    return what + (f", {others}" if others else "") + found
+    near = _from_neighbours(ds)
+    return what + (f", {others}" if others else "") + (f", {near} from a neighbour" if near else "") + found
+
+
+def _from_neighbours(ds: xr.Dataset) -> int:
+    """How many cases began at the solution of another."""
+    if "solution_path" not in ds:
+        return 0
+    paths = [str(text) for text in np.ravel(of_last_point(ds["solution_path"]).values)]
+    return sum(FROM_NEIGHBOUR in text for text in paths)
+
+
+def of_last_point(values: xr.DataArray) -> xr.DataArray:
+    """One value a case: of a series of points the last."""
+    return values.isel(point=-1) if "point" in values.dims else values
 
 
 def _found(optimum: dict[str, Any]) -> str:
