@@ -10,7 +10,7 @@ In the order data flows:
 - `sections`: the tables of bearing, surface, operation and model.
 - `metals`: metals by their names.
 - `petal_table`: the table of the petals.
-- `bump_foil_table`: the table of a bump foil.
+- `bump_foil_table`: the tables of a bump foil and of backing springs.
 - `gas`: the table of the gas.
 - `rotor`: the table of the rotor.
 - `heat`: the table of the heat network, and the gas as it warms up.
@@ -29,7 +29,7 @@ In the order data flows:
 All numbers are floats in SI units; texts such as ``"25 um"`` are read when a definition is made.
 """
 
-from petalfoil.case.bump_foil_table import BumpFoil, Feet
+from petalfoil.case.bump_foil_table import Backing, BumpFoil, Feet, Springs
 from petalfoil.case.definitions import Case
 from petalfoil.case.free_shape import arc_radius, chordal_tilt
 from petalfoil.case.gas import Gas
@@ -44,6 +44,7 @@ from petalfoil.case.sections import Bearing, Edges, Method, Model, ModelKind, Op
 from petalfoil.case.wall_tables import WallTable, register_table, unregister_table
 
 __all__ = [
+    "Backing",
     "Bearing",
     "BumpFoil",
     "Bushing",
@@ -65,6 +66,7 @@ __all__ = [
     "Petals",
     "Rotor",
     "Shaft",
+    "Springs",
     "Surface",
     "WallTable",
     "arc_radius",

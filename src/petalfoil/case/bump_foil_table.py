@@ -1,4 +1,4 @@
-"""A bump foil: a smooth top foil on a corrugated one, between film and bushing."""
+"""Bumps as springs: under the smooth top foil of a bump foil, and behind petals."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import field_validator
 
+from petalfoil.case.definition import Definition
 from petalfoil.case.metals import Metal, metal_of
 from petalfoil.case.number_fields import Quantity
 from petalfoil.case.problems import Problem
@@ -26,14 +27,8 @@ STRIP = ("bump_pitch", "bump_half_length", "thickness", "youngs_modulus", "poiss
 """Keys from which the stiffness of the bumps follows."""
 
 
-class BumpFoil(WallTable):
-    """A bump foil under a smooth top foil, as springs side by side; the bushing radius is that of the free top foil.
-
-    The springs are linear both ways: where the film is below ambient pressure the top foil follows it inward, as one
-    that is held to its bumps.
-    """
-
-    section: ClassVar[str] = "bump_foil"
+class Springs(Definition):
+    """Springs side by side that a corrugated strip makes, by their stiffness or by the geometry of the strip."""
 
     foundation_stiffness: (
         Annotated[
@@ -71,7 +66,7 @@ class BumpFoil(WallTable):
         | None
     ) = None
     material: str | None = None
-    """Metal of bumps and top foil by name, in place of its modulus and Poisson's ratio."""
+    """Metal of the strip by name, in place of its modulus and Poisson's ratio."""
     metal_temperature: Annotated[
         float, Quantity(unit="K", meaning="temperature of the foil's metal", symbol="T_m", above=0.0, at_most=2000.0)
     ] = 293.15
@@ -82,10 +77,11 @@ class BumpFoil(WallTable):
     poisson_ratio: (
         Annotated[float, Quantity(unit="1", meaning="Poisson's ratio", symbol="nu", above=-1.0, below=0.5)] | None
     ) = None
-    top_foil_thickness: Annotated[
-        float,
-        Quantity(unit="m", meaning="thickness of a top foil that bends", symbol="t_t", at_least=0.0, at_most=0.01),
-    ] = 0.0
+
+    @property
+    def bends_top_foil(self) -> bool:
+        """Whether a top foil bends on the springs, of the same metal."""
+        return False
 
     @property
     def travel(self) -> float:
@@ -118,17 +114,17 @@ class BumpFoil(WallTable):
         return None if material is None else metal_of(material).name
 
     def problems(self) -> Iterator[Problem]:
-        """Yield what keeps the stiffness of the foil from being known, or gives it twice."""
+        """Yield what keeps the stiffness of the springs from being known, or gives it twice."""
         given = [key for key in (*STRIP, "bump_half_angle") if getattr(self, key) is not None]
         yield from self._metal_problems()
         either = "foundation_stiffness alone, or the strip: " + ", ".join(STRIP)
         metal = {"youngs_modulus", "poisson_ratio"}
         if self.foundation_stiffness is not None:
-            twice = [key for key in given if not (self.top_foil_thickness and key in metal)]
+            twice = [key for key in given if not (self.bends_top_foil and key in metal)]
             if twice:
                 text = f"is given beside {', '.join(twice)}, from which it follows too; allowed: {either}"
                 yield self._problem("foundation_stiffness", text, self.foundation_stiffness, either)
-            needed: tuple[str, ...] = tuple(sorted(metal)) if self.top_foil_thickness else ()
+            needed: tuple[str, ...] = tuple(sorted(metal)) if self.bends_top_foil else ()
             held = self.feet is Feet.HELD
         else:
             needed, held = STRIP, self.feet is Feet.HELD and self.bump_half_angle is None
@@ -157,3 +153,56 @@ class BumpFoil(WallTable):
 
     def _problem(self, key: str, text: str, given: object, allowed: str) -> Problem:
         return Problem(f"{self.section}.{key}", text, given, allowed)
+
+
+class BumpFoil(Springs, WallTable):
+    """A bump foil under a smooth top foil, as springs side by side; the bushing radius is that of the free top foil.
+
+    The springs are linear both ways: where the film is below ambient pressure the top foil follows it inward, as one
+    that is held to its bumps.
+    """
+
+    section: ClassVar[str] = "bump_foil"
+
+    top_foil_thickness: Annotated[
+        float,
+        Quantity(unit="m", meaning="thickness of a top foil that bends", symbol="t_t", at_least=0.0, at_most=0.01),
+    ] = 0.0
+
+    @property
+    def bends_top_foil(self) -> bool:
+        """Where it has a thickness."""
+        return self.top_foil_thickness > 0.0
+
+
+class Backing(Springs):
+    """Backing springs: a corrugated strip between petals and bushing, over the pitch behind each root.
+
+    A petal that is pressed outward rests on the springs in place of a rigid bushing, and leaves them where it is drawn
+    inward. The roots of the petals are held at the bushing radius.
+    """
+
+    section: ClassVar[str] = "backing"
+
+    height: Annotated[
+        float,
+        Quantity(
+            unit="m",
+            meaning="height of the free crowns inside the bushing radius",
+            symbol="h_s",
+            at_least=0.0,
+            at_most=0.01,
+        ),
+    ] = 0.0
+    start: Annotated[
+        float,
+        Quantity(unit="m", meaning="arc length from the root to the strip", symbol="l_s", at_least=0.0, at_most=1.0),
+    ] = 0.0
+    """In front of it petals lie on the bushing."""
+
+    def problems_under(self, pitch: float) -> Iterator[Problem]:
+        """Yield the same, and a strip that begins behind the arc of a `pitch` [m]."""
+        yield from self.problems()
+        if self.start >= pitch:
+            text = f"{self.start:g} m is behind the arc of a pitch, {pitch:g} m, on which springs stand; allowed: less"
+            yield self._problem("start", text, self.start, f"less than {pitch:g} m")

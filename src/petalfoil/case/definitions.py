@@ -11,7 +11,7 @@ from typing import Any, Self
 from pydantic import Field, model_validator
 
 from petalfoil.case import toml
-from petalfoil.case.bump_foil_table import BumpFoil
+from petalfoil.case.bump_foil_table import Backing, BumpFoil
 from petalfoil.case.definition import Definition
 from petalfoil.case.gas import Gas
 from petalfoil.case.growth import REFERENCE_TEMPERATURE, Bushing, Growth, Shaft, growth_problems
@@ -66,6 +66,7 @@ class Case(Definition):
     shaft: Shaft | None = None
     bushing: Bushing | None = None
     petals: Petals | None = None
+    backing: Backing | None = None
     bump_foil: BumpFoil | None = None
     gas: Gas
     heat: Heat | None = None
@@ -276,12 +277,22 @@ class Case(Definition):
             names = " and ".join(f"[{wall.section}]" for wall in self.walls)
             yield Problem("", f"{names} both describe the wall; allowed: one of them", names, "one of them")
         found = [problem for wall in self.walls for problem in wall.problems()]
+        found += self._backing_problems()
         found += growth_problems(self.bearing, self.shaft)
         if not found:
             found = list(bearing_problems(self.bearing, self.surface, self.operation, self.travel))
         if not found and self.petals is not None:
             found = list(package_problems(self.bearing, self.petals, self.surface, self.operation))
         yield from found or self._problems_as_grown()
+
+    def _backing_problems(self) -> list[Problem]:
+        """Why springs cannot stand behind petals: there are none, or the stiffness is not known."""
+        if self.backing is None:
+            return []
+        if self.petals is None:
+            text = "backing springs stand behind petals, and there are none; allowed: with [petals], or [bump_foil]"
+            return [Problem("backing", text, None, "with [petals]")]
+        return list(self.backing.problems_under(self.petals.pitch * self.bearing.bushing_radius))
 
     def _problems_as_grown(self) -> Iterator[Problem]:
         """Yield what fits at rest at 20 °C, but not as shaft and bushing have grown."""
@@ -329,6 +340,9 @@ class Case(Definition):
         if self.model.method is Method.CLASSIC and self.petals is not None and len(set(self.petals.each)) > 1:
             text = 'the paper\'s method is for equal petals; allowed: "newton", or one value for all petals'
             yield Problem("model.method", text, "classic", "newton, or equal petals")
+        if self.model.method is Method.CLASSIC and self.backing is not None:
+            text = 'the paper has no backing springs; allowed: "newton", or no [backing]'
+            yield Problem("model.method", text, "classic", "newton, or no [backing]")
 
     def _tilt_problems(self) -> Iterator[Problem]:
         """Yield why a journal cannot tilt: no length, the paper's method, two bearings, or two ways to say it."""

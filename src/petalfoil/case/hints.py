@@ -65,6 +65,7 @@ _EXPLAINED = (
         r"tilt|misalign|slope",
         "The journal's axis is held at operation.tilt, or tilts under operation.moment, or with a rotor.span.",
     ),
+    (r"backing|spring", "Springs behind petals stand in the table [backing]."),
     (r"bump|compliant|foundation", "Bump foils stand in the table [bump_foil], in place of [petals]."),
     (
         r"feed|supply|orifice|inlet|recess|porous",

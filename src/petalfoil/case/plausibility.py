@@ -206,7 +206,7 @@ def _unbalance(case: Case) -> Iterator[str]:
 
 
 def _metal(case: Case) -> Iterator[str]:
-    for table in (case.petals, case.bump_foil):
+    for table in (case.petals, case.bump_foil, case.backing):
         metal = None if table is None else table.metal
         if table is None or metal is None:
             continue
@@ -248,14 +248,14 @@ def _of_answer(case: Case, scalars: Scalars) -> Iterator[str]:
     yield from _rarefaction(case, _number(scalars, "knudsen_number"))
     yield from _contact(case, scalars)
     yield from _mixed_lubrication(case, scalars)
-    yield from _pressed_bumps(case, _number(scalars, "max_deflection"))
+    yield from _pressed_bumps(case, scalars)
     if any(words in str(scalars.get("solution_path", "")) for words in BOTTOMED_OUT):
         yield (
             "solution_path: the foil pack has bottomed out, journal, petals and bushing touch as a solid stack, whose "
             "own stiffness is not modelled; reduce the load, or enlarge the pack's clearance"
         )
     at_nodes = "at nodes" in str(scalars.get("contact_slopes", ""))
-    if at_nodes and case.petals is not None and case.model.kind is ModelKind.TWO_D:
+    if at_nodes and case.petals is not None and case.backing is None and case.model.kind is ModelKind.TWO_D:
         yield (
             "contact_slopes: no equilibrium with contact points was found, stiffness and damping are those of contacts "
             "at nodes: known to several per cent where petals lie on each other along stretches; compare two grids "
@@ -322,13 +322,15 @@ def _turbulence(case: Case, scalars: Scalars) -> Iterator[str]:
         )
 
 
-def _pressed_bumps(case: Case, deflection: float) -> Iterator[str]:
-    if deflection > case.travel:
-        yield (
-            f"max_deflection: the foil is pressed in by {format_quantity(deflection, 'm')}, more than the height of "
-            f"its bumps, {format_quantity(case.travel, 'm')}: they would lie on the bushing, which is not modelled; "
-            "reduce the load, or take stiffer bumps"
-        )
+def _pressed_bumps(case: Case, scalars: Scalars) -> Iterator[str]:
+    for springs, name in ((case.bump_foil, "max_deflection"), (case.backing, "max_backing_deflection")):
+        deflection = _number(scalars, name)
+        if springs is not None and deflection > springs.travel:
+            yield (
+                f"{name}: the foil is pressed in by {format_quantity(deflection, 'm')}, more than the height of "
+                f"its bumps, {format_quantity(springs.travel, 'm')}: they would lie on the bushing, which is not "
+                "modelled; reduce the load, or take stiffer bumps"
+            )
 
 
 def warnings_of_errors(scalars: Scalars, errors: Mapping[str, float]) -> list[str]:

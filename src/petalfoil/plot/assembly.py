@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from petalfoil.plot import labels, style
 from petalfoil.plot.labels import MICRO
 from petalfoil.plot.section import default_scale, frame_section
-from petalfoil.plot.section_walls import draw_petals, draw_solids
+from petalfoil.plot.section_walls import draw_backing, draw_free_foil, draw_petals, draw_solids, foil_room
 from petalfoil.plot.stretch import Stretch
 from petalfoil.plot.views import Floats, array, journal_surface, mid_plane, number, one_point
 
@@ -78,8 +78,11 @@ def _facts(ds: xr.Dataset) -> list[str]:
 
 def _draw_section(ax: Axes, ds: xr.Dataset) -> None:
     """The section with its radial clearance stretched; the first petal stands out as in the unrolled picture."""
-    stretch = Stretch(number(ds, "bushing_radius"), default_scale(ds))
+    scale = default_scale(ds)
+    stretch = Stretch(number(ds, "bushing_radius"), scale, foil_room(ds, scale))
     draw_solids(ax, ds, stretch)
+    draw_free_foil(ax, ds, stretch)
+    draw_backing(ax, ds, stretch)
     draw_petals(ax, ds, stretch)
     for patch in ax.patches:
         if patch.get_gid() == "petal 0":

@@ -21,7 +21,7 @@ from matplotlib.patches import FancyArrowPatch
 from petalfoil.errors import UsageError
 from petalfoil.plot import labels, style
 from petalfoil.plot.film_fields import draw_film, draw_film_map, draw_pressure, draw_pressure_map
-from petalfoil.plot.section_walls import draw_foil, draw_petals, draw_solids, foil_room
+from petalfoil.plot.section_walls import draw_backing, draw_foil, draw_petals, draw_solids, foil_room
 from petalfoil.plot.stretch import Stretch, round_scale
 from petalfoil.plot.views import (
     Floats,
@@ -113,6 +113,7 @@ def draw_section(ax: Axes, ds: xr.Dataset, scale: float | None = None) -> None:
     factor = _checked_scale(plane, scale)
     stretch = Stretch(number(ds, "bushing_radius"), factor, foil_room(ds, factor))
     draw_solids(ax, plane, stretch)
+    draw_backing(ax, plane, stretch)
     draw_petals(ax, plane, stretch)
     if "pressure" in ds:
         shades = Shades.of(
@@ -130,8 +131,8 @@ def draw_section(ax: Axes, ds: xr.Dataset, scale: float | None = None) -> None:
 
 
 def default_scale(ds: xr.Dataset) -> float:
-    """The largest of 1, 2, 5, 10, ... that keeps the radial clearance within its share of the drawing."""
-    return round_scale(number(ds, "bushing_radius"), number(ds, "journal_radius"))
+    """The largest of 1, 2, 5, 10, ... that keeps the radial clearance within its share and the journal round."""
+    return round_scale(number(ds, "bushing_radius"), number(ds, "journal_radius"), math.hypot(*displacement(ds)))
 
 
 def _checked_scale(ds: xr.Dataset, scale: float | None) -> float:
@@ -282,7 +283,7 @@ def frame_section(ax: Axes, stretch: Stretch) -> None:
     size = stretch.bushing
     ax.set_xlim(-1.18 * size, 1.18 * size)
     ax.set_ylim(-(1.18 + _LEGEND) * size, 1.18 * size)
-    wall = "foil" if stretch.foil else "petals"
+    wall = "foil" if any(line.get_gid() == "top foil" for line in ax.lines) else "petals"
     note = f"radial clearance drawn ×{labels.grouped(stretch.scale)}: {wall}, film and displacement alike"
     ax.text(0.0, -1.24 * size, note, ha="center", va="center", fontsize=style.TICK, color=style.INK)
     below = {"bbox_to_anchor": (0.0, -1.27 * size), "bbox_transform": ax.transData, "borderaxespad": 0.0}

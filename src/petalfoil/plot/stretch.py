@@ -58,14 +58,22 @@ def petal_outline(radius: Floats, theta: Floats, half: float, stretch: Stretch) 
     return np.concatenate([inner, outer[::-1]])
 
 
-def round_scale(bore: float, journal: float) -> float:
-    """The largest of 1, 2, 5, 10, ... that keeps the radial clearance within its share of the drawing.
+ROUND = 0.3
+"""Largest drawn displacement over the drawn radius of the journal by default: beyond it a circle looks squashed, since
+the map stretches radii and keeps angles."""
+
+
+def round_scale(bore: float, journal: float, displaced: float = 0.0) -> float:
+    """The largest of 1, 2, 5, 10, ... that keeps the radial clearance within its share and the journal round.
 
     Parameters
     ----------
     bore, journal : float
         Radii of bushing and journal [m].
+    displaced : float
+        Displacement of the journal [m].
     """
-    most = max(CLEARANCE_SHARE * bore / (bore - journal), 1.0)
+    clearance = bore - journal
+    most = max(min(CLEARANCE_SHARE * bore / clearance, ROUND * bore / (displaced + ROUND * clearance)), 1.0)
     decade = 10.0 ** math.floor(math.log10(most))
     return max(step * decade for step in (1.0, 2.0, 5.0) if step * decade <= most)

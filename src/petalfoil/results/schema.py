@@ -134,6 +134,7 @@ FIELDS: dict[str, Variable] = {
     "deflection": Variable(_PETAL, "m", "deflection of the petal, positive toward the bushing", "W"),
     "radius": Variable(_PETAL, "m", "radius of the deformed mid-surface of the petal", "r"),
     "free_radius": Variable(("phi",), "m", "radius of the free mid-surface of a petal", "r_0", role=Role.GEOMETRY),
+    "backing_deflection": Variable(_PETAL, "m", "deflection of the backing springs behind the petals", "V"),
     "bushing_contact_pressure": Variable(_PETAL, "Pa", "contact pressure between petal and bushing", "lambda_B"),
     "petal_contact_pressure": Variable(
         _PETAL, "Pa", "contact pressure between petal l and petal l+1, at the angle of petal l", "lambda_P"
@@ -255,6 +256,7 @@ SCALARS: dict[str, Variable] = {
     "heat_to_gas": _answer("W", "heat that the side leakage carries away", "Q_g"),
     "heat_balance_error": _answer("1", "friction power less the heat that leaves the film, over the power", "e_q"),
     "side_leakage": _answer("kg s-1", "mass flow of gas that leaves at both ends", "m_dot"),
+    "max_backing_deflection": _answer("m", "largest deflection of the backing springs", "max V"),
     "max_deflection": _answer("m", "largest deflection of a bump foil", "max W"),
     "max_bending_stress": _answer("Pa", "maximum magnitude of the bending stress of the petals", "sigma_max"),
     "critical_mass": _answer("kg", "critical mass of a rigid rotor: it whirls above", "m_c"),
@@ -318,6 +320,8 @@ SCALARS: dict[str, Variable] = {
     "bushing_radius": _geometry("m", "radius of the bushing", "R_B"),
     "length": _geometry("m", "length of the bearing", "L"),
     "span": _geometry("m", "distance between two equal bearings", "2 l"),
+    "backing_height": _geometry("m", "height of the free crowns of backing springs", "h_s"),
+    "backing_start": _geometry("m", "arc length from a root to its backing springs", "l_s"),
     "petal_thickness": _geometry("m", "thickness of a petal with its coating", "delta"),
     "ambient_pressure": _geometry("Pa", "ambient pressure, absolute", "p_a"),
     "contact_film_thickness": _geometry("m", "contact film thickness, at which the journal touches", "h_min"),
@@ -334,7 +338,7 @@ SCALARS: dict[str, Variable] = {
     "compressibility_number": _geometry("1", "compressibility number on the radial clearance", "Lambda"),
     "viscosity": _geometry("Pa s", "dynamic viscosity of the gas", "mu"),
     "mean_free_path": _geometry("m", "mean free path of the gas at ambient pressure", "lambda_a"),
-    "foundation_stiffness": _geometry("Pa m-1", "pressure over deflection of a bump foil", "k_b"),
+    "foundation_stiffness": _geometry("Pa m-1", "pressure over deflection of a bump foil or of backing springs", "k_b"),
     "bending_stiffness": _geometry("N m", "bending stiffness of a petal per length", "D"),
     "root_tilt": _geometry("rad", "turn of the free petal at its root, inward from the bore's tangent", "psi"),
     "first_contact_angle": _geometry(

@@ -90,6 +90,7 @@ _SHOWN: dict[str, Shown] = {
     "heat_to_pack": Shown("heat to pack", "W"),
     "heat_to_gas": Shown("heat to side leakage", "W"),
     "side_leakage": Shown("side leakage", "mg/s", 1e6),
+    "max_backing_deflection": Shown("maximum backing deflection", "µm", 1e6),
     "max_deflection": Shown("maximum deflection", "µm", 1e6),
     "max_bending_stress": Shown("maximum bending stress", "MPa", 1e-6),
     "overlap": Shown("overlap"),

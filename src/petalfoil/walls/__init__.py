@@ -8,6 +8,7 @@
 `element_pack.py`    the same in cubic elements, 2-D
 `pack_slip.py`       slip at its contact points
 `bump_foil.py`       a bump foil under a smooth top foil
+`backing.py`         backing springs behind petals
 `rigid.py`           a rigid bore: plain gas journal bearing
 `two_bearings.py`    a wall twice, on one shaft that tilts
 `tilting.py`         a wall under a journal whose axis is not parallel to it

@@ -15,7 +15,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.case import BumpFoil, Case, Feet
+from petalfoil.case import BumpFoil, Case, Feet, Springs
 from petalfoil.mesh.strips import FilmMesh
 from petalfoil.physics.bump_strip import BumpStrip
 from petalfoil.physics.forces import node_area
@@ -34,19 +34,19 @@ def bump_foil_of(case: Case) -> BumpFoil:
     return case.bump_foil
 
 
-def foundation_stiffness(foil: BumpFoil) -> float:
+def foundation_stiffness(springs: Springs) -> float:
     """Pressure over deflection, `k_b`: as given, or that of a bump over its pitch [Pa/m]."""
-    if foil.foundation_stiffness is not None:
-        return foil.foundation_stiffness
-    pitch, half_length, thickness = foil.bump_pitch, foil.bump_half_length, foil.thickness
+    if springs.foundation_stiffness is not None:
+        return springs.foundation_stiffness
+    pitch, half_length, thickness = springs.bump_pitch, springs.bump_half_length, springs.thickness
     assert pitch is not None  # a case refuses a strip that is not whole
     assert half_length is not None
     assert thickness is not None
-    rigidity = foil.rigidity(thickness)
-    if foil.bump_half_angle is None:
+    rigidity = springs.rigidity(thickness)
+    if springs.bump_half_angle is None:
         return 6.0 * rigidity / (half_length**3 * pitch)
-    bump = BumpStrip(half_length, foil.bump_half_angle, thickness, rigidity)
-    return (bump.held_stiffness() if foil.feet is Feet.HELD else bump.free_stiffness) / pitch
+    bump = BumpStrip(half_length, springs.bump_half_angle, thickness, rigidity)
+    return (bump.held_stiffness() if springs.feet is Feet.HELD else bump.free_stiffness) / pitch
 
 
 class BumpFoilWall(WallKind):

@@ -19,7 +19,9 @@ from petalfoil.physics.dry_friction import petal_slip
 from petalfoil.physics.forces import node_area
 from petalfoil.physics.petal_sliding import Faces
 from petalfoil.physics.shell import PetalShell, bending_stress
+from petalfoil.walls.backing import covered, on_springs
 from petalfoil.walls.base import Wall, WallState, axial_grid
+from petalfoil.walls.bump_foil import foundation_stiffness
 from petalfoil.walls.elasticity import Elasticity
 from petalfoil.walls.element_pack import ElementPack, element_pack
 from petalfoil.walls.kind import Capability, Fields, Scalars, WallKind
@@ -132,7 +134,7 @@ class PetalWall(WallKind):
         R_j, h_c, r_m = case.bearing.journal_radius, case.surface.contact_film_thickness, sizes.mean_radius
         slip, reaction_share = petal_slip(mesh, 0.5 * sizes.thickness / sizes.metric_radius, film.unknown.size)
         rest = sizes.free_radius[:, mesh.exposed] - 0.5 * sizes.thickness[:, None] - R_j
-        return Wall(
+        wall = Wall(
             film=film,
             elasticity=package_elasticity(shells, mesh),
             film_unknown=mesh.free_numbers()[:, mesh.exposed],
@@ -146,13 +148,18 @@ class PetalWall(WallKind):
             slip=slip,
             reaction_share=reaction_share,
         )
+        return wall if case.backing is None else on_springs(wall, mesh, case.backing, springs_from(case))
 
     def elements(self, case: Case, wall: Wall) -> ElementPack | None:
-        """The pack in Hermite elements, where it is 2-D."""
-        if not wall.film.axial.is_2d:
+        """The pack in Hermite elements, where it is 2-D and on a rigid bushing."""
+        if not wall.film.axial.is_2d or case.backing is not None:
             return None
         mesh = build_mesh(case)
         return element_pack(build_shells(case, mesh), mesh, wall, petal_faces(case))
+
+    def loses_energy(self, case: Case) -> bool:
+        """By the loss factor of its backing springs."""
+        return case.backing is not None and case.backing.loss_factor > 0.0
 
     def pitch(self, case: Case) -> float | None:
         """Angle between neighbouring roots [rad]."""
@@ -181,19 +188,31 @@ class PetalWall(WallKind):
         return {"phi": build_mesh(case).phi}
 
     def cross_section(self, case: Case, deflection: Array) -> Fields:
-        """Radius of the mid-surface, free of the mean petal (node,) and deformed of all (petal, node, axial) [m]."""
+        """Radius of the mid-surface, free of the mean petal (node,) and deformed of all (petal, node, axial) [m].
+
+        With backing springs also their deflection behind the petals, likewise.
+        """
         (_, package), mesh = petals_of(case), build_mesh(case)
         r0 = petal_sizes(case, mesh).free_radius
         radius = mesh.axial.whole(r0[:, :, None] + nodal(mesh, deflection))
-        return {"free_radius": package.free_radius(mesh.phi), "radius": radius}
+        section = {"free_radius": package.free_radius(mesh.phi), "radius": radius}
+        if case.backing is not None:
+            section["backing_deflection"] = mesh.axial.whole(crowns(mesh, deflection, springs_from(case)))
+        return section
 
     def scalars(self, fields: Fields) -> Scalars:
-        """Maximum bending stress."""
-        return {"max_bending_stress": float(np.max(np.abs(fields["bending_stress"])))}
+        """Maximum bending stress, and how far backing springs are pressed in."""
+        found: Scalars = {"max_bending_stress": float(np.max(np.abs(fields["bending_stress"])))}
+        if "backing_deflection" in fields:
+            found["max_backing_deflection"] = float(np.max(fields["backing_deflection"]))
+        return found
 
     def geometry(self, case: Case) -> Scalars:
-        """Thickness of the mean petal."""
-        return {"petal_thickness": petals_of(case)[0].total_thickness}
+        """Thickness of the mean petal, height and start of the springs behind it."""
+        sizes: Scalars = {"petal_thickness": petals_of(case)[0].total_thickness}
+        if case.backing is not None:
+            sizes |= {"backing_height": case.backing.height, "backing_start": case.backing.start}
+        return sizes
 
     def check_scalars(self, case: Case) -> Scalars:
         """Overlap, layers, stiffness, free shape of the mean petal."""
@@ -213,6 +232,7 @@ class PetalWall(WallKind):
             "root_tilt": package.root_tilt,
             "first_contact_angle": float(phi[touching[0]]) if len(touching) else math.nan,
             "free_petal_height": float(np.max(package.metric_radius - r0)),
+            **({} if case.backing is None else {"foundation_stiffness": foundation_stiffness(case.backing)}),
         }
 
 
@@ -221,3 +241,16 @@ def nodal(mesh: PackMesh, deflection: Array) -> Array:
     W = np.zeros(mesh.shape)
     W[:, 1:] = deflection[: W[:, 1:].size].reshape(mesh.count, -1, mesh.n_z)  # what else petals do is behind
     return W
+
+
+def springs_from(case: Case) -> float:
+    """Angle from a root at which backing springs begin [rad]."""
+    return 0.0 if case.backing is None else case.backing.start / case.bearing.bushing_radius
+
+
+def crowns(mesh: PackMesh, deflection: Array, start: float) -> Array:
+    """Deflections (n,) of backing springs from the angle `start` on, elsewhere zero; (petal, node, axial) [m]."""
+    V = np.zeros(mesh.shape)
+    behind = np.arange(mesh.n_node)[mesh.on_bushing][covered(mesh, start) > 0.0]
+    V[:, behind] = deflection[-mesh.count * len(behind) * mesh.n_z :].reshape(mesh.count, -1, mesh.n_z)
+    return V

@@ -99,3 +99,47 @@ def test_a_foil_and_petals_exclude_each_other() -> None:
 def test_a_case_with_a_foil_writes_itself() -> None:
     foil = with_foil(**STRIP, bump_half_angle=0.4, feet="held", loss_factor=0.1)
     assert Case.from_toml(foil.to_toml()) == foil
+
+
+# ---------------------------------------------------------------------------------------------- backing springs
+
+
+def test_backing_springs_are_a_strip_like_any_other() -> None:
+    one = case("backed_petals", backing={**STRIP, "bump_half_angle": 0.4, "height": "60 um"})
+    assert one.backing is not None
+    assert foundation_stiffness(one.backing) == foundation_stiffness(BumpFoil(**STRIP, bump_half_angle=0.4))
+    assert Case.from_toml(one.to_toml()) == one
+    assert one.travel == 0.0
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "words"),
+    [
+        ({}, "backing.bump_pitch", "is missing; expected foundation_stiffness alone, or the strip"),
+        ({**STRIP, "feet": "held"}, "backing.feet", "need a strip with bump_half_angle"),
+        ({"foundation_stiffness": 4e9, "height": "-1 um"}, "backing.height", "at least 0"),
+        (
+            {"foundation_stiffness": 4e9, "top_foil_thickness": "0.1 mm"},
+            "backing.top_foil_thickness",
+            "is not a known key",
+        ),
+        ({"foundation_stiffness": 4e9, "start": "21 mm"}, "backing.start", "behind the arc of a pitch, 0.0204204 m"),
+        ({"foundation_stiffness": 4e9, "hight": "60 um"}, "backing.hight", "Did you mean 'height'"),
+    ],
+)
+def test_springs_whose_force_is_not_known_are_refused(table: dict[str, object], key: str, words: str) -> None:
+    with pytest.raises(DefinitionError) as refusal:
+        case("backed_petals", backing=table)
+    assert refusal.value.key == key
+    assert words in str(refusal.value)
+
+
+@pytest.mark.parametrize("name", ["plain_journal", "bump_foil"])
+def test_springs_without_petals_are_refused(name: str) -> None:
+    with pytest.raises(DefinitionError, match="backing springs stand behind petals, and there are none"):
+        case(name, backing={"foundation_stiffness": 4e9})
+
+
+def test_the_paper_s_method_has_no_springs() -> None:
+    with pytest.raises(DefinitionError, match="the paper has no backing springs"):
+        case("backed_petals", **{"model.method": "classic"})
