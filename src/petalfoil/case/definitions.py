@@ -157,7 +157,7 @@ class Case(Definition):
         """Whether petals slide along themselves and stretch, the default filled in."""
         if self.petals is not None and self.petals.theory is not None:
             return self.petals.theory
-        slides = self.surface.petal_friction > 0.0 and self.model.kind is ModelKind.TWO_D
+        slides = self.surface.petal_friction > 0.0 and self.model.kind is ModelKind.TWO_D and self.backing is None
         return PetalTheory.SHELL if slides else PetalTheory.INEXTENSIBLE
 
     @property
@@ -337,6 +337,9 @@ class Case(Definition):
         if self.petal_theory is PetalTheory.SHELL and self.model.kind is ModelKind.THREE_D:
             text = 'petals that stretch are modelled in 2-D alone; allowed: "inextensible", or model.kind = "2d"'
             yield Problem("petals.theory", text, "shell", "inextensible")
+        if self.petal_theory is PetalTheory.SHELL and self.backing is not None:
+            text = 'petals that stretch are modelled on a rigid bushing alone; allowed: "inextensible", or no [backing]'
+            yield Problem("petals.theory", text, "shell", "inextensible, or no [backing]")
         if self.model.method is Method.CLASSIC and self.petals is not None and len(set(self.petals.each)) > 1:
             text = 'the paper\'s method is for equal petals; allowed: "newton", or one value for all petals'
             yield Problem("model.method", text, "classic", "newton, or equal petals")

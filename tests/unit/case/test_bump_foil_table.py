@@ -140,6 +140,12 @@ def test_springs_without_petals_are_refused(name: str) -> None:
         case(name, backing={"foundation_stiffness": 4e9})
 
 
+def test_petals_that_stretch_have_no_springs() -> None:
+    with pytest.raises(DefinitionError, match="petals that stretch are modelled on a rigid bushing alone"):
+        case("backed_petals", **{"petals.theory": "shell"})
+    assert case("backed_petals", **{"surface.petal_friction": 0.1}).petal_theory.value == "inextensible"
+
+
 def test_the_paper_s_method_has_no_springs() -> None:
     with pytest.raises(DefinitionError, match="the paper has no backing springs"):
         case("backed_petals", **{"model.method": "classic"})
