@@ -34,6 +34,9 @@ MAIN_RESULT = {"solve": "bearing_force", "balance": "min_film_thickness", "lifto
 NOT_PHYSICAL = ("model.", "surface.friction_width", "petals.free_shape_tolerance")
 """Numbers of the discretisation: their derivatives are asked for by name only."""
 
+ALL = "all"
+"""All results of the question, in place of their names."""
+
 ANSWERS = [
     name
     for name, variable in SCALARS.items()
@@ -57,7 +60,9 @@ Ask = Annotated[
 ]
 Of = Annotated[
     list[str] | None,
-    Names(metavar="RESULTS", help='Results, as "min_film_thickness, friction_torque"; by default the main one.'),
+    Names(
+        metavar="RESULTS", help='Results, as "min_film_thickness, friction_torque", or "all"; by default the main one.'
+    ),
 ]
 Step = Annotated[
     float,
@@ -150,9 +155,10 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     verb = ask or ("balance" if load is not None or (case.operation.load and eccentricity is None) else "solve")
     there = posed(at(case, speed), verb, load, eccentricity)
     paths = default_paths(there, verb) if vary is None else [checked(there, path) for path in vary]
-    quantities = [known(name, ANSWERS, "result") for name in of or [MAIN_RESULT[verb]]]
+    quantities = [known(name, [ALL, *ANSWERS], "result") for name in of or [MAIN_RESULT[verb]]]
     asked = Asked(verb, paths, quantities, step, vary is None, contacts == "points")
-    return Points(_points(there, asked, contact_fraction, progress), len(paths) * len(asked.quantities), "effects")
+    most = len(ANSWERS) if ALL in quantities else len(quantities)
+    return Points(_points(there, asked, contact_fraction, progress), len(paths) * most, "effects")
 
 
 def posed(case: Case, verb: str, load: Vector | None, eccentricity: Vector | None) -> Case:
@@ -205,7 +211,8 @@ def _points(case: Case, asked: Asked, limit: float, progress: Progress | None) -
     """One record for each parameter and result, by the size of the effect."""
     with running(progress, "sensitivity") as run:
         there = {name: source for source in sources_of(case, asked, limit) for name in source.values}
-        sources = {known(name, list(there), f"result of {asked.verb} here"): there[name] for name in asked.quantities}
+        quantities = named(asked, list(there))
+        sources = {name: there[name] for name in quantities}
         lines: list[Line] = []
         for number, path in enumerate(asked.paths, 1):
             lines += lines_of(path, sources, asked.step)
@@ -215,12 +222,25 @@ def _points(case: Case, asked: Asked, limit: float, progress: Progress | None) -
         cost = effort(run.seconds)
         records = [
             record_of("sensitivity", case, line.row, *state_of(case, asked.verb), cost, line.outcome)
-            for line in ordered(felt, asked.quantities)
+            for line in ordered(felt, quantities)
         ]
     silent = {line.row.parameter: True for line in lines if line.row.parameter not in {f.row.parameter for f in felt}}
     if records and silent:
         records[-1] = replace(records[-1], remarks=(f"without effect: {', '.join(silent)}",))
     yield from records
+
+
+def named(asked: Asked, there: list[str]) -> list[str]:
+    """Names of the results that are asked for, of those that are `there`.
+
+    Raises
+    ------
+    UsageError
+        A result is none of the question.
+    """
+    if ALL in asked.quantities:
+        return there
+    return [known(name, there, f"result of {asked.verb} here") for name in asked.quantities]
 
 
 def is_felt(case: Case, line: Line) -> bool:

@@ -19,7 +19,7 @@ from petalfoil.case.parameters import Parameter, with_values
 from petalfoil.equilibrium.parameter_response import Equations, EquationValues
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
-from petalfoil.system.build import build_problem
+from petalfoil.system.build import build_problem, on_the_same_wall
 from petalfoil.system.loaded import load_of
 
 Array = NDArray[np.float64]
@@ -38,6 +38,18 @@ step of 1.5 nm where the film is 1 um thin."""
 
 LARGEST_STEP = 1e-4
 """Largest step over the value of the parameter: for those that the gaps do not depend on."""
+
+NO_WALL = (
+    "gas.",
+    "operation.speed",
+    "operation.load",
+    "operation.eccentricity",
+    "surface.friction_coefficient",
+    "shaft.",
+    "bushing.",
+    "heat.",
+)
+"""Parameters that no wall depends on: growth enters with the speed."""
 
 PROBE = 1e-3
 """Part of the largest step over which the change of the gaps is measured first."""
@@ -110,7 +122,8 @@ class Variation:
         """Case and equations with the parameter changed."""
         if change not in self._built:
             there = with_values(self.case, {self.parameter.path: self.value + change})
-            self._built[change] = (there, equations_of(there, under_load=self.own.load is not None))
+            known = self.own if self.parameter.path.startswith(NO_WALL) and there.operation.moment is None else None
+            self._built[change] = (there, equations_of(there, under_load=self.own.load is not None, known=known))
         return self._built[change]
 
     @cached_property
@@ -145,9 +158,9 @@ class Variation:
         return EquationValues.combined(values, [weight / self.step for _, weight in self.stencil])
 
 
-def equations_of(case: Case, *, under_load: bool) -> Equations:
-    """The equations of a case at its displacement, or under its load and moment."""
-    problem = build_problem(case)
+def equations_of(case: Case, *, under_load: bool, known: Equations | None = None) -> Equations:
+    """The equations of a case at its displacement, or under its load and moment; on the wall of `known` equations."""
+    problem = build_problem(case) if known is None else on_the_same_wall(known.problem, case)
     if not under_load:
         return Equations(problem, None)
     if case.operation.load is None:

@@ -17,21 +17,49 @@ Ask: TypeAlias = Callable[[Sequence[Point], Question], list[Outcome]]
 VERB = "sensitivity"
 DIFFERENTIABLE = ("solve", "balance", "liftoff")
 """Analyses whose results have exact derivatives."""
+ALL = "all"
+"""All results that have derivatives, in place of their names."""
 RENAMED = {"loads": "load"}
 """Arguments that `sensitivity` knows by another name."""
+SHARED = ("load", "eccentricity", "speed", "contact_fraction")
+"""Arguments that it shares with them; a question with others has no derivatives."""
+
+
+def derivative_question(question: Question, paths: Sequence[str], names: Sequence[str]) -> Question | None:
+    """What to ask for the derivatives of results of a question by parameters; None where there are none.
+
+    Parameters
+    ----------
+    question : Question
+        The question.
+    paths, names : sequence of str
+        Parameters and results; ``"all"`` for all results.
+    """
+    if VERB not in summaries() or question.verb not in DIFFERENTIABLE:
+        return None
+    if not set(question.arguments) <= {*RENAMED, *SHARED}:
+        return None
+    arguments = {RENAMED.get(name, name): value for name, value in question.arguments.items()}
+    load = arguments.get("load")
+    if isinstance(load, list) and question.verb == "liftoff":  # one lift-off speed for each load
+        if len(load) != 1:
+            return None
+        arguments["load"] = load[0]
+    return Question(VERB, {**arguments, "ask": question.verb, "vary": list(paths), "of": list(names)})
 
 
 def gradients_of(study: Study, ask: Ask) -> Gradients:
     """Derivatives of the results that a study is about, by what varies; None where the analysis has none."""
-    names = _names(study)
-    if VERB not in summaries() or study.question.verb not in DIFFERENTIABLE:
+    names, paths = _names(study), list(study.vary)
+    question = derivative_question(study.question, paths, names)
+    if question is None:
         return lambda point: None
-    arguments = {RENAMED.get(name, name): value for name, value in study.question.arguments.items()}
-    question = Question(VERB, {**arguments, "ask": study.question.verb, "vary": list(study.vary), "of": names})
 
     def at(point: Point) -> Slopes | None:
         (outcome,) = ask([point], question)
-        return _slopes(outcome, names, list(study.vary)) if outcome.converged else None
+        found = slopes_of(outcome)
+        whole = all(math.isfinite(found.get(name, {}).get(path, math.nan)) for name in names for path in paths)
+        return found if whole else None
 
     return at
 
@@ -42,10 +70,12 @@ def _names(study: Study) -> list[str]:
     return Goals.read(*(list(study.settings[name]) for name in ("maximize", "minimize", "subject"))).names
 
 
-def _slopes(outcome: Outcome, names: list[str], paths: list[str]) -> Slopes | None:
-    """Derivatives by result and path; None where one is missing or has two sides that differ."""
-    found: Slopes = {name: {} for name in names}
+def slopes_of(outcome: Outcome | None) -> Slopes:
+    """Derivatives by result and path: the mean of both sides of a kink; empty where there is no answer."""
+    found: Slopes = {}
+    if outcome is None or not outcome.converged:
+        return found
     for record in outcome.records:
-        found[str(record["quantity"])][str(record["parameter"])] = float(record["derivative"])
-    whole = all(path in found[name] and math.isfinite(found[name][path]) for name in names for path in paths)
-    return found if whole else None
+        below, above = float(record["derivative_below"]), float(record["derivative_above"])
+        found.setdefault(str(record["quantity"]), {})[str(record["parameter"])] = 0.5 * (below + above)
+    return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -12,14 +13,17 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from petalfoil.analysis.derivatives import GROWTH
 from petalfoil.case import Case
 from petalfoil.errors import UsageError
 from petalfoil.studies.dataset import dataset
 from petalfoil.studies.definition import Study
+from petalfoil.studies.gradients import ALL, derivative_question, slopes_of
 from petalfoil.studies.limits import Limit, refuse_absent, value_of
 from petalfoil.studies.plan import Plan, Point, points_at, read_sample, refuse_repeated, unit_sample
 from petalfoil.studies.question import Outcome, Question
 from petalfoil.studies.run import Execution, Kind, Runner, key_of, run
+from petalfoil.studies.search import Slopes
 from petalfoil.studies.store import Store
 from petalfoil.studies.summary import plain, results
 from petalfoil.studies.variation import Scatter, read_scatter
@@ -75,8 +79,8 @@ def tolerance(  # noqa: PLR0913 - the options of the command
     -------
     xarray.Dataset
         Results over ``case``. The attribute ``tolerance`` holds, as JSON, mean, standard deviation and quantiles of
-        each result, its first-order estimate, and of each limit the probability that it is kept with its confidence
-        interval.
+        each result, its first-order estimate (by exact derivatives where the analysis has them), and of each limit the
+        probability that it is kept with its confidence interval.
 
     Raises
     ------
@@ -117,46 +121,100 @@ def plan_of(study: Study) -> Plan:
 
 
 def differences_of(study: Study) -> list[Point]:
-    """The nominal bearing, and each parameter one standard deviation below and above it."""
-    points: list[Point] = [{}]
+    """Each parameter one standard deviation below and above its nominal value."""
+    points: list[Point] = []
     for scatter in scatters_of(study):
         points += [{scatter.path: scatter.nominal + side * scatter.standard_deviation} for side in (-1.0, 1.0)]
     return points
 
 
+def slopes_asked(study: Study) -> Question | None:
+    """The question for the derivatives of all results by what scatters; None where the analysis has none."""
+    names = [Limit.read(text).name for text in study.settings["limits"]]
+    paths = [scatter.path for scatter in scatters_of(study)]
+    return derivative_question(study.question, paths, [ALL, *(name for name in names if name in GROWTH)])
+
+
 def conduct(study: Study, runner: Runner) -> None:
-    """Answer the nominal bearing and its differences, then the sample."""
+    """Answer the nominal bearing, its derivatives or else its differences, then the sample."""
     limits = [Limit.read(text) for text in study.settings["limits"]]
     (nominal,) = runner.outcomes([{}])
     if nominal.converged:
         refuse_absent([limit.name for limit in limits], nominal.records, study.question.verb)
-    runner.answer([*differences_of(study), *plan_of(study).points])
+    question = slopes_asked(study)
+    has_slopes = nominal.converged and question is not None and runner.ask([{}], question)[0].converged
+    runner.answer([*([] if has_slopes else differences_of(study)), *plan_of(study).points])
 
 
 def assemble(study: Study, store: Store) -> xr.Dataset:
     """Lay out the sample, and what follows from it."""
-    plan, base = plan_of(study), study.case.to_toml()
-    found = [store.get(key_of(study, base, point)) for point in plan.points]
+    plan = plan_of(study)
+    found = [store.get(key_of(study, study.case.to_toml(), point)) for point in plan.points]
     ds = dataset(study, plan, found)
-    one_by_one = [store.get(key_of(study, base, point)) for point in differences_of(study)]
     limits = [Limit.read(text) for text in study.settings["limits"]]
     names = list(dict.fromkeys([*(limit.name for limit in limits), *results(ds)]))
+    first_order = FirstOrder.of(study, store)
     told = {
-        "results": {name: _told(found, one_by_one, name, plan) for name in names},
+        "results": {name: _told(found, name, first_order) for name in names},
         "limits": [kept(limit, found) for limit in limits],
+        "first_order_by": "exact derivatives" if first_order.slopes else "differences",
     }
     return ds.assign_attrs(tolerance=json.dumps(told, allow_nan=False))
 
 
-def _told(found: Outcomes, one_by_one: Outcomes, name: str, plan: Plan) -> dict[str, Any]:
+@dataclass(frozen=True)
+class FirstOrder:
+    """What one standard deviation of each parameter does to the results, to first order.
+
+    Attributes
+    ----------
+    scatters : list of Scatter
+        What scatters.
+    nominal : Outcome or None
+        The nominal bearing.
+    slopes : dict
+        Exact derivatives by result and path; empty where the analysis has none.
+    sides : list of Outcome or None
+        Without derivatives: each parameter one standard deviation below and above its nominal value.
+    """
+
+    scatters: list[Scatter]
+    nominal: Outcome | None
+    slopes: Slopes
+    sides: Outcomes
+
+    @classmethod
+    def of(cls, study: Study, store: Store) -> FirstOrder:
+        """Read it from the store."""
+        base, question = study.case.to_toml(), slopes_asked(study)
+        slopes = {} if question is None else slopes_of(store.get(question.key(base, {})))
+        sides = [] if slopes else [store.get(key_of(study, base, point)) for point in differences_of(study)]
+        return cls(scatters_of(study), store.get(key_of(study, base, {})), slopes, sides)
+
+    def value(self, name: str) -> float:
+        """A result of the nominal bearing."""
+        return _value(self.nominal, name)
+
+    def effects(self, name: str) -> list[float]:
+        """Change of a result by one standard deviation of each parameter; nan where it has no derivative."""
+        if self.slopes:
+            by_path = self.slopes.get(name, {})
+            return [by_path.get(scatter.path, math.nan) * scatter.standard_deviation for scatter in self.scatters]
+        values = [_value(outcome, name) for outcome in self.sides]
+        return [0.5 * (above - below) for below, above in zip(values[::2], values[1::2], strict=True)]
+
+
+def _value(outcome: Outcome | None, name: str) -> float:
+    return value_of(outcome.records, name) if outcome and outcome.converged else math.nan
+
+
+def _told(found: Outcomes, name: str, first_order: FirstOrder) -> dict[str, Any]:
     values = np.array([value_of(outcome.records, name) for outcome in found if outcome and outcome.converged])
     told: dict[str, Any] = {key: plain(value) for key, value in statistics(values).items()}
-    nominal, *sides = [value_of(o.records, name) if o and o.converged else math.nan for o in one_by_one]
-    effects = [0.5 * (above - below) for below, above in zip(sides[::2], sides[1::2], strict=True)]
-    told["nominal"] = plain(nominal)
+    effects = first_order.effects(name)
+    told["nominal"] = plain(first_order.value(name))
     told["first_order_standard_deviation"] = plain(math.hypot(*effects))
-    paths = (variation.path for variation in plan.variations)
-    told["effects"] = {path: plain(effect) for path, effect in zip(paths, effects, strict=True)}
+    told["effects"] = {s.path: plain(effect) for s, effect in zip(first_order.scatters, effects, strict=True)}
     return told
 
 

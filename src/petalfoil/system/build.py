@@ -28,6 +28,19 @@ def build_problem(case: Case) -> CoupledProblem:
     return discretised(case, build_wall(case), np.array(case.operation.eccentricity))
 
 
+def on_the_same_wall(problem: CoupledProblem, case: Case) -> CoupledProblem:
+    """Discretise a case on the wall of another problem.
+
+    Parameters
+    ----------
+    problem : CoupledProblem
+        A bearing at a position of its journal.
+    case : Case
+        The same bearing but for its gas, speed, load, position and the friction of its journal: what no wall reads.
+    """
+    return discretised(case, problem.layout.wall, np.array(case.operation.eccentricity))
+
+
 def build_tilting(case: Case) -> CoupledProblem:
     """Discretise the whole length of `case` under a journal that is free to tilt, at the slopes of the case."""
     whole = case.replace(**{"model.symmetry": False, "operation.tilt": None})

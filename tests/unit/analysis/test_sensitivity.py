@@ -39,6 +39,15 @@ def test_speed_and_viscosity_have_the_same_relative_effect_on_the_film(under_loa
     assert_allclose(effect["gas.temperature"], 0.0, atol=1e-12)
 
 
+def test_all_results_can_be_asked_for_at_once(under_load: xr.Dataset) -> None:
+    ds = petalfoil.sensitivity(SMALL, "gas.viscosity", load="20 N", of="all", step=0.02)
+    names = list(ds["quantity"].values)
+    assert len(set(names)) == len(names) > 10
+    film = names.index("min_film_thickness")
+    own = under_load["derivative"].values[list(under_load["parameter"].values).index("gas.viscosity")]
+    assert ds["derivative"].values[film] == own
+
+
 def test_the_effect_is_derivative_times_change(under_load: xr.Dataset) -> None:
     change = under_load["parameter_change"].values
     assert_allclose(change, 0.02 * under_load["parameter_value"].values, rtol=1e-15)

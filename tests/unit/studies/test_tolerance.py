@@ -6,16 +6,20 @@ import csv
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from petalfoil.case import Case
 from petalfoil.errors import UnitError, UsageError
+from petalfoil.studies.gradients import derivative_question
 from petalfoil.studies.limits import Limit, unit_of
 from petalfoil.studies.plan import unit_sample
-from petalfoil.studies.question import CONVERGED, NOT_CONVERGED, Outcome
+from petalfoil.studies.question import CONVERGED, NOT_CONVERGED, Outcome, Question
 from petalfoil.studies.run import Execution
+from petalfoil.studies.sweep import sweep
 from petalfoil.studies.tolerance import kept, statistics, tolerance
 from petalfoil.studies.variation import read_scatter
 from tests.cases import case
@@ -143,3 +147,45 @@ def test_a_result_that_the_analysis_does_not_give_is_refused_after_one_case(monk
     with pytest.raises(UsageError, match="solve gives no liftoff_speed; it gives "):
         tolerance(PLAIN, {"gas.viscosity": "± 1 %"}, limits=["liftoff_speed < 1 rpm"], samples=16, execution=ALONE)
     assert len(asked) == 1
+
+
+def first_order(scatter: dict[str, str], ask: str, bearing: Case = PLAIN, **arguments: Any) -> dict[str, Any]:
+    ds = tolerance(bearing, scatter, ask, samples=2, execution=ALONE, **arguments)
+    told: dict[str, Any] = json.loads(ds.attrs["tolerance"])
+    return told
+
+
+@pytest.mark.slow
+def test_the_first_order_is_that_of_exact_derivatives() -> None:
+    """Beside differences over a scatter so small that nothing is curved: the same effects, petal by petal."""
+    bearing = case("paper_n8", **{"model.cells_per_pitch": 8})
+    scatter = {"petals.thickness": "normal 0.1 nm each", "gas.viscosity": "normal 0.001 %"}
+    told = first_order(scatter, "balance", bearing, load=20.0)
+    assert told["first_order_by"] == "exact derivatives"
+    film = told["results"]["min_film_thickness"]
+    sides = [bearing.gas.viscosity * (1.0 + part) for part in (-1e-5, 1e-5)]
+    films = sweep(bearing, {"gas.viscosity": sides}, "balance", load=20.0, execution=ALONE)["min_film_thickness"].values
+    effects = film["effects"]
+    assert len(effects) == 9
+    assert effects["gas.viscosity"] == pytest.approx(0.5 * (films[1] - films[0]), rel=1e-2)
+    assert film["first_order_standard_deviation"] == pytest.approx(math.hypot(*effects.values()), rel=1e-12)
+    assert math.isfinite(effects["petals.thickness[2]"])
+
+
+def test_an_analysis_without_derivatives_has_its_first_order_by_differences(monkeypatch: pytest.MonkeyPatch) -> None:
+    scatter, place = {"gas.viscosity": "normal 0.01 %"}, (0.0, -5e-6)
+    exact = first_order(scatter, "solve", eccentricity=place)
+    monkeypatch.setattr("petalfoil.studies.gradients.DIFFERENTIABLE", ())
+    told = first_order(scatter, "solve", eccentricity=place)
+    assert (exact["first_order_by"], told["first_order_by"]) == ("exact derivatives", "differences")
+    for name in ("bearing_force", "peak_pressure", "friction_torque"):
+        effect = told["results"][name]["effects"]["gas.viscosity"]
+        assert exact["results"][name]["effects"]["gas.viscosity"] == pytest.approx(effect, rel=1e-5)
+
+
+def test_arguments_without_a_derivative_are_not_asked_for_one() -> None:
+    assert derivative_question(Question("balance", {"moment": [0.0, 0.1]}), ["gas.viscosity"], ["all"]) is None
+    assert derivative_question(Question("liftoff", {"loads": [1.0, 2.0]}), ["gas.viscosity"], ["all"]) is None
+    asked = derivative_question(Question("liftoff", {"loads": [20.0]}), ["gas.viscosity"], ["all"])
+    assert asked is not None
+    assert asked.arguments == {"load": 20.0, "ask": "liftoff", "vary": ["gas.viscosity"], "of": ["all"]}
