@@ -41,6 +41,7 @@ What they share:
 `crossings.py`         speeds at which the contact fraction crosses a limit
 `variation.py`         a case at values of one of its parameters
 `derivatives.py`       exact derivatives of the results of an equilibrium
+`heated_derivatives.py` the same where temperatures follow
 `liftoff_derivatives.py`  the same of lift-off and touchdown speed
 `sensitivity_table.py` the rows of `sensitivity`
 `impedance.py`         small motions of the journal

@@ -17,13 +17,24 @@ import numpy as np
 
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.fields import all_fields
+from petalfoil.analysis.heat_results import heat_results
 from petalfoil.analysis.records import position
-from petalfoil.analysis.variation import ABOVE, BELOW, FILM_CHANGE, Stencil, Variation, equations_of, quotient
+from petalfoil.analysis.variation import (
+    ABOVE,
+    BELOW,
+    FILM_CHANGE,
+    EquationFamily,
+    Stencil,
+    Variation,
+    equations_of,
+    quotient,
+)
 from petalfoil.case import Case
 from petalfoil.case.parameters import parameter_of
 from petalfoil.dynamics.leading_mode import LeadingMode
 from petalfoil.equilibrium.parameter_response import (
     Equations,
+    EquationValues,
     HeldEquilibrium,
     ParameterResponse,
     StateRate,
@@ -122,7 +133,8 @@ class DerivativesOf:
         ConvergenceError
             The solution is not one of theirs.
         """
-        own, found = equations_of(self.case, under_load=self.solution.load is not None), self.solution
+        found = self.solution
+        own = equations_of(self.case, under_load=found.load is not None).at_temperatures(found.problem.temperatures)
         residual = total_residual(own.problem.at(displacement=found.problem.displacement), found.state)
         if not residual <= FOREIGN:
             raise ConvergenceError(
@@ -165,17 +177,20 @@ class DerivativesOf:
         """
         return self.along(self.variation(path))
 
-    def along(self, variation: Variation) -> Derivative:
+    def response(self, rates: EquationValues, nearest: float) -> ParameterResponse:
+        """How the state follows; contacts that change within `nearest` of the parameter make a kink."""
+        return point_response(self.with_points, self.held, rates, nearest)
+
+    def along(self, variation: EquationFamily) -> Derivative:
         """Derivatives along a variation of the case."""
-        rates, nearest = variation.rates(self.solution), KINK * variation.size
-        response = point_response(self.with_points, self.held, rates, nearest)
+        response = self.response(variation.rates(self.solution), KINK * variation.size)
         finer = self._small_beside_the_film(variation, response)
         if not response.at_kink:
             along = self._along(finer, response.above, variation.stencil)
             return Derivative(along, along, response.reach, False, finer.fineness)
         return self._on_both_sides(finer, response)
 
-    def _small_beside_the_film(self, variation: Variation, response: ParameterResponse) -> Variation:
+    def _small_beside_the_film(self, variation: EquationFamily, response: ParameterResponse) -> EquationFamily:
         """The variation in steps that change no film by more than `FILM_CHANGE` of it: petals may move it further."""
         steps = variation.stencil[-1][0]
         there = response.above.moved(self.solution, steps * variation.step, variation.at(steps)[1])
@@ -184,7 +199,7 @@ class DerivativesOf:
         change = float(np.max(np.abs(moved / own - 1.0))) / abs(steps)
         return variation if change <= FILM_CHANGE else variation.finer(variation.fineness * FILM_CHANGE / change)
 
-    def _on_both_sides(self, variation: Variation, response: ParameterResponse) -> Derivative:
+    def _on_both_sides(self, variation: EquationFamily, response: ParameterResponse) -> Derivative:
         """Derivatives at a kink; nan on a side where the parameter cannot go."""
         nothing = dict.fromkeys(self.values, math.nan)
         below, above = (
@@ -193,7 +208,7 @@ class DerivativesOf:
         )
         return Derivative(below, above, response.reach, True, variation.fineness)
 
-    def _along(self, variation: Variation, rate: StateRate, points: Stencil) -> Results:
+    def _along(self, variation: EquationFamily, rate: StateRate, points: Stencil) -> Results:
         """Derivatives of the results along the line of the state."""
         sampled = []
         for steps, _ in points:
@@ -207,7 +222,7 @@ class DerivativesOf:
 
 def nearest_turn(name: str, angle: float, own: float) -> float:
     """A result; of an angle, the one of its turns that is nearest to its `own` value."""
-    if SCALARS[name].units != "rad":
+    if name not in SCALARS or SCALARS[name].units != "rad":
         return angle
     return own + math.remainder(angle - own, 2.0 * math.pi)
 
@@ -215,12 +230,15 @@ def nearest_turn(name: str, angle: float, own: float) -> float:
 def equilibrium_results(case: Case, solution: Solution) -> dict[str, float]:
     """Results of an equilibrium that can be differentiated, SI: forces, film, friction, leakage, stress, position.
 
-    The places of extremes are left out: they jump from one strip or one node to another.
+    Temperatures and heat flows too, where there is a heat network. The places of extremes are left out: they jump from
+    one strip or one node to another.
     """
     found = Evaluation.of(case, solution)
+    heat = heat_results(case, solution)
     parts = (found.forces(), found.film(), wall_kind(case).scalars(all_fields(found)), position(case, solution))
-    results = {name: float(value) for name, value in scalars_of(*parts).items() if isinstance(value, float)}
-    return {name: value for name, value in results.items() if name not in PLACES}
+    told = scalars_of(*parts, *([] if heat is None else [heat]))
+    results = {name: float(value) for name, value in told.items() if isinstance(value, float)}
+    return {name: value for name, value in results.items() if name not in WITHOUT_DERIVATIVE}
 
 
 GROWTH = ("growth_rate", "growth_frequency")
@@ -245,5 +263,5 @@ def results_with_growth(solution: Solution) -> ResultsOf:
     return results
 
 
-PLACES = ("min_film_thickness_angle", "min_film_thickness_z", "peak_pressure_angle")
-"""Places of extremes."""
+WITHOUT_DERIVATIVE = ("min_film_thickness_angle", "min_film_thickness_z", "peak_pressure_angle", "heat_balance_error")
+"""Places of extremes, which jump, and what is rounding."""

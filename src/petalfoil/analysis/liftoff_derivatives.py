@@ -14,8 +14,9 @@ import math
 from dataclasses import dataclass, replace
 
 from petalfoil.analysis.crossings import PRECISION, crossings
-from petalfoil.analysis.derivatives import Derivative, DerivativesOf, Results
+from petalfoil.analysis.derivatives import Derivative, Results
 from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.analysis.heated_derivatives import Derivatives, derivatives_of
 from petalfoil.analysis.operating_point import at
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.analysis.variation import Variation
@@ -42,14 +43,14 @@ class SpeedDerivatives:
     ----------
     name : str
         Name of the speed in results.
-    balance : DerivativesOf
+    balance : DerivativesOf or HeatedDerivatives
         Derivatives at the balance there.
     by_speed : float
         Derivative of the contact fraction by the speed [s/rad].
     """
 
     name: str
-    balance: DerivativesOf
+    balance: Derivatives
     by_speed: float
 
     @property
@@ -113,7 +114,7 @@ def speed_derivatives(case: Case, load: float, limit: float, *, as_points: bool 
 def refined(name: str, line: SpeedLine, speed: float, limit: float) -> SpeedDerivatives:
     """Derivatives at the crossing near `speed`, found by Newton's method."""
     for _ in range(NEWTON_STEPS):
-        balance = DerivativesOf(at(line.case, speed), line.at(speed), fraction_of)
+        balance = derivatives_of(at(line.case, speed), line.at(speed), fraction_of)
         by_speed = balance.by(SPEED)
         if by_speed.at_kink:
             raise at_kink(SPEED)
@@ -136,7 +137,7 @@ def of_contacts(found: SpeedDerivatives, *, as_points: bool) -> SpeedDerivatives
     """The derivatives with contacts as points, or at nodes as they are."""
     if not as_points:
         return found
-    balance = replace(found.balance, as_points=True)
+    balance = derivatives_of(found.balance.case, found.balance.solution, fraction_of, as_points=True)
     by_speed = balance.by(SPEED)
     if by_speed.at_kink:
         raise at_kink(SPEED)

@@ -10,7 +10,8 @@ from petalfoil.analysis.arguments import Load, Position, Quantity, Speed
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.crossings import CONTACT_FRACTION
 from petalfoil.analysis.declaration import analysis
-from petalfoil.analysis.derivatives import GROWTH, DerivativesOf, equilibrium_results, results_with_growth
+from petalfoil.analysis.derivatives import GROWTH, equilibrium_results, results_with_growth
+from petalfoil.analysis.heated_derivatives import derivatives_of
 from petalfoil.analysis.liftoff import Limit, own_load
 from petalfoil.analysis.liftoff_derivatives import speed_derivatives
 from petalfoil.analysis.operating_point import Vector, applied_load, at, at_position, under_load
@@ -141,17 +142,11 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     Raises
     ------
     UsageError
-        A parameter is none of the case, a whole number or left to a rule; a result is none of the question; the case
-        has a heat network.
+        A parameter is none of the case, a whole number or left to a rule; a result is none of the question.
     ConvergenceError
         The equilibrium was not found, or its contacts do not determine it.
     """
     newton_only(case)
-    if case.heat is not None:
-        raise UsageError(
-            "derivatives hold the temperatures, and with [heat] these follow every parameter: leave [heat] out, give "
-            "shaft.temperature and bushing.temperature as `balance` finds them, or compare two runs"
-        )
     verb = ask or ("balance" if load is not None or (case.operation.load and eccentricity is None) else "solve")
     there = posed(at(case, speed), verb, load, eccentricity)
     paths = default_paths(there, verb) if vary is None else [checked(there, path) for path in vary]
@@ -269,4 +264,4 @@ def sources_of(case: Case, asked: Asked, limit: float) -> Sequence[Source]:
     load = case.operation.load
     solution = at_position(case).answer if load is None else under_load(case, load)[0]
     results = results_with_growth(solution) if set(asked.quantities) & set(GROWTH) else equilibrium_results
-    return [DerivativesOf(case, solution, results, asked.as_points)]
+    return [derivatives_of(case, solution, results, as_points=asked.as_points)]

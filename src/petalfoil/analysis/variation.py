@@ -6,10 +6,11 @@ is the derivative of the whole chain from the case to its residual.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TypeAlias
+from typing import Self, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,8 +59,52 @@ SIZES = {"m": 1e-4, "rad": 0.1, "N": 1.0, "rad/s": 100.0, "kg": 1.0, "Pa": 1e5, 
 """What a step is compared with where the value of the parameter is zero, by unit [SI]."""
 
 
+class EquationFamily(ABC):
+    """Equations at several values of something that varies.
+
+    Attributes
+    ----------
+    fineness : float
+        Steps over those that were chosen first [1].
+    """
+
+    fineness: float
+
+    @property
+    @abstractmethod
+    def step(self) -> float:
+        """Step of the difference quotients."""
+
+    @property
+    @abstractmethod
+    def size(self) -> float:
+        """What changes are compared with."""
+
+    @property
+    @abstractmethod
+    def stencil(self) -> Stencil:
+        """The difference quotient."""
+
+    @abstractmethod
+    def at(self, steps: int) -> tuple[Case, Equations]:
+        """Case and equations a number of steps away."""
+
+    @abstractmethod
+    def admits(self, points: Stencil) -> bool:
+        """Whether there are values at all points of a difference quotient."""
+
+    @abstractmethod
+    def finer(self, fineness: float) -> Self:
+        """The same with steps of another `fineness`."""
+
+    def rates(self, solution: Solution) -> EquationValues:
+        """Derivatives of the equations at the state of `solution`."""
+        values = [self.at(steps)[1].at_state(solution) for steps, _ in self.stencil]
+        return EquationValues.combined(values, [weight / self.step for _, weight in self.stencil])
+
+
 @dataclass(frozen=True, eq=False)
-class Variation:
+class Variation(EquationFamily):
     """A case at several values of a parameter.
 
     Attributes
@@ -99,7 +144,7 @@ class Variation:
         largest = LARGEST_STEP * self.size
         return self.fineness * (min(largest, FILM_CHANGE * self.film / self.gap_rate) if self.gap_rate else largest)
 
-    def finer(self, fineness: float) -> Variation:
+    def finer(self, fineness: float) -> Self:
         """The same with steps of another `fineness`."""
         return replace(self, fineness=fineness)
 
@@ -123,7 +168,8 @@ class Variation:
         if change not in self._built:
             there = with_values(self.case, {self.parameter.path: self.value + change})
             known = self.own if self.parameter.path.startswith(NO_WALL) and there.operation.moment is None else None
-            self._built[change] = (there, equations_of(there, under_load=self.own.load is not None, known=known))
+            equations = equations_of(there, under_load=self.own.load is not None, known=known)
+            self._built[change] = (there, equations.at_temperatures(self.own.problem.temperatures))
         return self._built[change]
 
     @cached_property
@@ -151,11 +197,6 @@ class Variation:
 
     def _allowed(self, change: float) -> bool:
         return self.parameter.declared.holds(self.value + change)
-
-    def rates(self, solution: Solution) -> EquationValues:
-        """Derivatives of the equations by the parameter at the state of `solution`."""
-        values = [self.at(steps)[1].at_state(solution) for steps, _ in self.stencil]
-        return EquationValues.combined(values, [weight / self.step for _, weight in self.stencil])
 
 
 def equations_of(case: Case, *, under_load: bool, known: Equations | None = None) -> Equations:

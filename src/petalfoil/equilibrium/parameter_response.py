@@ -35,6 +35,7 @@ from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.solvers.tangent import BorderedTangent, Tangent
 from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.temperatures import Temperatures
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -54,6 +55,10 @@ class Equations:
 
     problem: CoupledProblem
     load: Array | None
+
+    def at_temperatures(self, temperatures: Temperatures | None) -> Equations:
+        """The same at temperatures of shaft, pack and bushing; None leaves them as the case has them."""
+        return self if temperatures is None else replace(self, problem=self.problem.at(temperatures=temperatures))
 
     def at_state(self, solution: Solution) -> EquationValues:
         """Left-hand sides of (V1) at the state of a solution, and the displacement where it is given."""
