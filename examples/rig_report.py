@@ -100,8 +100,8 @@ VARIATIONS: dict[str, tuple[dict[str, object], float]] = {
     "lift-off at a contact fraction of 0.5 %": ({}, 0.005),
     "lift-off at a contact fraction of 2 %": ({}, 0.02),
     "lift-off at a contact fraction of 5 %": ({}, 0.05),
-    "film floor 0.5 µm": ({"surface.contact_film_thickness": 0.5e-6}, CONTACT_FRACTION),
-    "film floor 1.5 µm": ({"surface.contact_film_thickness": 1.5e-6}, CONTACT_FRACTION),
+    "contact film thickness 0.5 µm": ({"surface.contact_film_thickness": 0.5e-6}, CONTACT_FRACTION),
+    "contact film thickness 1.5 µm": ({"surface.contact_film_thickness": 1.5e-6}, CONTACT_FRACTION),
     "slip at the walls": ({"model.slip": True}, CONTACT_FRACTION),
     "journal radius 10 µm larger": ({"bearing.journal_radius": 28.6414e-3}, CONTACT_FRACTION),
     "journal radius 10 µm smaller": ({"bearing.journal_radius": 28.6214e-3}, CONTACT_FRACTION),
@@ -204,7 +204,9 @@ def measured(column: Sequence[Axes], leg: str) -> None:
         ax.set_ylim(bottom=0.0)
     floor = 1e6 * rig().surface.contact_film_thickness
     column[2].axhline(floor, color=style.GREY, linestyle="--", linewidth=1.0)
-    column[2].annotate("film floor", (0.98, floor), xycoords=("axes fraction", "data"), ha="right", va="bottom")
+    column[2].annotate(
+        "contact film thickness", (0.98, floor), xycoords=("axes fraction", "data"), ha="right", va="bottom"
+    )
 
 
 def main(folder: Path) -> None:

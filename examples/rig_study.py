@@ -2,10 +2,10 @@
 
     python examples/rig_study.py FOLDER
 
-For every count and mount of the petals, packages are drawn evenly over the ranges (Latin hypercube, seeded), the film
-floor and the friction coefficient are set to what experiments 1 to 3 ask for, and the best package of a count and mount
-is refined (Nelder-Mead). All that explain the experiments are computed again on a fine grid, with the fourth experiment
-as a prediction. 2-D model; about an hour on two cores. The same numbers come out each time; everything found is
+For every count and mount of the petals, packs are drawn evenly over the ranges (Latin hypercube, seeded), the contact
+film thickness and the friction coefficient are set to what experiments 1 to 3 ask for, and the best pack of a count and
+mount is refined (Nelder-Mead). All that explain the experiments are computed again on a fine grid, with the fourth
+experiment as a prediction. 2-D model; about an hour on two cores. The same numbers come out each time; everything found is
 written to FOLDER at once, and a run that was interrupted goes on from there. Told in docs/validation-rig.md.
 """
 
@@ -87,7 +87,7 @@ class Package:
     tilt: float = 1.0
 
     def case(self, floor: float, cells: int) -> Case:
-        """The rig with this package and film floor [m]."""
+        """The rig with this package and contact film thickness [m]."""
         rig = Case.load(HERE / "rig.toml")
         R_B, delta = rig.bearing.bushing_radius, 0.15e-3 + self.coating
         pitch, r_m = 2.0 * math.pi / self.count, R_B - delta / 2.0
@@ -191,7 +191,7 @@ def judge(package: Package, floor: float, cells: int, known: int = FITTED) -> Fi
 
 
 def levelled(package: Package, floor: float, cells: int, loads: Sequence[float]) -> tuple[float, list[float]]:
-    """The film floor [m] at which the lift-off speeds of experiments 1 to 3 have the measured mean, and the speeds."""
+    """Contact film thickness [m] at which experiments 1 to 3 lift off at the measured mean speed, and the speeds."""
     slope, before = 0.7, (math.nan, math.nan)  # of lift-off speed over floor, in logarithms, to begin with
     speeds: list[float] = []
     for _ in range(6):

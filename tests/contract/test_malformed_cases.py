@@ -71,7 +71,7 @@ MALFORMED: dict[str, tuple[str, str, Any, type[DefinitionError], tuple[str, ...]
     "an upright root": (PETALS, "petals.root_tilt", "90 deg", DefinitionError, ("root_tilt", "less than 1.5 rad")),
     "below absolute zero": (PETALS, "gas.temperature", "-300 degC", DefinitionError, ("gas.temperature", "0 K")),
     "vacuum": (PETALS, "gas.ambient_pressure", 0.0, DefinitionError, ("gas.ambient_pressure", "greater than 0 Pa")),
-    "no film floor": (
+    "no contact film thickness": (
         PETALS,
         "surface.contact_film_thickness",
         0,
@@ -107,7 +107,7 @@ MALFORMED: dict[str, tuple[str, str, Any, type[DefinitionError], tuple[str, ...]
     ),
     "a key outside the tables": (PETALS, "speed", 1, DefinitionError, ("speed", "mean 'operation.speed'?")),
     "petal": (PETALS, "petal", {"count": 8}, DefinitionError, ("petal", "mean 'petals'?")),
-    "the film floor of before": (
+    "the contact film thickness of before": (
         PETALS, "surface.film_floor", 1e-6, DefinitionError, ("surface.film_floor", "mean 'contact_film_thickness'?"),
     ),
     "E": (PETALS, "petals.E", 2e11, DefinitionError, ("petals.E", "mean 'youngs_modulus'?")),

@@ -64,6 +64,8 @@ WORDS = {
     "spatial(ly)?": "3-D",
     "in space": "in 3-D",
     "(steps|pictures|points|factorisations|factorizations) a (turn|step|point|pitch|curve|mode|frequency)": "per",
+    "film floor": "contact film thickness",
+    "(the|a|loaded|foil|leaf) package (did|does|takes|no clearance|at|as|there)": "foil pack",
     # rotor and whirl
     "let(s|ting)? (it |them )?go": "releases the rotor",
     "no (rotor )?mass whirls": "stable for any rotor mass",

@@ -43,7 +43,7 @@ def check(case: Case) -> Record:
     Raises
     ------
     ConvergenceError
-        The package did not settle.
+        The foil pack did not settle.
     """
     kind = wall_kind(case)
     derived = (*geometry(case), asked_position(case), bearing_numbers(case), kind.check_scalars(case))
@@ -55,7 +55,7 @@ def check(case: Case) -> Record:
     with running() as run:
         answer = rest(build_problem(slow))
     if answer is None:
-        raise ConvergenceError("the package did not settle at rest", history=run.history, advice="check its geometry")
+        raise ConvergenceError("the foil pack did not settle at rest", history=run.history, advice="check its geometry")
     section = kind.cross_section(slow, wall_state(answer).deflection)
     return record_of("check", case, *derived, fields=dict(section), coords=coordinates(slow, answer), history=[])
 
@@ -64,7 +64,7 @@ def bearing_numbers(case: Case) -> BearingNumbers:
     """Numbers of any bearing.
 
     Without a run the minimum film thickness is the radial clearance of a plain bearing, and at the least the contact
-    film thickness of a package.
+    film thickness of a foil pack.
     """
     scales = Scales(case.bearing.clearance, case.gas.ambient_pressure, 1.0)
     number = scales.bearing_number(case.gas.viscosity, case.operation.speed, case.bearing.journal_radius)

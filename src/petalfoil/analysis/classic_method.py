@@ -41,7 +41,7 @@ def newton_only(case: Case) -> None:
 
 
 def by_classic(problem: CoupledProblem, known: Solution | None = None) -> Solution:
-    """The equilibrium that film and package relax to, from the assembled pack or from a `known` neighbour.
+    """The equilibrium that film and foil pack relax to, from the assembled pack or from a `known` neighbour.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def by_classic(problem: CoupledProblem, known: Solution | None = None) -> Soluti
     """
     reached = relax(telling_run(problem), None if known is None else start_from(known))
     way = "the assembled pack" if known is None else "the neighbouring point"
-    return answer_of(problem, reached, f"film and package relaxed in turn from {way}, {reached.outer} times")
+    return answer_of(problem, reached, f"film and foil pack relaxed in turn from {way}, {reached.outer} times")
 
 
 def rest_by_classic(problem: CoupledProblem) -> Solution:

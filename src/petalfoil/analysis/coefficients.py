@@ -37,6 +37,7 @@ Frequencies = Annotated[
     Values(
         unit="rad/s",
         option="frequency",
+        also="frequencies",
         metavar="LIST",
         help='Whirl frequencies: "600 Hz, 1200 Hz", or "0 Hz : 1500 Hz : 11"; by default the speed, for --ross dense '
         "around half of every speed.",

@@ -61,7 +61,7 @@ def converge(  # noqa: PLR0913 - the options of the verb
     ConvergenceError
         Fewer than two grids have a solution.
     PackageError
-        The displaced journal leaves the package no clearance.
+        The displaced journal leaves the foil pack no clearance.
     """
     case = at(case, speed)
     if load is not None:

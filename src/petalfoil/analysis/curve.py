@@ -55,7 +55,7 @@ def curve(
     Raises
     ------
     PackageError
-        A displacement leaves the package no clearance; before any point is computed.
+        A displacement leaves the foil pack no clearance; before any point is computed.
     """
     cases = displaced(case, eccentricities, direction, speed)
     return Points(partial(_points, cases, progress), len(cases))

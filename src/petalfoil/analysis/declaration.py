@@ -30,6 +30,7 @@ from petalfoil.analysis.resume import asked_for, points_done
 from petalfoil.analysis.runs import Points, Run, Single
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
+from petalfoil.case.hints import nearest
 from petalfoil.equilibrium.run_context import Progress, new_run
 from petalfoil.errors import UsageError
 from petalfoil.results.layout import Answer, Layout
@@ -316,9 +317,25 @@ class Analysis:
     def _begin(
         self, case: Case, given: tuple[Any, ...], named: Values, progress: Progress | None, resume: Any = None
     ) -> Run:
-        bound = self.signature.bind(case, *given, **named).arguments
+        bound = self.signature.bind(case, *given, **self._by_name(named)).arguments
         values = self.read({k: v for k, v in bound.items() if k in self.arguments})
         return self.start(case, values, progress, None if resume is None else RESUME.named("resume", resume))
+
+    def _by_name(self, named: Values) -> Values:
+        """Arguments by the names of the function, where some are given by the name of their option.
+
+        Raises
+        ------
+        TypeError
+            One is no argument; the message has the nearest known one.
+        """
+        options = {argument.option.replace("-", "_"): name for name, argument in self.arguments.items()}
+        options |= {argument.also: name for name, argument in self.arguments.items()}
+        known = [name for name in self.signature.parameters if name != "case"]
+        values = {key if key in known else options.get(key, key): value for key, value in named.items()}
+        for key in values.keys() - set(known):
+            raise TypeError(f"{self.verb}() has no argument {key!r}.{nearest(key, known) or f' Known: {known}.'}")
+        return values
 
     def _records(self, run: Run, progress: Progress | None) -> Iterator[Record]:
         given = 0

@@ -41,7 +41,7 @@ class Point:
     leg : str
         "loading", "unloading" or "reloading".
     answer : Solution or None
-        The package there; None if it was not found.
+        The foil pack there; None if it was not found.
     lost : float
         Energy lost to friction from the start up to here [J].
     run, seconds
@@ -85,7 +85,7 @@ def follow(way: list[tuple[str, Case]]) -> Iterator[Point]:
 
 
 def assembled(friction: Friction, problem: CoupledProblem) -> FrictionResult | None:
-    """The package as it is assembled: no friction yet; None if it did not settle."""
+    """The foil pack as it is assembled: no friction yet; None if it did not settle."""
     found = at_rest(problem)
     if found is None:
         return None
@@ -99,7 +99,7 @@ def assembled(friction: Friction, problem: CoupledProblem) -> FrictionResult | N
 def moved(
     friction: Friction, before: tuple[CoupledProblem, FrictionResult], problem: CoupledProblem
 ) -> FrictionResult | None:
-    """The package after the journal has moved on to `problem`, in halves where a step is too long; None if it fails."""
+    """The pack after the journal has moved on to `problem`, in halves where a step is too long; None if it fails."""
     begin, state = before
     parts, lost, done = [1.0], 0.0, 0.0
     start, end = begin.displacement, problem.displacement
@@ -121,7 +121,7 @@ def moved(
 
 
 def answer_of(problem: CoupledProblem, slid: FrictionResult) -> Solution:
-    """The state as the package's, under a film at rest."""
+    """The state as the pack's, under a film at rest."""
     still = problem.at(bearing_number=0.0)
     state = RefinedState(problem.layout.ambient(slid.x), np.zeros(problem.layout.n_wall), slid.lam)
     return Solution(still, state, slid.residual, WAY)

@@ -55,7 +55,7 @@ TABLE = {
     "load_y": "load y",
     "liftoff_speed": "lift-off",
     "touchdown_speed": "touchdown",
-    "liftoff_by_contact_film_thickness": "d ln lift-off\n/ d ln film floor",
+    "liftoff_by_contact_film_thickness": "d ln lift-off\n/ d ln contact film",
     "liftoff_by_contact_fraction": "d ln lift-off\n/ d ln limit",
 }
 

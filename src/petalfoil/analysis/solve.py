@@ -43,7 +43,7 @@ def solve(
     ConvergenceError
         No equilibrium was found.
     PackageError
-        The displaced journal leaves the package no clearance.
+        The displaced journal leaves the foil pack no clearance.
     """
     return point(placed(at(case, speed), eccentricity), progress)
 

@@ -83,7 +83,7 @@ class SpeedLine:
         return self.known
 
     def climb(self, speed: float) -> Solution:
-        """The balance at `speed` on the branch that the loaded package takes from rest.
+        """The balance at `speed` on the branch that the loaded pack takes from rest.
 
         Raises
         ------

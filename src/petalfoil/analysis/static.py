@@ -85,7 +85,7 @@ def static(
     UsageError
         The wall has no pack at zero speed; or a loop is asked for where petals have no friction, or of a single point.
     PackageError
-        A displacement leaves the package no clearance.
+        A displacement leaves the foil pack no clearance.
     """
     required(case, Capability.PACK, "`static`")
     cases = displaced(case, eccentricities, direction, 0.0)
@@ -109,7 +109,7 @@ def _with_friction(
             progress(number / len(way), f"static: {point.leg}")
         with point.run.active():
             if point.answer is None:
-                reason = "the package did not settle on the way"
+                reason = "the foil pack did not settle on the way"
                 record = failed_record("static", point.case, reason, Leg(point.leg))
             else:
                 own = (Leg(point.leg, point.lost), effort(point.seconds))
@@ -126,7 +126,7 @@ def _without_friction(cases: list[Case], progress: Progress | None, done: Sequen
         with running() as run:
             answer = at_rest(case, problem)
             if answer is None:
-                record = failed_record("static", case, "the package did not settle")
+                record = failed_record("static", case, "the foil pack did not settle")
             else:
                 record = static_record(case, answer, effort(run.seconds))
         yield record

@@ -82,11 +82,13 @@ METALS = {
             ),
             0.29, 7850.0, 12.1e-6, None, "hardened and tempered, any",
             f"{_ROARK}; expansion: ASME BPVC II-D table TE-1, 70 to 200 °F; Poisson's ratio: ASTM A231; "
-            "density: the usual value of steel, without a source",
+            "density: data sheet of AISI 1095 (Dandong Foundry), 7.85 g/cm³",
         ),
         Metal(
-            "stainless steel 302", ((20.0, 193e9),), 0.30, 7920.0, 17.3e-6, 517e6, "cold rolled, 75 ksi",
-            "modulus, expansion and yield: eCourses material tables (AISI 302 cold rolled); density: ASTM A313",
+            "stainless steel 302", ((20.0, 193e9), (260.0, 177.9e9), (316.0, 174.4e9), (371.0, 171.0e9)),
+            0.30, 7920.0, 17.3e-6, 517e6, "cold rolled, 75 ksi",
+            "modulus at 20 °C, expansion and yield: eCourses material tables (AISI 302 cold rolled); modulus at 500, "
+            "600 and 700 °F: ASME B31.3 table C-6, austenitic steels, 25.8, 25.3 and 24.8 Msi; density: ASTM A313",
         ),
         Metal(
             "inconel x-750", ((21.0, 214e9), (538.0, 184e9)), 0.29, 8280.0, 14.0e-6, None, "spring temper, aged",
@@ -95,9 +97,9 @@ METALS = {
         ),
         Metal(
             "inconel 718", ((21.0, 200.0e9), (149.0, 198.6e9), (204.0, 196.5e9), (260.0, 193.1e9)),
-            0.29, 8190.0, 13.2e-6, 1034e6, "annealed and aged, AMS 5596, least",
+            0.29, 8220.0, 12.8e-6, None, "annealed and aged, any",
             "Special Metals SMC-045: dynamic modulus 29.0, 28.8, 28.5 and 28.0 Msi at 70, 300, 400 and 500 °F; "
-            "density, expansion and yield (150 ksi): usual values, not checked against a sheet",
+            "density, and expansion from 25 to 93 °C: High Temp Metals data sheet of Inconel 718",
         ),
         Metal(
             "beryllium copper c17200", ((20.0, 127e9),), 0.30, 8260.0, 17.8e-6, 960e6, "age hardened TF00, least",

@@ -116,9 +116,10 @@ def argument_options(analysis: Analysis) -> list[inspect.Parameter]:
 
 
 def _names(name: str, argument: Argument, taken: set[str]) -> list[str]:
-    """The names of an option; its second one only where no other argument has it."""
-    also = f"--{argument.also}" if argument.also else ""
-    return [option_of(name, argument), *([also] if also and also not in taken else [])]
+    """The names of an option; its second one, and that of the Python argument, only where no other argument has it."""
+    others = [f"--{argument.also}"] if argument.also else []
+    others.append(f"--{name.replace('_', '-')}")
+    return [option_of(name, argument), *(other for other in dict.fromkeys(others) if other not in taken)]
 
 
 def _refuse_overwriting(analysis: Analysis, given: dict[str, Any], out: Path | None) -> None:

@@ -183,7 +183,7 @@ class AscentOptions:
     """Numbers of the ascent."""
 
     first: float = 1e-3
-    """First fraction of the speed: films start at the film floor, where the bearing number is 100 times larger."""
+    """First fraction of the speed: films start as thin as contact allows, with a bearing number 100 times larger."""
     factor: float = 10.0
     """Factor on the speed a step, where the active contacts lead on."""
     least_factor: float = 1.02

@@ -302,7 +302,7 @@ SCALARS: dict[str, Variable] = {
     ),
     "iterations": _run("1", "iterations of the coupled system", "N_it", DataType.INT),
     "factorizations": _run("1", "factorisations of the coupled system", "N_lu", DataType.INT),
-    "pack_iterations": _run("1", "iterations of the package alone", "N_pk", DataType.INT),
+    "pack_iterations": _run("1", "iterations of the foil pack alone", "N_pk", DataType.INT),
     "probe_factorizations": _run(
         "1", "factorisations that only asked a question: stability, other equilibria", "N_probe", DataType.INT
     ),

@@ -53,7 +53,7 @@ _SHOWN: dict[str, Shown] = {
     "contact_fraction_limit": Shown("contact fraction limit", "%", 100.0),
     "liftoff_speed": Shown("lift-off speed", "rpm", _RPM),
     "touchdown_speed": Shown("touchdown speed", "rpm", _RPM),
-    "liftoff_by_contact_film_thickness": Shown("d ln lift-off / d ln film floor"),
+    "liftoff_by_contact_film_thickness": Shown("d ln lift-off / d ln contact film"),
     "liftoff_by_contact_fraction": Shown("d ln lift-off / d ln limit"),
     "critical_mass": Shown("critical mass", "kg"),
     "whirl_ratio": Shown("whirl ratio"),

@@ -44,7 +44,7 @@ def petals_of(case: Case) -> tuple[Petals, Package]:
 
 
 def build_mesh(case: Case) -> PackMesh:
-    """Grid of the package of `case`."""
+    """Grid of the foil pack of `case`."""
     petals, package = petals_of(case)
     return pack_mesh(petals.count, package.overlap, petals.first_root, case.cells_per_pitch, axial_grid(case))
 

@@ -116,6 +116,31 @@ def test_the_gas_that_is_gained_has_come_in() -> None:
     assert gas[0] - gas[-1] == pytest.approx(lost, rel=2e-2)
 
 
+@pytest.mark.slow
+def test_energy_and_gas_of_a_motion_are_accounted_for() -> None:
+    """Eight petals: what the rotor gains is the work on it, and the gas that the film loses has flown out."""
+    of = PETALS.replace(rotor={"mass": 3.0, "unbalance": 2e-6})
+    times, states = followed(of, 40, 0.5)
+    film, speed = petalfoil.Film(of), of.operation.speed
+    forces, told = [film.force(*states[0], speed, time=0.0)], [film.results()]
+    for t, state in zip(times[1:], states[1:], strict=True):
+        forces.append(film.advance(*state, speed, time=t))
+        told.append(film.results())
+    turning = 3.0 * 2e-6 * speed**2 * np.stack([np.cos(speed * times), np.sin(speed * times)], axis=1)
+    whole, v = np.array(forces) + turning + [0.0, -3.0 * 9.80665], states[:, 2:]
+    power = np.sum(whole * v, axis=1)
+    rate = np.gradient(power, times)
+    dt = np.diff(times)
+    # the trapezium with its end correction: of fourth order, as the motion between two steps is smooth
+    work = np.sum(0.5 * dt * (power[1:] + power[:-1])) - dt[0] ** 2 / 12.0 * (rate[-1] - rate[0])
+    gained = 1.5 * float(np.sum(v[-1] ** 2) - np.sum(v[0] ** 2))
+    assert np.sum(np.abs(power)) * dt[0] > 2e-5
+    assert work == pytest.approx(gained, abs=2e-3 * np.sum(np.abs(power)) * dt[0])
+    gas, out = (np.array([each[name] for each in told]) for name in ("gas", "outflow"))
+    lost = np.sum(0.5 * dt * (out[1:] + out[:-1]))
+    assert gas[0] - gas[-1] == pytest.approx(lost, abs=1e-2 * np.ptp(gas))
+
+
 def test_a_journal_that_tilts_feels_a_moment() -> None:
     film, speed = petalfoil.Film(PLAIN, tilts=True), PLAIN.operation.speed
     x, y = PLAIN.operation.eccentricity
