@@ -5,7 +5,7 @@
 For every count and mount of the petals, packs are drawn evenly over the ranges (Latin hypercube, seeded), the contact
 film thickness and the friction coefficient are set to what experiments 1 to 3 ask for, and the best pack of a count and
 mount is refined (Nelder-Mead). All that explain the experiments are computed again on a fine grid, with the fourth
-experiment as a prediction. 2-D model; about an hour on two cores. The same numbers come out each time; everything found is
+experiment as a prediction. 2-D model; about an hour on two cores. The same numbers come out each time; all is
 written to FOLDER at once, and a run that was interrupted goes on from there. Told in docs/validation-rig.md.
 """
 

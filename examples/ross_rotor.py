@@ -22,7 +22,7 @@ import petalfoil
 
 GRAVITY = 9.80665  # m/s^2, along -y
 HIGHEST = 5.0  # modes are kept up to this multiple of the speed: beyond it they follow the forces
-TURNS, STEPS = 8, 40  # turns, and steps of a turn
+TURNS, STEPS = 4, 40  # turns, and steps of a turn
 
 
 @dataclass
