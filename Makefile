@@ -11,7 +11,7 @@ export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup docs package demo test test-all test-studio test-classic test-long fuzz fuzz-verbs check lint types layers format bench constraints clean
+.PHONY: help setup docs package ross demo test test-all test-studio test-classic test-long fuzz fuzz-verbs check lint types layers format bench constraints clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -36,6 +36,9 @@ docs: $(DOCS_STAMP) ## Documentation site in build/docs, offline
 package: setup ## Wheel and sdist: built, checked, tried in empty environments (.ci/package)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[release]'
 	.ci/package
+
+ross: setup ## The tutorial with ROSS in an environment of its own (ROSS_PYTHON: a Python from 3.12 on)
+	.ci/ross
 
 demo: setup ## Load characteristic of the paper's packages: figures and data in demo/
 	$(BIN)/python examples/demo.py demo

@@ -70,7 +70,7 @@ def in_notebook() -> bool:
 @contextmanager
 def _line(title: str) -> Iterator[Report]:
     """A line below the cell, which is rewritten as the work proceeds and empty at its end."""
-    from IPython.display import display  # type: ignore[import-not-found]
+    from IPython.display import display
 
     started = shown = time.monotonic()
     handle: Any = None

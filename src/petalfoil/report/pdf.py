@@ -36,8 +36,8 @@ def printer() -> str:
     if find_spec("weasyprint") is not None:
         return "weasyprint"
     raise UsageError(
-        f"a PDF needs a browser ({', '.join(BROWSERS[:3])}) or WeasyPrint (pip install weasyprint); there is neither. "
-        "Leave --pdf out and print the page from any browser"
+        f"a PDF needs a browser ({', '.join(BROWSERS[:3])}) or WeasyPrint (pip install 'petalfoil[pdf]'); there is "
+        "neither. Leave --pdf out and print the page from any browser"
     )
 
 
@@ -61,7 +61,7 @@ def write_pdf(page: Path, target: Path) -> None:
     program = printer()
     with replacing(target) as temporary:
         if program == "weasyprint":
-            from weasyprint import HTML  # type: ignore[import-not-found]
+            from weasyprint import HTML
 
             HTML(filename=str(page)).write_pdf(str(temporary))
         else:

@@ -127,3 +127,19 @@ def test_the_page_prints(folder: Path, tmp_path: Path) -> None:
         pytest.skip(str(nothing))
     pdf.write_pdf(folder / "index.html", tmp_path / "report.pdf")
     assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
+
+
+@pytest.mark.slow
+def test_weasyprint_prints_where_there_is_no_browser(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    try:
+        import weasyprint  # noqa: F401
+    except (ImportError, OSError) as missing:  # the package, or the Pango that it loads
+        pytest.skip(f"needs petalfoil[pdf] and Pango: {missing}")
+    monkeypatch.setattr(pdf.shutil, "which", lambda name: None)
+    assert pdf.printer() == "weasyprint"
+    pdf.write_pdf(folder / "index.html", tmp_path / "report.pdf")
+    printed = (tmp_path / "report.pdf").read_bytes()
+    assert printed.startswith(b"%PDF")
+    assert len(printed) > 20_000  # its figures are in it
