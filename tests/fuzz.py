@@ -2,18 +2,22 @@
 
 ::
 
-    make fuzz N=2000                         # or python -m tests.fuzz 2000 [first] [--edges continuous]
+    make fuzz N=2000        # or python -m tests.fuzz 2000 [first] [--edges continuous] [--into build/fuzz.jsonl]
 
-Each number draws its bearing from a generator of its own, so that one that fails can be drawn again by its number.
+Each number draws its bearing from a generator of its own, so that one that fails can be drawn again by its number. What
+is drawn and solved is added to the file line by line, and a run goes on from what its file holds.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
+import time
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import asdict, dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -33,6 +37,8 @@ class Drawn:
     strata: tuple[str, ...]
     solution_path: str | None
     stable: bool
+    seconds: float = 0.0
+    """Processor time."""
 
 
 def bearing(number: int, edges: str | None = None) -> Case:
@@ -68,14 +74,22 @@ def within(value: float, name: str, limits: tuple[float, ...]) -> str:
 def solved(number: int, edges: str | None = None) -> Drawn:
     """Draw and solve one."""
     case = bearing(number, edges)
+    start = time.process_time()
     try:
         found = point(case).scalars
     except ConvergenceError:
-        return Drawn(number, strata(case), None, False)
+        return Drawn(number, strata(case), None, False, time.process_time() - start)
     fraction, residual = found["contact_fraction"], found["residual"]
     if not (0.0 <= fraction <= 1.0 and residual <= 1e-8):  # type: ignore[operator]
         raise AssertionError(f"bearing {number}: contact fraction {fraction}, residual {residual}")
-    return Drawn(number, strata(case), str(found["solution_path"]), bool(found["stable"]))
+    seconds = time.process_time() - start
+    return Drawn(number, strata(case), str(found["solution_path"]), bool(found["stable"]), seconds)
+
+
+def kept(path: Path) -> list[Drawn]:
+    """What a file of an earlier run holds; a line that was not finished is left out."""
+    lines = path.read_text().splitlines(keepends=True) if path.exists() else []
+    return [Drawn(**json.loads(line)) for line in lines if line.endswith("\n")]
 
 
 def table(drawn: Iterable[Drawn]) -> Iterator[str]:
@@ -93,6 +107,11 @@ def table(drawn: Iterable[Drawn]) -> Iterator[str]:
         yield f"| {stratum} | {all_of} | {lost} | {100.0 * lost / all_of:.1f} % | {unstable} |"
 
 
+def line(one: Drawn) -> str:
+    """One line of such a file."""
+    return json.dumps(asdict(one)) + "\n"
+
+
 def main() -> None:
     """Draw, solve, print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -100,12 +119,22 @@ def main() -> None:
     parser.add_argument("first", type=int, nargs="?", default=0)
     parser.add_argument("--edges", choices=["ambient", "continuous"])
     parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--into", type=Path, default=Path("build/fuzz.jsonl"))
     asked = parser.parse_args()
-    numbers = range(asked.first, asked.first + asked.count)
-    with ProcessPoolExecutor(asked.jobs) as pool:
-        drawn = list(pool.map(solved, numbers, [asked.edges] * len(numbers)))
-    print("\n".join(table(drawn)))
-    print("no equilibrium found:", *(one.number for one in drawn if one.solution_path is None))
+    into: Path = asked.into
+    into.parent.mkdir(parents=True, exist_ok=True)
+    wanted = range(asked.first, asked.first + asked.count)
+    earlier = kept(into)
+    drawn = {one.number: one for one in earlier if one.number in wanted}
+    with ProcessPoolExecutor(asked.jobs) as pool, into.open("w") as file:
+        file.writelines(line(one) for one in earlier)
+        for done in as_completed(pool.submit(solved, number, asked.edges) for number in wanted if number not in drawn):
+            one = done.result()
+            drawn[one.number] = one
+            file.write(line(one))
+            file.flush()
+    print("\n".join(table(drawn.values())))
+    print("no equilibrium found:", *sorted(number for number, one in drawn.items() if one.solution_path is None))
 
 
 if __name__ == "__main__":

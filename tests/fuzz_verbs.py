@@ -2,21 +2,24 @@
 
 ::
 
-    make fuzz-verbs N=500                    # or python -m tests.fuzz_verbs 500 [first] [--verbs orbit static]
+    make fuzz-verbs N=500   # or python -m tests.fuzz_verbs 500 [first] [--verbs orbit static] [--into outcomes.jsonl]
 
 A run that is not done after `SECONDS` of processor time is stopped and counted as slow. Anything else that is not an
-answer or a `PetalfoilError`, a warning of NumPy or SciPy included, is printed with the number of its bearing.
+answer or a `PetalfoilError`, a warning of NumPy or SciPy included, is printed with the number of its bearing. Outcomes
+are added to the file line by line, and a run goes on from what its file holds.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import time
 import traceback
 import warnings
 from collections import Counter
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
 
 import numpy as np
 
@@ -59,6 +62,7 @@ def drawn(number: int) -> tuple[Case, Arguments]:
         "revolutions": 0.3,
         "levels": 2,
         "mass": rotor.mass,
+        "min_film_thickness": 2.0 * case.surface.contact_film_thickness,
     }
 
 
@@ -74,6 +78,8 @@ GIVEN: dict[str, tuple[str, ...]] = {
     "coefficients": ("load",),
     "stability": ("load", "mass"),
     "orbit": ("load", "revolutions"),
+    "capacity": ("min_film_thickness",),
+    "sensitivity": (),
 }
 """Arguments of each verb, of those drawn."""
 
@@ -115,17 +121,40 @@ def main() -> None:
     parser.add_argument("first", type=int, nargs="?", default=0)
     parser.add_argument("--verbs", nargs="+", choices=GIVEN, default=list(GIVEN))
     parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--into", type=Path, default=Path("build/fuzz-verbs.jsonl"))
     asked = parser.parse_args()
-    numbers = range(asked.first, asked.first + asked.count)
+    into: Path = asked.into
+    into.parent.mkdir(parents=True, exist_ok=True)
+    wanted = [(number, verb) for number in range(asked.first, asked.first + asked.count) for verb in asked.verbs]
+    outcomes = kept(into)
+    with ProcessPoolExecutor(asked.jobs) as pool, into.open("w") as file:
+        file.writelines(line(run, *outcome) for run, outcome in outcomes.items())
+        runs = {pool.submit(ran, *run): run for run in wanted if run not in outcomes}
+        for done in as_completed(runs):
+            run = runs[done]
+            outcomes[run] = done.result()
+            file.write(line(run, *outcomes[run]))
+            file.flush()
     print("| analysis | runs | outcomes |\n|---|---|---|")
-    with ProcessPoolExecutor(asked.jobs) as pool:
-        for verb in asked.verbs:
-            outcomes = list(pool.map(ran, numbers, [verb] * len(numbers)))
-            counts = Counter(kind for kind, _ in outcomes)
-            print(f"| {verb} | {len(numbers)} |", ", ".join(f"{n} {kind}" for kind, n in counts.most_common()), "|")
-            for number, (kind, text) in zip(numbers, outcomes, strict=True):
-                if kind == "UNTYPED":
-                    print(f"bearing {number}: {text}")
+    for verb in asked.verbs:
+        counts = Counter(outcomes[run][0] for run in wanted if run[1] == verb)
+        print(f"| {verb} | {asked.count} |", ", ".join(f"{n} {kind}" for kind, n in counts.most_common()), "|")
+    for number, verb in wanted:
+        kind, text = outcomes[number, verb]
+        if kind == "UNTYPED":
+            print(f"bearing {number}, {verb}: {text}")
+
+
+def kept(path: Path) -> dict[tuple[int, str], tuple[str, str]]:
+    """Outcomes in a file of an earlier run by number and verb; a line that was not finished is left out."""
+    lines = path.read_text().splitlines(keepends=True) if path.exists() else []
+    read = [json.loads(one) for one in lines if one.endswith("\n")]
+    return {(one["number"], one["verb"]): (one["outcome"], one["text"]) for one in read}
+
+
+def line(run: tuple[int, str], outcome: str, text: str) -> str:
+    """One line of such a file."""
+    return json.dumps({"number": run[0], "verb": run[1], "outcome": outcome, "text": text}) + "\n"
 
 
 if __name__ == "__main__":
