@@ -43,6 +43,8 @@ What they share:
 `derivatives.py`       exact derivatives of the results of an equilibrium
 `heated_derivatives.py` the same where temperatures follow
 `liftoff_derivatives.py`  the same of lift-off and touchdown speed
+`capacity_derivatives.py`  the same of the load capacity
+`derivative_sources.py` where the results of each question have them
 `sensitivity_table.py` the rows of `sensitivity`
 `impedance.py`         small motions of the journal
 `rotor_on_bearings.py` a rigid rotor on its bearing, or in two of them

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import Annotated
 
 from petalfoil.analysis.arguments import Load, Position, Quantity, Speed
+from petalfoil.analysis.capacity import DOWN, LoadDirection, MinFilm, Stress, check_limits
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.crossings import CONTACT_FRACTION
 from petalfoil.analysis.declaration import analysis
-from petalfoil.analysis.derivatives import GROWTH, equilibrium_results, results_with_growth
-from petalfoil.analysis.heated_derivatives import derivatives_of
-from petalfoil.analysis.liftoff import Limit, own_load
-from petalfoil.analysis.liftoff_derivatives import speed_derivatives
-from petalfoil.analysis.operating_point import Vector, applied_load, at, at_position, under_load
+from petalfoil.analysis.derivative_sources import Asked, sources_of
+from petalfoil.analysis.liftoff import own_load
+from petalfoil.analysis.load_limit import Limits
+from petalfoil.analysis.operating_point import Vector, applied_load, at
 from petalfoil.analysis.records import asked_position, effort, record_of
 from petalfoil.analysis.runs import Points
-from petalfoil.analysis.sensitivity_table import LAYOUT, RESULTS, Line, Source, lines_of, ordered, rounding_of
+from petalfoil.analysis.sensitivity_table import LAYOUT, RESULTS, Line, lines_of, ordered, rounding_of
 from petalfoil.analysis.solve import placed
 from petalfoil.analysis.words import Choice, Names, known
 from petalfoil.case import Case
@@ -29,7 +29,13 @@ from petalfoil.results.record import Record
 from petalfoil.results.schema import SCALARS, DataType, Role
 from petalfoil.walls import Capability, required
 
-MAIN_RESULT = {"solve": "bearing_force", "balance": "min_film_thickness", "liftoff": "liftoff_speed"}
+MAIN_RESULT = {
+    "solve": "bearing_force",
+    "balance": "min_film_thickness",
+    "liftoff": "liftoff_speed",
+    "capacity": "load_capacity",
+    "static": "starting_torque",
+}
 """Questions that have derivatives, and the result that is asked for unless another is."""
 
 NOT_PHYSICAL = ("model.", "surface.friction_width", "petals.free_shape_tolerance")
@@ -42,7 +48,7 @@ ANSWERS = [
     name
     for name, variable in SCALARS.items()
     if not variable.dims and variable.kind is DataType.FLOAT and variable.role is Role.ANSWER
-] + ["eccentricity_x", "eccentricity_y"]
+] + ["eccentricity_x", "eccentricity_y", "load_capacity"]
 """Results that a question may have; which of them it has is known once it is answered."""
 
 Vary = Annotated[
@@ -56,13 +62,24 @@ Ask = Annotated[
     Choice(
         metavar="VERB",
         words=tuple(MAIN_RESULT),
-        help="Whose results: solve, balance or liftoff; by default balance where there is a load, else solve.",
+        help="Whose results: solve, balance, liftoff, capacity or static; by default balance where there is a load, "
+        "else solve.",
     ),
 ]
 Of = Annotated[
     list[str] | None,
     Names(
         metavar="RESULTS", help='Results, as "min_film_thickness, friction_torque", or "all"; by default the main one.'
+    ),
+]
+AnyLimit = Annotated[
+    float | None,
+    Quantity(
+        unit="1",
+        metavar="FRACTION",
+        help="Contact fraction: at lift-off (1 % by default), or allowed by a load capacity.",
+        above=0.0,
+        below=1.0,
     ),
 ]
 Step = Annotated[
@@ -87,34 +104,6 @@ Contacts = Annotated[
 ]
 
 
-@dataclass(frozen=True)
-class Asked:
-    """What derivatives are asked for.
-
-    Attributes
-    ----------
-    verb : str
-        The question that they belong to.
-    paths : list of str
-        Parameters.
-    quantities : list of str
-        Results.
-    step : float
-        Relative change of the parameters whose effect is told [1].
-    all_of_them : bool
-        Whether the parameters are all that the case has, so that those without effect are left out.
-    as_points : bool
-        Whether isolated contacts travel between nodes.
-    """
-
-    verb: str
-    paths: list[str]
-    quantities: list[str]
-    step: float
-    all_of_them: bool
-    as_points: bool
-
-
 @analysis(LAYOUT, results=RESULTS, excludes={"load": ("eccentricity",)})
 def sensitivity(  # noqa: PLR0913 - the options of the verb
     case: Case,
@@ -125,7 +114,10 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     load: Load = None,
     eccentricity: Position = None,
     speed: Speed = None,
-    contact_fraction: Limit = CONTACT_FRACTION,
+    contact_fraction: AnyLimit = None,
+    min_film_thickness: MinFilm = None,
+    max_stress: Stress = None,
+    direction: LoadDirection = DOWN,
     contacts: Contacts = "points",
     step: Step = 0.01,
     progress: Progress | None = None,
@@ -142,7 +134,8 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     Raises
     ------
     UsageError
-        A parameter is none of the case, a whole number or left to a rule; a result is none of the question.
+        A parameter is none of the case, a whole number or left to a rule; a result is none of the question; a load
+        capacity has no limit.
     ConvergenceError
         The equilibrium was not found, or its contacts do not determine it.
     """
@@ -151,9 +144,12 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     there = posed(at(case, speed), verb, load, eccentricity)
     paths = default_paths(there, verb) if vary is None else [checked(there, path) for path in vary]
     quantities = [known(name, [ALL, *ANSWERS], "result") for name in of or [MAIN_RESULT[verb]]]
-    asked = Asked(verb, paths, quantities, step, vary is None, contacts == "points")
+    limits = Limits(min_film_thickness=min_film_thickness, contact_fraction=contact_fraction, max_stress=max_stress)
+    fraction = CONTACT_FRACTION if contact_fraction is None else contact_fraction
+    asked = Asked(verb, paths, quantities, step, vary is None, contacts == "points", fraction, limits, direction)
+    refuse_limits(there, asked)
     most = len(ANSWERS) if ALL in quantities else len(quantities)
-    return Points(_points(there, asked, contact_fraction, progress), len(paths) * most, "effects")
+    return Points(_points(there, asked, progress), len(paths) * most, "effects")
 
 
 def posed(case: Case, verb: str, load: Vector | None, eccentricity: Vector | None) -> Case:
@@ -164,6 +160,18 @@ def posed(case: Case, verb: str, load: Vector | None, eccentricity: Vector | Non
     UsageError
         It has neither, or both.
     """
+    if verb == "static":
+        required(case, Capability.PACK, "`static`")
+        if case.surface.petal_friction > 0.0:
+            raise UsageError(
+                "petals with friction remember how they came to rest, and no derivative tells that: set "
+                "surface.petal_friction to 0, or compare two runs of `static`"
+            )
+        return placed(at(case, 0.0), eccentricity or (0.0, 0.0))
+    if verb == "capacity":
+        if load is not None or eccentricity is not None:
+            raise UsageError("capacity finds the load: give --min-film, --contact-fraction or --max-stress alone")
+        return case.replace(**{"operation.load": None, "operation.eccentricity": (0.0, 0.0)})
     if verb == "solve":
         if load is not None:
             raise UsageError("solve holds the journal at a position: give an eccentricity, or ask balance")
@@ -178,10 +186,25 @@ def posed(case: Case, verb: str, load: Vector | None, eccentricity: Vector | Non
     return loaded
 
 
+def refuse_limits(case: Case, asked: Asked) -> None:
+    """Refuse a capacity without a limit, and limits of what has none.
+
+    Raises
+    ------
+    UsageError
+        A limit is missing, says nothing of this bearing, or is given for another question.
+    """
+    if asked.verb == "capacity":
+        check_limits(case, asked.limits)
+    elif asked.limits.min_film_thickness is not None or asked.limits.max_stress is not None:
+        raise UsageError(f"--min-film and --max-stress are limits of a load capacity: {asked.verb} has none")
+
+
 def default_paths(case: Case, verb: str) -> list[str]:
     """Parameters that the results of a question may depend on."""
-    given = "operation.load" if case.operation.load is None else "operation.eccentricity"
-    without = (*NOT_PHYSICAL, given, *(["operation.speed"] if verb == "liftoff" else []))
+    given = ["operation.load" if case.operation.load is None else "operation.eccentricity"]
+    given += {"capacity": ["operation.eccentricity"]}.get(verb, [])
+    without = (*NOT_PHYSICAL, *given, *(["operation.speed"] if verb in ("liftoff", "static") else []))
     known_ones = parameters_of(case).values()
     return [p.path for p in known_ones if not p.is_count and p.value is not None and not p.path.startswith(without)]
 
@@ -202,10 +225,10 @@ def checked(case: Case, path: str) -> str:
     return path
 
 
-def _points(case: Case, asked: Asked, limit: float, progress: Progress | None) -> Iterator[Record]:
+def _points(case: Case, asked: Asked, progress: Progress | None) -> Iterator[Record]:
     """One record for each parameter and result, by the size of the effect."""
     with running(progress, "sensitivity") as run:
-        there = {name: source for source in sources_of(case, asked, limit) for name in source.values}
+        there = {name: source for source in sources_of(case, asked) for name in source.values}
         quantities = named(asked, list(there))
         sources = {name: there[name] for name in quantities}
         lines: list[Line] = []
@@ -245,23 +268,9 @@ def is_felt(case: Case, line: Line) -> bool:
 
 def state_of(case: Case, verb: str) -> tuple[object, ...]:
     """What is given of the equilibrium: its load or its position, and its speed unless that is the result."""
+    if verb == "capacity":
+        return ({"speed": case.operation.speed},)
     if case.operation.load is None:
         return (asked_position(case),)
     speed = {} if verb == "liftoff" else {"speed": case.operation.speed}
     return speed, AppliedLoad.of(case.operation.load, case.operation.moment)
-
-
-def sources_of(case: Case, asked: Asked, limit: float) -> Sequence[Source]:
-    """Where the results of a question have their derivatives.
-
-    Raises
-    ------
-    ConvergenceError
-        The equilibrium was not found.
-    """
-    if asked.verb == "liftoff":
-        return speed_derivatives(case, own_load(case), limit, as_points=asked.as_points)
-    load = case.operation.load
-    solution = at_position(case).answer if load is None else under_load(case, load)[0]
-    results = results_with_growth(solution) if set(asked.quantities) & set(GROWTH) else equilibrium_results
-    return [derivatives_of(case, solution, results, as_points=asked.as_points)]

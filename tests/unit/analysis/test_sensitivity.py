@@ -122,3 +122,59 @@ def test_what_cannot_be_asked_is_refused_before_anything_runs(
 ) -> None:
     with pytest.raises(refusal, match=message):
         petalfoil.sensitivity(SMALL, **given)
+
+
+def test_the_starting_torque_is_proportional_to_friction_and_to_the_modulus() -> None:
+    paths = "surface.friction_coefficient, petals.youngs_modulus"
+    ds = petalfoil.sensitivity(SMALL, paths, ask="static", of="starting_torque, contact_normal_force", contacts="nodes")
+    effects = {
+        (str(quantity), str(path)): float(effect)
+        for quantity, path, effect in zip(
+            ds["quantity"].values, ds["parameter"].values, ds["relative_effect"].values, strict=True
+        )
+    }
+    assert_allclose(effects["starting_torque", "surface.friction_coefficient"], 0.01, rtol=1e-9)
+    assert_allclose(effects["starting_torque", "petals.youngs_modulus"], 0.01, rtol=1e-7)
+    assert_allclose(effects["contact_normal_force", "surface.friction_coefficient"], 0.0, atol=1e-12)
+    own = petalfoil.static(SMALL)["starting_torque"].values[0]
+    assert_allclose(ds["quantity_value"].values[list(ds["quantity"].values).index("starting_torque")], own, rtol=1e-9)
+
+
+def test_the_load_capacity_follows_speed_as_it_follows_viscosity() -> None:
+    finer = case(**{"model.cells_per_pitch": 24})
+    ds = petalfoil.sensitivity(finer, "operation.speed, gas.viscosity", ask="capacity", min_film_thickness=8e-6)
+    assert set(ds["quantity"].values) == {"load_capacity"}
+    assert_allclose(ds["relative_effect"].values[0], ds["relative_effect"].values[1], rtol=1e-7)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", ["gas.viscosity", "bearing.journal_radius"])
+def test_the_load_capacity_follows_like_one_that_is_found_again(path: str) -> None:
+    plain = case("plain_journal", **{"model.kind": "2d", "model.cells_per_pitch": 24})
+    limits = {"min_film_thickness": 5e-6, "direction": 0.3}
+    found = petalfoil.sensitivity(plain, path, ask="capacity", **limits)
+    value = float(found["parameter_value"].item())
+    change = (1e-3 if path == "gas.viscosity" else 1e-6) * value
+    ends = [
+        petalfoil.capacity(plain.replace(**{path: value + side * change}), **limits)["load_capacity"].item()
+        for side in (-1.0, 1.0)
+    ]
+    assert_allclose(found["derivative"].item(), (ends[1] - ends[0]) / (2.0 * change), rtol=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ({"ask": "capacity"}, "a load capacity needs a limit"),
+        ({"ask": "capacity", "min_film_thickness": 8e-6, "load": 20.0}, "capacity finds the load"),
+        ({"ask": "balance", "load": 20.0, "min_film_thickness": 8e-6}, "limits of a load capacity: balance has none"),
+    ],
+)
+def test_limits_are_those_of_a_load_capacity(arguments: dict[str, object], told: str) -> None:
+    with pytest.raises(UsageError, match=told):
+        petalfoil.sensitivity(SMALL, "gas.viscosity", **arguments)
+
+
+def test_petals_that_remember_have_no_derivative_at_rest() -> None:
+    with pytest.raises(UsageError, match="remember how they came to rest"):
+        petalfoil.sensitivity(SMALL.replace(**{"surface.petal_friction": 0.2}), "gas.viscosity", ask="static")

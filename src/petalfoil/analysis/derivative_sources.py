@@ -1,0 +1,104 @@
+"""Where the results of each question have their derivatives."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from petalfoil.analysis.capacity_derivatives import capacity_derivatives
+from petalfoil.analysis.derivatives import GROWTH, Results, equilibrium_results, results_with_growth
+from petalfoil.analysis.heated_derivatives import derivatives_of
+from petalfoil.analysis.liftoff import own_load
+from petalfoil.analysis.liftoff_derivatives import speed_derivatives
+from petalfoil.analysis.load_limit import Limits
+from petalfoil.analysis.operating_point import at_position, under_load
+from petalfoil.analysis.sensitivity_table import Source
+from petalfoil.case import Case
+from petalfoil.equilibrium.continuation import rest
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.errors import ConvergenceError
+from petalfoil.system.build import build_problem
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What derivatives are asked for.
+
+    Attributes
+    ----------
+    verb : str
+        The question that they belong to.
+    paths : list of str
+        Parameters.
+    quantities : list of str
+        Results.
+    step : float
+        Relative change of the parameters whose effect is told [1].
+    all_of_them : bool
+        Whether the parameters are all that the case has, so that those without effect are left out.
+    as_points : bool
+        Whether isolated contacts travel between nodes.
+    contact_fraction : float or None
+        Limit of the contact fraction [1].
+    limits : Limits
+        All limits of a load capacity.
+    direction : float
+        Direction of its load [rad].
+    """
+
+    verb: str
+    paths: list[str]
+    quantities: list[str]
+    step: float
+    all_of_them: bool
+    as_points: bool
+    contact_fraction: float
+    limits: Limits
+    direction: float
+
+
+def sources_of(case: Case, asked: Asked) -> Sequence[Source]:
+    """Where the results of a question have their derivatives.
+
+    Raises
+    ------
+    ConvergenceError
+        The equilibrium was not found.
+    """
+    if asked.verb == "liftoff":
+        return speed_derivatives(case, own_load(case), asked.contact_fraction, as_points=asked.as_points)
+    if asked.verb == "capacity":
+        direction = (round(math.cos(asked.direction), 15), round(math.sin(asked.direction), 15))
+        return capacity_derivatives(case, asked.limits, direction, as_points=asked.as_points)
+    if asked.verb == "static":
+        return [derivatives_of(case, at_zero_speed(case), results_at_rest, as_points=asked.as_points)]
+    load = case.operation.load
+    solution = at_position(case).answer if load is None else under_load(case, load)[0]
+    results = results_with_growth(solution) if set(asked.quantities) & set(GROWTH) else equilibrium_results
+    return [derivatives_of(case, solution, results, as_points=asked.as_points)]
+
+
+def at_zero_speed(case: Case) -> Solution:
+    """The foil pack at zero speed.
+
+    Raises
+    ------
+    ConvergenceError
+        It was not found.
+    """
+    found = rest(build_problem(case))
+    if found is None:
+        raise ConvergenceError(
+            "the foil pack at zero speed was not found",
+            history=current_run().history,
+            advice="ask `static` for the displacements at which it is",
+        )
+    return found
+
+
+def results_at_rest(case: Case, solution: Solution) -> Results:
+    """Results of a foil pack at zero speed: its friction is that against a journal that begins to turn."""
+    results = equilibrium_results(case, solution)
+    return {**results, "starting_torque": results["friction_torque"]}
