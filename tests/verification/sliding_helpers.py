@@ -76,6 +76,19 @@ class HalfArch:
         turn = slope @ w - tangential
         return np.vstack([out, up, -(area @ w) + s * up, turn])
 
+    @cached_property
+    def tip_compliance(self) -> tuple[Array, Array, Array]:
+        """(W, -V) of the tip across and along itself, by a reaction inward, by a pull against `-V`, and by a pressure.
+
+        Signs are such that reaction and friction lessen what the pressure does: `(W, s) = q by_q - N by_N - T by_T`.
+        """
+        W, V, area = self.rows
+        stretch = face_compliance(mid_surface(self.membrane), self.foot, self.petal.element_angle, 1.0)[0, 0]
+        w = np.linalg.solve(self.petal.stiffness.toarray(), np.column_stack([W, -V, area]))
+        both = np.vstack([W @ w, -V @ w])
+        both[1, 1] += stretch
+        return both[:, 0], both[:, 1], both[:, 2]
+
     def under(self, V: float, H: float, q: float) -> Array:
         """(out, up, area swept, turn of the foot) under forces of the foot and a pressure on the arch."""
         return np.asarray(self.compliance @ np.array([V, H, q]))

@@ -274,8 +274,8 @@ def _is_sequence(value: object) -> TypeGuard[Sequence[Any]]:
 # ---------------------------------------------------------------------------------------------- shared arguments
 
 TURNING_ONLY = (
-    "surface.petal_friction counts the turning of the petals' faces only here, about a sixtieth of the slip in the "
-    "paper's bearing: the loss it gives is no prediction."
+    "In 2-D petals slide along themselves; in 3-D surface.petal_friction counts the turning of their faces only, about "
+    "a sixtieth of the slip in the paper's bearing (petals.theory)."
 )
 """What users of friction between petals are told where petals do not slide along themselves."""
 

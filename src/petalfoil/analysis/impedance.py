@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.case import Case, PetalTheory
+from petalfoil.case import Case
 from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
 from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.equilibrium.element_contacts import near_nodes
@@ -60,8 +60,7 @@ def elastic_and_sliding(case: Case, answer: Solution) -> tuple[Motion, SlidingCo
     Raises
     ------
     ConvergenceError
-        The pack is bottomed out: the journal cannot move without bending what has no clearance to bend. Or petals slide
-        along themselves, and no equilibrium with continuous slopes was found.
+        The pack is bottomed out: the journal cannot move without bending what has no clearance to bend.
     """
     found, friction = near_nodes(answer), friction_of(case, answer.problem.layout)
     if found is not None:
@@ -70,14 +69,6 @@ def elastic_and_sliding(case: Case, answer: Solution) -> tuple[Motion, SlidingCo
         whole = PointLayout(found.pack, answer.problem.layout)
         on_elements = SlidingContacts.at(friction_at_points(friction, whole, found.points), found.points.reaction)
         return ElementMotion(found, on_elements.friction), on_elements
-    if friction is not None and case.petal_theory is PetalTheory.SHELL:
-        raise ConvergenceError(
-            "no coefficients: neither contact points nor asperity pressures were found, and friction of petals that "
-            "slide along themselves needs them",
-            history=current_run().history,
-            advice='petals.theory = "inextensible" counts the turning of their faces alone, surface.petal_friction = 0 '
-            "nothing",
-        )
     sliding = sliding_at(case, answer)
     motion = SmallMotion.about(answer, None if sliding is None else sliding.sticking(len(answer.x)))
     if not motion.contacts.constraints.determinate:

@@ -76,7 +76,8 @@ def static(
     finish; Ctrl-C keeps what is finished, and --resume goes on from it.
 
     With friction between the petals (surface.petal_friction) each point
-    comes from the one before; --loop goes back and there again.
+    comes from the one before, the first from a thinner journal that grows
+    to its size (2-D); --loop goes back and there again.
 
     Example: petalfoil static case.toml --eccentricity "0 um : 280 um : 15"
 

@@ -142,9 +142,13 @@ class Stage(ContactEquations):
 
     def step_length(self, state: ContactState, correction: Correction) -> float:
         """Pressures and film stay positive."""
-        film = self.problem.at(displacement=state.b).film(state.x)
-        ahead = self.problem.at(displacement=state.b + correction.b).film(state.x + correction.x)
-        return min(super().step_length(state, correction), FILM_FRACTION * fraction_to_boundary(film, ahead - film))
+        return min(super().step_length(state, correction), self.open_step((state.x, state.b), correction))
+
+    def open_step(self, at: tuple[Array, Array], correction: Correction) -> float:
+        """Fraction of a correction from unknowns and displacement `at` that keeps the film open."""
+        film = self.problem.at(displacement=at[1]).film(at[0])
+        ahead = self.problem.at(displacement=at[1] + correction.b).film(at[0] + correction.x)
+        return FILM_FRACTION * fraction_to_boundary(film, ahead - film)
 
     def lagged(self, state: ContactState) -> Self:
         """Friction limited by the reactions of `state`."""

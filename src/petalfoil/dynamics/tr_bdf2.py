@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.dynamics.rotor_motion import RotorMotion
+from petalfoil.dynamics.sliding_stage import SlidingStage
 from petalfoil.dynamics.stage import Stage, StageOptions, StageSolution, solve_stage
 from petalfoil.dynamics.time_state import Instant, TimeState
 from petalfoil.physics.dry_friction import Friction
@@ -24,6 +25,7 @@ from petalfoil.system.time_step import StepProblem
 from petalfoil.system.unknowns import PRESSURE
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 GAMMA = 2.0 - np.sqrt(2.0)
 """Inner instant, as a fraction of the step."""
@@ -101,12 +103,20 @@ def advance(
 ) -> tuple[Instant, StageSolution] | None:
     """The instant at `tau` that a stage leads to; None if it has no solution."""
     for x, e in guesses(path, tau):
-        solution = solve_stage(stage, (x, e, path[-1].active), tangent)
+        solution = solved(stage, (x, e, path[-1].active), tangent)
         if solution is not None:
             state, moving = solution.state, solution.moving
             change = moving.minus(stage.base, stage.rate)
             return Instant(tau, state.x, state.lam, state.active, moving, change, solution.friction), solution
     return None
+
+
+def solved(stage: Stage, start: tuple[Array, Array, Mask], tangent: BorderedTangent | None) -> StageSolution | None:
+    """The stage's state from `start`; of petals that slide along themselves with contacts and friction as one."""
+    friction = stage.friction
+    if friction is None or not friction.friction.exact:
+        return solve_stage(stage, start, tangent)
+    return SlidingStage(stage, friction.friction, friction.before).solved(start, tangent)
 
 
 def guesses(path: list[Instant], tau: float) -> list[tuple[Array, Array]]:

@@ -10,6 +10,7 @@
 `under_load.py`            the journal's position under a load
 `heated.py`                the temperatures of a heat network with film, contacts and position
 `friction_path.py`         equilibria with friction between petals, one after another
+`coulomb_path.py`          the same with petals that slide along themselves
 `parameter_response.py`    how an equilibrium follows a parameter of its case
 `point_rates.py`           the same with isolated contacts as points between nodes
 `small_motion.py`          what is asked of the response to a small motion of the journal

@@ -32,9 +32,9 @@ REST_GOALS = (1e-6, 1e-9, 1e-12)
 """Barriers at which the active contacts of the pack alone are read and tried."""
 
 
-def unloaded(problem: CoupledProblem) -> FoilPackProblem:
-    """The pack without film pressure."""
-    return FoilPackProblem(problem, np.zeros(problem.layout.n_wall))
+def unloaded(problem: CoupledProblem, withdrawn: float = 0.0) -> FoilPackProblem:
+    """The pack without film pressure, round a journal that is `withdrawn` reference lengths thinner than its own."""
+    return FoilPackProblem(problem, np.zeros(problem.layout.n_wall), withdrawn)
 
 
 def free_start(pack: FoilPackProblem) -> PrimalDualPoint:
@@ -62,9 +62,9 @@ def assembled(problem: CoupledProblem, barrier: float) -> PrimalDualPoint:
     return replace(point, x=problem.layout.ambient(point.x))
 
 
-def at_rest(problem: CoupledProblem) -> ActiveContacts | None:
+def at_rest(problem: CoupledProblem, withdrawn: float = 0.0) -> ActiveContacts | None:
     """Deflections and active contacts of the assembled pack; None if not found."""
-    pack = unloaded(problem)
+    pack = unloaded(problem, withdrawn)
     start = free_start(pack)
     for goal in REST_GOALS:
         watch = current_run().watch("pack", settled(goal))

@@ -44,6 +44,11 @@ class Friction:
         Part of the reaction of each gap that loads each cell [1].
     width : float
         `s_f`, in the unit of deflection.
+    compliance : (k, k) array or None
+        `C`, slip that friction forces take back by stretching the petals (M4); None where nothing stretches, or where
+        tangential displacements are unknowns.
+    exact : bool
+        The law has no width (M6): petals that slide along themselves give enough.
     """
 
     coefficient: float
@@ -52,6 +57,7 @@ class Friction:
     reaction_share: sp.csr_array
     width: float
     compliance: Array | None = None
+    exact: bool = False
 
     def in_step(self, lam: Array) -> Friction:
         """The friction law in a step that starts with the reactions `lam` (m,)."""

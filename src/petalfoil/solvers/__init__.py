@@ -12,6 +12,8 @@
 `contact_newton.py`       Newton's method on active contacts: exact zeros, warm starts
 `contact_search.py`       the active contacts of the linearised equations, found at once
 `lcp.py`                  small dense complementarity problems
+`coulomb.py`              contact with Coulomb friction as a small dense problem
+`contact_space.py`        linearised equations as seen by the contacts of that
 `eigenvalues.py`          rightmost eigenvalue of a singular pencil
 `reduced_model.py`        a large linear system with few inputs as a small one
 ========================  ===================================================================

@@ -28,10 +28,13 @@ class FoilPackProblem:
         The bearing that it is part of.
     load : (n_wall,) array
         Nodal forces of the frozen film over the unit of force [1]; zero for a shaft at rest.
+    withdrawn : float
+        What the journal's radius is short of its own, over the reference length: while it is inserted [1].
     """
 
     coupled: CoupledProblem
     load: Array
+    withdrawn: float = 0.0
 
     @property
     def layout(self) -> BearingLayout:
@@ -66,7 +69,9 @@ class FoilPackProblem:
 
     def gaps(self, x: Array) -> Array:
         """Gaps over the reference length, (m,) [1]."""
-        return self.coupled.gaps(x)
+        gaps = self.coupled.gaps(x)
+        gaps[self.layout.wall.contacts.journal] += self.withdrawn
+        return gaps
 
     def admits(self, x: Array) -> bool:
         """The pack alone can be evaluated anywhere."""

@@ -16,7 +16,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.case import Case
+from petalfoil.case import Case, PetalTheory
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.solvers.problem import ContactProblem, Linearized
@@ -27,6 +27,10 @@ from petalfoil.walls.pack_slip import slip_compliance, slip_rows
 Array = NDArray[np.float64]
 
 
+SLIDES = 1e-9
+"""Part of the limit by which the force of a slipping contact may miss it."""
+
+
 @dataclass(frozen=True)
 class FrictionState:
     """Slip, friction force and its limit on the sliding gaps, (k,), as they were last."""
@@ -34,6 +38,12 @@ class FrictionState:
     slip: Array
     force: Array
     limit: Array
+
+    @property
+    def direction(self) -> NDArray[np.intp]:
+        """Direction of slip, 0 where a contact sticks or is open, (k,)."""
+        slides = (self.limit > 0.0) & (np.abs(self.force) >= (1.0 - SLIDES) * self.limit)
+        return np.where(slides, np.sign(self.force), 0.0).astype(np.intp)
 
     @classmethod
     def fresh(cls, friction: Friction, x: Array, lam: Array) -> FrictionState:
@@ -64,6 +74,8 @@ def friction_tangent(friction: Friction, stiffness: NDArray[Any], n: int) -> sp.
 
 def energy_lost(friction: Friction, before: FrictionState, after: FrictionState) -> float:
     """Energy lost in a step: the mean of the limits times what has slipped and does not spring back (D3)."""
+    if friction.exact:
+        return float(0.5 * (before.limit + after.limit) @ np.abs(after.slip - before.slip))
     sticks = friction.stiffness > 0.0  # none in the step that a contact closes in
     sprung = np.divide(after.force - before.force, friction.stiffness, out=np.zeros_like(after.force), where=sticks)
     for_good = np.where(sticks, np.abs(after.slip - before.slip - sprung), 0.0)
@@ -212,7 +224,8 @@ def friction_of(case: Case, layout: BearingLayout) -> Friction | None:
     if not surface.petal_friction or not wall.slip.shape[0]:
         return None
     width, none = surface.friction_width / layout.scales.length, np.zeros(wall.slip.shape[0])
-    return Friction(surface.petal_friction, none, wall.slip, wall.reaction_share, width)
+    exact = case.petal_theory is PetalTheory.SHELL
+    return Friction(surface.petal_friction, none, wall.slip, wall.reaction_share, width, exact=exact)
 
 
 def friction_at_points(friction: Friction, whole: PointLayout, points: ContactPoints) -> Friction:

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.case import Case, Edges, Mount, Package, Petals, PetalTheory
+from petalfoil.case import Case, Edges, Method, Mount, Package, Petals, PetalTheory
 from petalfoil.case.petal_table import Petal
 from petalfoil.mesh.pack import PackMesh, pack_mesh
 from petalfoil.mesh.strips import exposed_strips
@@ -25,6 +25,7 @@ from petalfoil.walls.bump_foil import foundation_stiffness
 from petalfoil.walls.elasticity import Elasticity
 from petalfoil.walls.element_pack import ElementPack, element_pack
 from petalfoil.walls.kind import Capability, Fields, Scalars, WallKind
+from petalfoil.walls.sliding import sliding
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -89,6 +90,12 @@ def petal_faces(case: Case) -> Faces:
     )
 
 
+def slides(case: Case) -> bool:
+    """Whether friction can hold petals that move along themselves; without it they do not feel that they do."""
+    rubs = case.surface.petal_friction > 0.0 and case.model.method is Method.NEWTON
+    return rubs and case.petal_theory is PetalTheory.SHELL
+
+
 def package_elasticity(shells: list[PetalShell], mesh: PackMesh) -> Elasticity:
     """Elastic energy of all petals, their roots held."""
     free = slice(mesh.n_z, None)
@@ -148,6 +155,8 @@ class PetalWall(WallKind):
             slip=slip,
             reaction_share=reaction_share,
         )
+        if slides(case):
+            return sliding(wall, mesh, petal_faces(case))
         return wall if case.backing is None else on_springs(wall, mesh, case.backing, springs_from(case))
 
     def elements(self, case: Case, wall: Wall) -> ElementPack | None:

@@ -1,0 +1,209 @@
+"""A stage in time of petals that slide along themselves: film, wall, rotor by Newton, contacts and friction exactly.
+
+Every correction is that of the linearised stage with openings, reactions and friction forces of all contacts in
+question as further unknowns, found together from a small dense problem (M6). The factor is that of the stage without
+friction; the journal's position answers to every unit of them as in (O3).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.dynamics.stage import Stage, StageSolution
+from petalfoil.equilibrium.coulomb_path import CLOSED, beside, rubbing_of
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.physics.dry_friction import Friction
+from petalfoil.solvers.constraints import constrain
+from petalfoil.solvers.contact_equations import ContactState, Correction
+from petalfoil.solvers.contact_space import Columns, RubbingContacts, Unit
+from petalfoil.solvers.coulomb import ContactForces, States
+from petalfoil.solvers.problem import positive_step
+from petalfoil.solvers.sparse_lu import SingularMatrixError
+from petalfoil.solvers.tangent import BorderedTangent, Tangent
+from petalfoil.sparsity import SparseRows
+from petalfoil.system.friction import FrictionState, against_slip, slips
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+Rubs = tuple[SparseRows, RubbingContacts]
+"""Derivative of all gaps, and those that rub."""
+
+CORRECTIONS = 24
+"""Most corrections of a stage; two or three are typical."""
+
+TANGENTS = 4
+"""Most factorisations of a stage."""
+
+GROWING = 2.0
+"""Growth of the correction past which a tangent no longer serves."""
+
+
+@dataclass(frozen=True)
+class SlidingTangent(BorderedTangent):
+    """A tangent with the columns of the contacts in question, the bordered unknowns moving with them.
+
+    Attributes
+    ----------
+    columns : Columns
+        Of openings, reactions and friction forces.
+    moved : (d, m + f) array
+        Change of the bordered unknowns by each.
+    pushed : (m_all, d) array
+        Change of all reactions by the bordered unknowns.
+    stiffness : (d, d) array
+        What resists the bordered unknowns.
+    """
+
+    columns: Columns
+    moved: Array
+    pushed: Array
+    stiffness: Array
+
+    @classmethod
+    def about(cls, plain: BorderedTangent, resists: Array, contacts: Index, rubs: Rubs) -> SlidingTangent:
+        """A solve for each contact and friction force; `resists` (d, d) are the border's own terms."""
+        border = plain.border
+        both = [plain.respond(plain.forcing[:, k], border.gap_derivative[:, k]) for k in range(border.size)]
+        pushed, stiffness = np.column_stack([reactions for _, reactions in both]), resists - plain.gradient
+        moves: list[Array] = []
+
+        def answered(unit: Unit) -> Unit:
+            moves.append(np.linalg.solve(stiffness, border.rows(unit.change, unit.reactions)))
+            change, reactions = unit.change + plain.units @ moves[-1], unit.reactions + pushed @ moves[-1]
+            return Unit(change, reactions, border.gap_derivative @ moves[-1])
+
+        columns = Columns.of(plain, rubs[0], contacts, rubs[1], answered)
+        own = {field.name: getattr(plain, field.name) for field in fields(BorderedTangent)}
+        return cls(**own, columns=columns, moved=np.column_stack(moves), pushed=pushed, stiffness=stiffness)
+
+    def has(self, contacts: Mask) -> bool:
+        """Whether `contacts` (m,) are among those in question."""
+        inside = np.zeros_like(contacts)
+        inside[self.columns.contacts] = True
+        return bool(np.all(inside | ~contacts))
+
+
+@dataclass(frozen=True)
+class Iterate:
+    """Unknowns, bordered unknowns, reactions, friction forces, and the states of all contacts."""
+
+    x: Array
+    b: Array
+    lam: Array
+    force: Array
+    closed: Mask
+    slips: Index
+
+
+@dataclass(frozen=True)
+class SlidingStage:
+    """A stage with friction that began at a state.
+
+    Attributes
+    ----------
+    stage : Stage
+        Film, wall and rotor.
+    friction : Friction
+        The gaps that rub.
+    before : FrictionState
+        Slips at the start of the step.
+    """
+
+    stage: Stage
+    friction: Friction
+    before: FrictionState
+
+    def solved(self, start: tuple[Array, Array, Mask], tangent: BorderedTangent | None) -> StageSolution | None:
+        """The state near `start`, unknowns, displacement and active contacts; None if there is none.
+
+        `tangent` of a neighbour serves as long as corrections contract.
+        """
+        x, b, active = start
+        at = Iterate(x, b, np.zeros(len(active)), self.before.force, active, self.before.direction)
+        sliding, last, made = tangent if isinstance(tangent, SlidingTangent) else None, np.inf, 0
+        for _ in range(CORRECTIONS):
+            if sliding is None or not sliding.has(self.in_question(at)):
+                if made == TANGENTS or not self.stage.problem.at(displacement=at.b).admits(at.x):
+                    return None
+                sliding, last, made = self.tangent_at(at), np.inf, made + 1
+                if sliding is None:
+                    return None
+            found = self.corrected(at, sliding)
+            if found is None or found[1] > GROWING * last:
+                sliding = None
+                continue
+            at, size, full = found
+            contraction = size / last if np.isfinite(last) else self.stage.options.slow
+            error = size * min(1.0, contraction / max(1.0 - contraction, 0.1))
+            if full and error <= self.stage.options.accuracy and not np.any(self.gaps(at) < CLOSED):
+                return self.solution(at, sliding)
+            sliding = sliding if contraction <= self.stage.options.slow_sliding and full else None
+            last = size
+        return None
+
+    def gaps(self, at: Iterate) -> Array:
+        """All gaps, (m,)."""
+        return self.stage.problem.at(displacement=at.b).gaps(at.x)
+
+    def in_question(self, at: Iterate) -> Mask:
+        """Contacts that may open or close, (m,): those closed, their neighbours, gaps below zero."""
+        lines = [line.number for line in self.stage.problem.layout.wall.contacts.lines]
+        return beside(at.closed, lines) | (self.gaps(at) < CLOSED)
+
+    def tangent_at(self, at: Iterate) -> SlidingTangent | None:
+        """The factorised stage with the contacts of an iterate; None if it has no inverse."""
+        problem, solver = self.stage.problem.at(displacement=at.b), current_run().film_solver
+        constraints = constrain(problem.G, at.closed, self.stage.stops)
+        linearized = problem.linearize(at.x)
+        matrix = linearized.matrix(np.zeros(len(at.closed)))
+        try:
+            factor = constraints.factor(matrix, solver, problem.elimination_key)
+        except SingularMatrixError:
+            return None
+        plain = BorderedTangent.at(Tangent(matrix, constraints, factor), self.stage.border, linearized)
+        rubs = problem.G, rubbing_of(self.friction, len(at.x))
+        return SlidingTangent.about(plain, self.stage.border_stiffness, np.flatnonzero(self.in_question(at)), rubs)
+
+    def corrected(self, at: Iterate, sliding: SlidingTangent) -> tuple[Iterate, float, bool] | None:
+        """The next iterate, size of the correction, and whether all of it was taken; None without contact forces."""
+        problem, columns = self.stage.problem.at(displacement=at.b), sliding.columns
+        settled, reactions = sliding.respond(problem.linearize(at.x).residual, problem.gaps(at.x))
+        db = np.linalg.solve(sliding.stiffness, self.stage.imbalance(at.x + settled, reactions, at.b))
+        change, reactions = settled + sliding.units @ db, reactions + sliding.pushed @ db
+        gaps = problem.gaps(at.x) + problem.G @ change + sliding.border.gap_derivative @ db
+        slip = slips(self.friction, at.x + change) - self.before.slip
+        guess = States(at.closed[columns.contacts], at.slips[columns.rubbing])
+        found = columns.solved((change, reactions, gaps), slip, guess)
+        if found is None:
+            return None
+        amounts = np.concatenate([found.unknown, found.friction])
+        whole = Correction(change + columns.change @ amounts, db + sliding.moved @ amounts, np.zeros(0))
+        length = min(positive_step(problem, at.x, whole.x), self.stage.open_step((at.x, at.b), whole))
+        return self.stepped(at, whole, length, (columns, found)), whole.size, length == 1.0
+
+    def stepped(
+        self, at: Iterate, correction: Correction, length: float, contacts: tuple[Columns, ContactForces]
+    ) -> Iterate:
+        """The iterate after part of a correction, with the contact forces that belong to it."""
+        columns, found = contacts
+        lam, force = np.zeros_like(at.lam), np.zeros_like(at.force)
+        closed, slipping = np.zeros_like(at.closed), np.zeros_like(at.slips)
+        lam[columns.contacts], closed[columns.contacts] = found.reaction(columns.space), found.states.closed
+        force[columns.rubbing], slipping[columns.rubbing] = found.friction, found.states.slips
+        x, b = at.x + length * correction.x, at.b + length * correction.b
+        return Iterate(x, b, lam, force, closed, slipping)
+
+    def solution(self, at: Iterate, sliding: SlidingTangent) -> StageSolution:
+        """What the stage reaches."""
+        problem, friction = self.stage.problem.at(displacement=at.b), self.friction
+        linearized = problem.linearize(at.x)
+        left = linearized.residual + against_slip(friction, at.force, len(at.x)) - problem.G.T @ at.lam
+        residual = float(np.max(np.abs(left) / linearized.row_scale, initial=0.0))
+        constraints = sliding.constraints
+        state = ContactState(at.x, at.b, at.lam, at.closed, residual, constraints, linearized, problem.gaps(at.x))
+        after = FrictionState(slips(friction, at.x), at.force, friction.coefficient * friction.normal(at.lam))
+        return StageSolution(state, self.stage.moving(at.x, at.b), sliding, after)

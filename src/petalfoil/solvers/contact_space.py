@@ -1,0 +1,108 @@
+"""What openings, reactions and friction forces of a few contacts do to linearised equations: columns of one factor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from petalfoil.solvers.coulomb import ContactForces, ContactSpace, States, contact_forces
+from petalfoil.solvers.tangent import BorderedTangent
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class RubbingContacts:
+    """Gaps that rub.
+
+    Attributes
+    ----------
+    slip : (k, n) sparse
+        Slip of each, from the unknowns.
+    gap : (k,) int array
+        Gap whose reaction limits it.
+    coefficient : float
+        `mu`.
+    """
+
+    slip: sp.csr_array
+    gap: Index
+    coefficient: float
+
+    def at(self, contacts: Index) -> Index:
+        """Those among some gaps."""
+        return np.flatnonzero(np.isin(self.gap, contacts))
+
+
+@dataclass(frozen=True)
+class Unit:
+    """Change of the unknowns (n,) and of all reactions (m,), and of all gaps (m,) by bordered unknowns."""
+
+    change: Array
+    reactions: Array
+    gaps: Array | float
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Changes of the unknowns by a unit of each opening, reaction and friction force.
+
+    Attributes
+    ----------
+    contacts : (m,) int array
+        Gaps that may open or close.
+    rubbing : (f,) int array
+        Places among those that rub.
+    change : (n, m + f) array
+        Changes of the unknowns.
+    space : ContactSpace
+        The same as seen by the contacts.
+    """
+
+    contacts: Index
+    rubbing: Index
+    change: Array
+    space: ContactSpace
+
+    @classmethod
+    def of(
+        cls,
+        tangent: BorderedTangent,
+        G: sp.csr_array,
+        contacts: Index,
+        rubbing: RubbingContacts,
+        answered: Callable[[Unit], Unit] = lambda unit: unit,
+    ) -> Columns:
+        """A solve for each; `answered` adds what bordered unknowns do in answer to a unit."""
+        held, at = tangent.constraints.held, rubbing.at(contacts)
+        rows, slips, none = sp.csr_array(G[contacts]), sp.csr_array(rubbing.slip[at]), np.zeros(G.shape[1])
+        units = []
+        for place, gap in enumerate(contacts):
+            if held[gap]:
+                opening = np.zeros(len(held))
+                opening[gap] = -1.0
+                units.append(tangent.respond(none, opening))
+            else:
+                units.append(tangent.respond(-rows[[place]].toarray()[0]))
+        units += [tangent.respond(slips[[place]].toarray()[0]) for place in range(len(at))]
+        moved = [answered(Unit(change, reactions, 0.0)) for change, reactions in units]
+        change = np.column_stack([unit.change for unit in moved])
+        reactions = np.column_stack([unit.reactions[contacts] for unit in moved])
+        gaps = rows @ change + np.column_stack([np.broadcast_to(unit.gaps, len(held))[contacts] for unit in moved])
+        place_of = np.full(len(held), -1)
+        place_of[contacts] = np.arange(len(contacts))
+        answer = np.where(held[contacts][:, None], reactions, gaps)
+        space = ContactSpace(held[contacts], answer, slips @ change, place_of[rubbing.gap[at]], rubbing.coefficient)
+        return cls(contacts, at, change, space)
+
+    def solved(self, base: tuple[Array, Array, Array], slip: Array, guess: States) -> ContactForces | None:
+        """Forces from what the factor gives alone: unknowns' change (n,), reactions and gaps (m,), slips (k,)."""
+        _, reactions, gaps = base
+        answer = np.where(self.space.held, reactions[self.contacts], gaps[self.contacts])
+        return contact_forces(self.space, (answer, slip[self.rubbing]), guess)

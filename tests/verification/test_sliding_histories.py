@@ -1,0 +1,164 @@
+"""Histories of petals that slide along themselves: loops in closed form, energy, packs assembled and led, a rotor."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from numpy.testing import assert_allclose
+from numpy.typing import NDArray
+
+from petalfoil.analysis.orbit import orbit
+from petalfoil.analysis.static import static
+from petalfoil.equilibrium.coulomb_path import slide_exactly
+from petalfoil.equilibrium.friction_path import FrictionResult
+from petalfoil.mesh.axial import axis_2d
+from petalfoil.mesh.pack import PackMesh
+from petalfoil.physics.dry_friction import Friction
+from petalfoil.physics.petal_sliding import Faces
+from petalfoil.solvers.contact_equations import ContactOptions
+from petalfoil.solvers.contact_newton import solve_contacts
+from petalfoil.solvers.sparse_lu import LinearSolver
+from petalfoil.system.friction import FrictionState
+from petalfoil.walls.elasticity import Elasticity
+from petalfoil.walls.sliding import stretching
+from tests.cases import case
+from tests.verification.shell_helpers import UNIT, ElasticProblem, strip_shell, uniform_grid, uniform_load
+from tests.verification.sliding_helpers import HalfArch
+
+Array = NDArray[np.float64]
+
+# ------------------------------------------------------------------------------------------ a leaf on its tip
+
+ARC, SLENDER, GAP = 0.87, 230.0, 0.005
+"""Angle and slenderness of a clamped leaf of radius 1, and the gap of its tip to a wall across it, in `q R^4 / D`."""
+LOW, HIGH = 1.0, 2.0
+"""Pressures of the cycle."""
+
+
+def leaf(cells: int, mu: float) -> tuple[ElasticProblem, Array, Friction]:
+    """The leaf before the wall, forces of a unit pressure, friction of the mid-surface at the tip."""
+    shell = strip_shell(uniform_grid(ARC, cells), 1.0)
+    mesh = PackMesh(1, cells, shell.phi, np.zeros(1), axis_2d(1.0))
+    faces = Faces(np.zeros(1), np.ones(1), np.ones(1), np.full(1, 12.0 * SLENDER**2))
+    bending = Elasticity(shell.difference[:, 1:], shell.strain, shell.rigidity_matrix)
+    cell = ARC / cells
+    K = stretching(bending, mesh, faces).stiffness * (UNIT / cell)
+    pressure = np.concatenate([uniform_load(shell)[1:, 0], np.zeros(cells)]) / cell
+    G = sp.csr_array(([-1.0], ([0], [cells - 1])), shape=(1, 2 * cells))
+    slip = sp.csr_array(([-1.0], ([0], [2 * cells - 1])), shape=(1, 2 * cells))
+    problem = ElasticProblem(sp.csr_array(K), pressure, G, np.array([GAP / UNIT]), np.ones(1))
+    return problem, pressure, Friction(mu, np.zeros(1), slip, sp.csr_array(np.ones((1, 1))), 0.0, exact=True)
+
+
+def led(problem: ElasticProblem, unit: Array, friction: Friction, path: Array) -> list[FrictionResult]:
+    """The leaf along a path of pressures, from a start without friction at the first."""
+    at = [ElasticProblem(problem.K, q * unit, problem.G, problem.rest, problem.weight) for q in path]
+    start = np.zeros(problem.n), np.ones(1, dtype=bool)
+    found, outcome = solve_contacts(at[0], start, LinearSolver(), ContactOptions(tangents=40))
+    assert found is not None, outcome
+    fresh = FrictionState.fresh(friction, found.x, found.lam)
+    states = [FrictionResult(found.x, found.lam, found.active, found.state.residual, fresh, 0.0)]
+    for one in at[1:]:
+        slid = slide_exactly(one, friction, states[-1], [np.zeros((1, 1), dtype=np.intp)], LinearSolver())
+        assert slid is not None
+        assert slid.residual < 1e-8
+        states.append(slid)
+    return states
+
+
+def exact_loss(mu: float) -> float:
+    """Energy lost in a closed cycle by the leaf in Hermite elements: it slips along `T = +-mu N`, sticks in between."""
+    by_V, by_H, by_q = HalfArch(ARC, SLENDER, 64).tip_compliance  # (W, -V) of the tip by -N, -T, q
+    give = np.column_stack([by_V, by_H])
+
+    def forces(q: float, slip: float | None, sign: float) -> tuple[float, float, float]:
+        """Reaction, friction and slip at a pressure, sticking at a slip or slipping with a sign."""
+        if slip is None:
+            N = (by_q[0] * q - GAP) / (give[0, 0] + sign * mu * give[0, 1])
+            T = sign * mu * N
+        else:
+            N, T = np.linalg.solve(give, by_q * q - np.array([GAP, slip]))
+        return float(N), float(T), float(by_q[1] * q - give[1] @ [N, T])
+
+    def leaves(slip: float, sign: float, ends: tuple[float, float]) -> float:
+        """Pressure at which the stuck tip begins to slip with `sign`: where `T = sign mu N`, linear in the pressure."""
+        a, b = (forces(q, slip, 0.0) for q in ends)
+        miss = [T - sign * mu * N for N, T, _ in (a, b)]
+        return float(ends[0] + (ends[1] - ends[0]) * miss[0] / (miss[0] - miss[1]))
+
+    top, bottom = forces(HIGH, None, 1.0), forces(LOW, None, -1.0)
+    back = forces(leaves(top[2], -1.0, (HIGH, LOW)), None, -1.0)
+    forth = forces(leaves(bottom[2], 1.0, (LOW, HIGH)), None, 1.0)
+    return sum(0.5 * abs(a[1] + b[1]) * abs(a[2] - b[2]) for a, b in ((back, bottom), (forth, top)))
+
+
+def test_loop_of_an_arc_leaf_on_its_tip() -> None:
+    """Within 0.2 % of slip, stick, slip back, stick in closed form, on 64 cells."""
+    mu = 0.2
+    path = np.concatenate([np.linspace(a, b, 25)[1:] for a, b in ((LOW, HIGH), (HIGH, LOW)) * 2])
+    errors = []
+    for cells in (32, 64):
+        problem, unit, friction = leaf(cells, mu)
+        states = led(problem, unit, friction, np.concatenate([[LOW], path]))
+        lost = sum(state.lost for state in states[-48:]) * UNIT * (ARC / cells)
+        errors.append(lost / exact_loss(mu) - 1.0)
+    assert abs(errors[-1]) < 2e-3
+    assert abs(errors[-1]) < 0.5 * abs(errors[0])
+
+
+def test_an_arc_leaf_whose_tip_sticks_loses_nothing() -> None:
+    """Friction past which the tip holds: an arch, whose slip stays."""
+    problem, unit, friction = leaf(32, 20.0)
+    states = led(problem, unit, friction, np.array([LOW, 1.3, 1.6, HIGH, 1.5, LOW]))
+    assert sum(state.lost for state in states) < 1e-9 * exact_loss(0.2)
+    assert_allclose([state.friction.slip[0] for state in states], states[0].friction.slip[0], atol=1e-9)
+
+
+# ------------------------------------------------------------------------------------------ packs
+
+
+def loop(name: str, mu: float, down: Array, **changes: object) -> tuple[Array, Array, float]:
+    """Displacement and force down along the closed cycle of a pack, and the energy lost in it."""
+    rubbing = case(name, **{"model.cells_per_pitch": 16, "surface.petal_friction": mu, **changes})
+    records = list(static.records(rubbing, down, loop=True))
+    assert all(record.converged for record in records)
+    assert max(float(record.scalars["residual"]) for record in records) < 1e-8
+    cycle = [record.scalars for record in records[len(down) - 1 :]]
+    e, force = (np.array([float(point[key]) for point in cycle]) for key in ("eccentricity_y", "force_y"))
+    return -e, force, float(cycle[-1]["petal_friction_work"]) - float(cycle[0]["petal_friction_work"])
+
+
+@pytest.mark.slow
+def test_energy_lost_by_a_pack_is_the_area_of_its_loop() -> None:
+    away = []
+    for count in (5, 17):
+        e, force, lost = loop("paper_n8", 0.1, np.linspace(0.0, 40e-6, count))
+        away.append(abs(float(np.trapezoid(force, e)) / lost - 1.0))
+        assert force[-1] == pytest.approx(force[0], rel=1e-2)
+        assert np.all(force[count - 2 : 0 : -1] < force[count:-1])
+    assert away[1] < 0.5 * away[0]
+    assert away[1] < 0.05
+
+
+def test_little_friction_loses_its_limit_times_the_slip_and_changes_little() -> None:
+    """Half the friction, half the loss; and no friction between petals that slide is no friction."""
+    _, few, lost = loop("rig", 2e-4, np.array([0.0, 4e-6]), **{"model.cells_per_pitch": 12})
+    _, _, half = loop("rig", 1e-4, np.array([0.0, 4e-6]), **{"model.cells_per_pitch": 12})
+    assert lost == pytest.approx(2.0 * half, rel=2e-2)
+    smooth = case("rig", **{"model.cells_per_pitch": 12})
+    (none,) = static.records(smooth, (4e-6,))
+    assert few[0] == pytest.approx(float(none.scalars["force_y"]), rel=1e-3)
+
+
+@pytest.mark.slow
+def test_motion_of_a_rotor_keeps_the_balance_of_energy() -> None:
+    """Half a turn of an unbalanced rotor: what friction takes is among the works, to the order of the steps."""
+    errors = []
+    for tolerance in (1e-3, 1e-4):
+        rubbing = case("orbit_n8", **{"model.cells_per_pitch": 12, "surface.petal_friction": 0.1})
+        record = orbit.record(rubbing, revolutions=0.5, initial="balance", tolerance=tolerance)
+        assert float(np.asarray(record.fields["petal_friction_work"])[-1]) > 0.0
+        errors.append(float(record.scalars["energy_balance_error"]))
+    assert errors[0] < 1e-2
+    assert errors[1] < 0.7 * errors[0]  # friction jumps where contacts begin to slip
