@@ -35,6 +35,8 @@ DOWN = -math.pi / 2.0
 """Direction of a weight, along -y [rad]."""
 FIRST = 0.1
 """First load that is looked at, over ambient pressure times length times diameter."""
+STEEPEST = 2.0
+"""Largest power of the speed by which a first load at another speed is foretold."""
 LBF, INCH, KRPM = 4.4482216152605, 0.0254, 1e3 * math.pi / 30.0
 """Pound-force [N], inch [m] and a thousand revolutions per minute [rad/s]."""
 
@@ -172,13 +174,14 @@ class Search:
     known : dict
         State at the capacity by direction, of the speed before.
     loads : dict
-        The last two speeds [rad/s] and capacities [N] by direction.
+        By direction, the last two speeds [rad/s] and capacities [N], and by how much the capacity grows with the speed
+        there, logarithm over logarithm.
     """
 
     case: Case
     asked: Asked
     known: dict[float, Solution] = field(default_factory=dict)
-    loads: dict[float, list[tuple[float, float]]] = field(default_factory=dict)
+    loads: dict[float, list[tuple[float, float, float]]] = field(default_factory=dict)
 
     def at(self, speed: float) -> list[Capacity]:
         """The capacity in each direction at a speed [rad/s]."""
@@ -192,17 +195,21 @@ class Search:
             if capacity.at is not None:
                 beside = capacity.at.size, capacity.at.found.answer
                 self.known[angle] = beside[1]
-                self.loads[angle] = [*self.loads.get(angle, [])[-1:], (speed, beside[0])]
+                self.loads[angle] = [*self.loads.get(angle, [])[-1:], (speed, beside[0], ray.growth(capacity.at))]
             found.append(capacity)
         return found
 
     def guess(self, angle: float, speed: float) -> float:
-        """The capacity at a speed by the power law of the last two [N]."""
-        *earlier, (before, size) = self.loads[angle]
-        exponent = 0.0
+        """The capacity at a speed by the power law of the last one, which changes as between the last two [N]."""
+        *earlier, (before, size, growth) = self.loads[angle]
+        step, bend = math.log(speed / before), 0.0
         if earlier and earlier[0][0] != before:
-            exponent = math.log(size / earlier[0][1]) / math.log(before / earlier[0][0])
-        return size * float((speed / before) ** min(max(exponent, -2.0), 2.0))
+            apart = math.log(before / earlier[0][0])
+            mean = math.log(size / earlier[0][1]) / apart
+            growth = mean if math.isnan(growth) else growth
+            bend = 2.0 * (growth - mean) / apart
+        exponent = 0.0 if math.isnan(growth) else growth + 0.5 * bend * step
+        return size * float((speed / before) ** min(max(exponent, -STEEPEST), STEEPEST))
 
 
 @analysis(

@@ -193,6 +193,24 @@ class LoadRay:
         ahead = self._judged(here.size, replace(answer, problem=moved, state=state))
         return (ahead.margin - here.margin) / PROBE if ahead.limit == here.limit else math.nan
 
+    def growth(self, here: Loaded) -> float:
+        """Derivative of the logarithm of the load at the limit by that of the speed, foretold likewise; nan without."""
+        answer, by_load = here.found.answer, self.slope(here)
+        if answer.contacts is None or not by_load < 0.0:
+            return math.nan
+        tangent, problem = answer.contacts.tangent, answer.problem
+        faster = problem.at(bearing_number=problem.bearing_number * (1.0 + PROBE))
+        forcing = faster.linearize(answer.x).residual - problem.linearize(answer.x).residual
+        closing = faster.gaps(answer.x) - problem.gaps(answer.x)
+        de = np.linalg.solve(tangent.gradient, -tangent.border.rows(*tangent.respond(forcing, closing)))
+        change, reactions = tangent.respond(
+            forcing + tangent.forcing @ de, closing + tangent.border.gap_derivative @ de
+        )
+        moved = faster.at(displacement=problem.displacement + de)
+        state = replace(answer.state, x=answer.x + change, lam=answer.lam + reactions)
+        ahead = self._judged(here.size, replace(answer, problem=moved, state=state))
+        return -(ahead.margin - here.margin) / PROBE / by_load if ahead.limit == here.limit else math.nan
+
     def _judged(self, size: float, answer: Solution) -> Loaded:
         found = Evaluation.of(self.case, answer)
         margin, limit = self.limits.margin(found)
