@@ -10,6 +10,7 @@ from petalfoil.plot.study_optimum import optimum
 from petalfoil.plot.study_sobol import sobol
 from petalfoil.plot.study_sweeps import parallel_coordinates, scatter_matrix, sweep
 from petalfoil.plot.study_tolerance import tolerance
+from petalfoil.plot.study_views import of_cases
 
 
 def study(ds: xr.Dataset, names: tuple[str, ...] = ()) -> Figure:
@@ -65,6 +66,7 @@ def _tolerance(ds: xr.Dataset) -> dict[str, Figure]:
 
 
 def _sweep(ds: xr.Dataset) -> dict[str, Figure]:
+    ds = of_cases(ds)
     figures = {"results": sweep(ds)}
     if ds["converged"].dims == ("case",) or ds["converged"].ndim > 2:
         figures = {"parallel_coordinates": parallel_coordinates(ds), "scatter_matrix": scatter_matrix(ds)}

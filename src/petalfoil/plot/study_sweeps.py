@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from typing import Any
 
 import numpy as np
@@ -153,10 +154,16 @@ def _without_answer(ds: xr.Dataset) -> list[tuple[str, str, str, NDArray[np.bool
 
 def _columns(ds: xr.Dataset, names: tuple[str, ...]) -> list[tuple[Quantity, Floats]]:
     """Parameters and results of every case, one column each."""
-    shape = ds["converged"]
     varied, shown = parameters(ds), shown_results(ds, names)
     told = [(parameter(ds, name), name) for name in varied] + [(result(ds, name), name) for name in shown]
-    return [(quantity, in_unit(ds[[name]].broadcast_like(shape), name, quantity).ravel()) for quantity, name in told]
+    return [(quantity, _of_each_case(ds, in_unit(ds, name, quantity), ds[name].dims)) for quantity, name in told]
+
+
+def _of_each_case(ds: xr.Dataset, values: Floats, dims: tuple[Hashable, ...]) -> Floats:
+    """Values over some of the dimensions of a study for all its cases, (case,)."""
+    cases = xr.DataArray(ds["converged"].values, dims=ds["converged"].dims)  # an index would not be broadcast
+    whole = xr.DataArray(values, dims=dims).broadcast_like(cases).transpose(*cases.dims)
+    return np.asarray(whole.values, dtype=np.float64).ravel()
 
 
 def parallel_coordinates(ds: xr.Dataset, names: tuple[str, ...] = ()) -> Figure:

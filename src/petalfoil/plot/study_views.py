@@ -24,8 +24,9 @@ _FEW = 4
 
 
 def parameters(ds: xr.Dataset) -> list[str]:
-    """Names of what varies."""
-    return [str(name) for name in ds.coords if "path" in ds[name].attrs]
+    """Names of what varies; of one case, of all that could."""
+    names = [str(name) for name in ds.coords if "path" in ds[name].attrs]
+    return [name for name in names if ds[name].size > 1] or names
 
 
 def parameter(ds: xr.Dataset, name: str) -> Quantity:
@@ -68,8 +69,10 @@ def shown_results(ds: xr.Dataset, names: Sequence[str] = ()) -> list[str]:
 
 
 def of_cases(ds: xr.Dataset) -> xr.Dataset:
-    """The study with one value a case: of a series of points the last."""
-    return ds.isel(point=-1) if "point" in ds.dims else ds
+    """The study with one value a case: of a series of points the last. Parameters of one level are no dimension."""
+    last = ds.isel(point=-1) if "point" in ds.dims else ds
+    single = [dim for dim in last["converged"].dims if last.sizes[dim] == 1]
+    return last.squeeze(single) if len(single) < last["converged"].ndim else last
 
 
 def in_unit(ds: xr.Dataset, name: str, shown: Quantity) -> Floats:

@@ -210,7 +210,8 @@ def answered(task: Task) -> Outcome:
 
 def _asked(task: Task) -> tuple[list[dict[str, Scalar]], str, str]:
     """Scalars of all points, status and reason."""
-    case = with_values(_base(task.base), task.values)
+    under_load = any(name in task.question.arguments for name in ("load", "loads"))
+    case = with_values(_base(task.base, centred=under_load), task.values)
     analysis = analysis_of(task.question.verb)
     with _beside_others(task):
         run = analysis.start(case, analysis.read(task.question.arguments))
@@ -265,5 +266,7 @@ def _write(analysis: Analysis, run: Any, path: Path) -> None:
 
 
 @lru_cache(maxsize=4)  # a worker has one study at a time
-def _base(text: str) -> Case:
-    return Case.from_toml(text)
+def _base(text: str, *, centred: bool) -> Case:
+    """The base case; `centred` where a load finds the position, so that a design need not fit at that of the case."""
+    case = Case.from_toml(text)
+    return case.replace(**{"operation.eccentricity": (0.0, 0.0)}) if centred else case

@@ -12,8 +12,9 @@ import xarray as xr
 from numpy.testing import assert_allclose
 
 import petalfoil
+from petalfoil import plot
 from petalfoil.errors import StoreError, UsageError
-from petalfoil.plot.study_views import in_unit, result, shown_results
+from petalfoil.plot.study_views import in_unit, of_cases, parameters, result, shown_results
 from petalfoil.results.store import load
 from petalfoil.studies import store as folders
 from petalfoil.studies.definition import Study
@@ -254,3 +255,28 @@ def test_the_force_of_a_centred_journal_is_zero_in_tables_and_figures(swept: tup
     rounded = ds.assign({name: 1e-11 / ds["speed"] * (ds[name] * 0.0 + 1.0) for name in ("bearing_force", "force_y")})
     assert not {"bearing_force", "force_y"} & {*results(rounded), *shown_results(rounded)}
     assert_allclose(in_unit(rounded, "bearing_force", result(rounded, "bearing_force")), 0.0, atol=0.0)
+
+
+def test_a_grid_of_three_parameters_is_drawn_and_one_of_a_single_level_is_no_dimension() -> None:
+    vary = {
+        "operation.speed": [3000.0, 4000.0],
+        "gas.viscosity": [1.8e-5, 1.9e-5, 2e-5],
+        "bearing.length": [0.04, 0.05],
+    }
+    ds = sweep(PLAIN, vary, "solve", execution=ALONE)
+    lines = plot.study(ds, ("bearing_force",)).axes[0].lines
+    assert len(lines) >= 12  # one for each case
+    ends = {float(line.get_ydata()[1]) for line in lines if len(line.get_ydata()) == 4}
+    assert ends == {0.0, 0.5, 1.0}  # the three levels of the second parameter
+    single = ds.isel(length=[0])
+    assert parameters(of_cases(single)) == ["speed", "viscosity"]
+    assert of_cases(single)["converged"].dims == ("speed", "viscosity")
+    assert set(plot.study_figures(single)) == {"results"}
+
+
+def test_a_load_finds_the_position_so_that_a_design_need_not_fit_at_that_of_the_case() -> None:
+    displaced = PLAIN.replace(**{"operation.eccentricity": (0.0, -20e-6)})
+    tight = {"bearing.journal_radius": [PLAIN.bearing.bushing_radius - 15e-6]}
+    found = sweep(displaced, tight, "balance", load=20.0, execution=ALONE)
+    assert found["status"].values.tolist() == [CONVERGED]
+    assert sweep(displaced, tight, "solve", execution=ALONE)["status"].values.tolist() == [INVALID]
