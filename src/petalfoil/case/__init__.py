@@ -24,7 +24,8 @@ In the order data flows:
 - `definitions`: `Case`, which puts all of it together.
 - `keys`: every key with unit, range, default and meaning, and what a case says to it.
 - `parameters`: numbers of a case that may vary, by dotted path.
-- `plausibility`: warnings of what is implausible about a case and its answer.
+- `implausible_answers`: warnings of what is implausible about an answer.
+- `plausibility`: the same of a case, and of a case with its answer.
 
 All numbers are floats in SI units; texts such as ``"25 um"`` are read when a definition is made.
 """
@@ -35,10 +36,11 @@ from petalfoil.case.free_shape import arc_radius, chordal_tilt
 from petalfoil.case.gas import Gas
 from petalfoil.case.growth import Bushing, Growth, Shaft
 from petalfoil.case.heat import Heat, HotGas
+from petalfoil.case.implausible_answers import warnings_of_errors
 from petalfoil.case.package import Package, package_of
 from petalfoil.case.parameters import Parameter, parameter_of, parameters_of, parameters_of_petals, with_values
 from petalfoil.case.petal_table import Mount, Petals, PetalTheory
-from petalfoil.case.plausibility import warnings_of, warnings_of_errors
+from petalfoil.case.plausibility import warnings_of
 from petalfoil.case.rotor import Rotor
 from petalfoil.case.sections import Bearing, Edges, Method, Model, ModelKind, Operation, Surface
 from petalfoil.case.wall_tables import WallTable, register_table, unregister_table

@@ -63,18 +63,29 @@ def check_temperature(name: str, T: float) -> None:
         raise refuse(VALUE_PROBLEM, f"{_K(T)} is outside the range of {name}; allowed: {allowed}", allowed)
 
 
-def check_pressure(name: str, T: float, p: float) -> None:
-    """Refuse a pressure [Pa] at which the gas would condense, or would not be ideal to 2 %."""
+def within_temperatures(name: str, T: float) -> bool:
+    """Whether a temperature [K] is inside the equation of state."""
+    low, high = _limits(_state(fluid_of(name)))
+    return low <= T <= high
+
+
+def unlike_ideal(name: str, T: float, p: float) -> str:
+    """Why a gas is no ideal one to 2 % at a temperature [K] that is known and a pressure [Pa]; empty where it is."""
     state = _state(fluid_of(name))
     dew = _dew_pressure(state, T)
     if p >= dew:
         ends = "condenses at" if T < state.T_critical() else "is known up to"
-        found = f"{name} at {_K(T)} {ends} {_Pa(dew)}, below {_Pa(p)}"
-    elif _departure(state, T, p) > IDEAL:
-        found = f"{name} at {_K(T)} and {_Pa(p)} is {100.0 * _departure(state, T, p):.2g} % off the ideal-gas law"
-    else:
+        return f"{name} at {_K(T)} {ends} {_Pa(dew)}, below {_Pa(p)}"
+    if _departure(state, T, p) > IDEAL:
+        return f"{name} at {_K(T)} and {_Pa(p)} is {100.0 * _departure(state, T, p):.2g} % off the ideal-gas law"
+    return ""
+
+
+def check_pressure(name: str, T: float, p: float) -> None:
+    """Refuse a pressure [Pa] at which the gas would condense, or would not be ideal to 2 %."""
+    if not (found := unlike_ideal(name, T, p)):
         return
-    allowed = _allowed(state, T, p)
+    allowed = _allowed(_state(fluid_of(name)), T, p)
     ideal = "; a numeric gas.viscosity and gas.gas_constant in place of the name run as an ideal gas"
     raise refuse(VALUE_PROBLEM, f"{found}; allowed: {allowed}{ideal}", allowed)
 

@@ -6,21 +6,16 @@ A case that is possible is never refused for being unlikely; it is answered, wit
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from petalfoil.case.definitions import Case
+from petalfoil.case.implausible_answers import Scalars, number, of_answer
 from petalfoil.case.measured_shape import row_errors
 from petalfoil.case.petal_table import PetalTheory
-from petalfoil.case.sections import ModelKind
 from petalfoil.units.writing import format_quantity
-
-Scalars = Mapping[str, float | int | bool | str]
-
-MAX_STRESS = 2e9
-"""Yield strength of the strongest spring steels and nickel alloys in foils [Pa]."""
 
 MAX_MACH = 0.7
 """Mach number of the journal's surface above which the gas heats by tens of kelvins and its inertia matters."""
@@ -28,36 +23,14 @@ MAX_MACH = 0.7
 HEAT_CAPACITY_RATIO = 1.4
 """Of air and other gases of two atoms; 1.67 of noble gases makes the Mach number 9 % smaller."""
 
-MAX_KNUDSEN = 0.1
-"""Mean free path over film thickness above which first-order slip no longer holds (Burgdorfer 1959)."""
-
-MIN_CONTACT = 1e-3
-"""Fraction of the force on the journal that solid contact must carry to be called contact."""
-
 MIN_ROWS = 6
 """Rows of a measured free shape from which its error can be estimated."""
 
 SCATTER = 6.0
 """Standard deviations by which the worst of some hundred rows misses its neighbours: they scatter as it does."""
 
-MIXED = 3.0
-"""Minimum film thickness over contact film thickness below which peaks of the surfaces touch now and then: the film
-parameter of mixed lubrication."""
-
 TAYLOR = 41.2
 """Reynolds number of the film over the root of radius over film, from which on vortices form (Taylor 1923)."""
-
-WIDE = 0.1
-"""Error bar over the result above which the result is known to its order of magnitude only."""
-
-JUDGED = (
-    *("bearing_force", "min_film_thickness", "peak_pressure", "friction_torque", "max_bending_stress"),
-    *("critical_mass", "threshold_speed", "liftoff_speed", "starting_torque"),
-)
-"""Results whose error bars are judged: others may vanish, as a force across the load does."""
-
-BOTTOMED_OUT = ("bottomed out",)
-"""Words in the solution path of a foil pack that a load has closed to its solid height."""
 
 
 @dataclass(frozen=True)
@@ -144,7 +117,7 @@ def warnings_of(case: Case, scalars: Scalars) -> list[str]:
     list of str
         One line each: key or quantity, what is implausible about it, why, and what to do.
     """
-    return [*_of_inputs(case, scalars), *_of_answer(case, scalars)]
+    return [*_of_inputs(case, scalars), *of_answer(case, scalars)]
 
 
 # ---------------------------------------------------------------------------------------------- inputs
@@ -154,7 +127,7 @@ def _of_inputs(case: Case, scalars: Scalars) -> Iterator[str]:
     yield from _unusual(case)
     yield from CLEARANCE_RATIO.warning(case.bearing.clearance / case.bearing.journal_radius)
     yield from SLENDERNESS.warning(0.5 * case.bearing.length / case.bearing.journal_radius)
-    yield from _surface_speed(case, _number(scalars, "speed", case.operation.speed))
+    yield from _surface_speed(case, number(scalars, "speed", case.operation.speed))
     if not list(_unusual(case)):  # a density that is wrong would be told twice
         yield from _turbulence(case, scalars)
     yield from _unbalance(case)
@@ -240,77 +213,9 @@ def _measured_shape(case: Case) -> Iterator[str]:
         )
 
 
-# ---------------------------------------------------------------------------------------------- answers
-
-
-def _of_answer(case: Case, scalars: Scalars) -> Iterator[str]:
-    yield from _stress(case, _number(scalars, "max_bending_stress"))
-    yield from _rarefaction(case, _number(scalars, "knudsen_number"))
-    yield from _contact(case, scalars)
-    yield from _mixed_lubrication(case, scalars)
-    yield from _pressed_bumps(case, scalars)
-    if any(words in str(scalars.get("solution_path", "")) for words in BOTTOMED_OUT):
-        yield (
-            "solution_path: the foil pack has bottomed out, journal, petals and bushing touch as a solid stack, whose "
-            "own stiffness is not modelled; reduce the load, or enlarge the pack's clearance"
-        )
-    at_nodes = "at nodes" in str(scalars.get("contact_slopes", ""))
-    if at_nodes and case.petals is not None and case.backing is None and case.model.kind is ModelKind.TWO_D:
-        yield (
-            "contact_slopes: no equilibrium with contact points was found, stiffness and damping are those of contacts "
-            "at nodes: known to several per cent where petals lie on each other along stretches; compare two grids "
-            "(--error)"
-        )
-
-
-def _stress(case: Case, stress: float) -> Iterator[str]:
-    given = None if case.petals is None else case.petals.yield_strength
-    limit = MAX_STRESS if given is None else given
-    if stress > limit:
-        what = "above which no foil alloy stays elastic" if given is None else "the yield strength"
-        yield (
-            f"max_bending_stress: {format_quantity(stress, 'Pa')} exceeds {format_quantity(limit, 'Pa')}, {what}: the "
-            "petals would yield, which is not modelled; use a larger petals.bend_radius or a smaller petals.thickness"
-        )
-
-
-def _rarefaction(case: Case, knudsen: float) -> Iterator[str]:
-    if knudsen > MAX_KNUDSEN:
-        slip = (
-            "first-order slip"
-            if case.model.slip
-            else "without slip the film is too stiff: set model.slip = true, which"
-        )
-        yield (
-            f"knudsen_number: the mean free path is {knudsen:.2g} of the minimum film thickness, over {MAX_KNUDSEN:g}, "
-            f"where the gas is no continuum; {slip} holds up to there: take the film's force and damping as an estimate"
-        )
-
-
-def _contact(case: Case, scalars: Scalars) -> Iterator[str]:
-    fraction, speed = _number(scalars, "contact_fraction"), _number(scalars, "speed", case.operation.speed)
-    if fraction > MIN_CONTACT and 0.0 < case.operation.speed <= speed:
-        yield (
-            f"contact_fraction: at operating speed solid contact carries {100.0 * fraction:.2g} % of the force on the "
-            "journal: it would heat up, and wear, which is not modelled; reduce the load, or raise the speed"
-        )
-
-
-def _mixed_lubrication(case: Case, scalars: Scalars) -> Iterator[str]:
-    film, floor = _number(scalars, "min_film_thickness"), case.surface.contact_film_thickness
-    speed = _number(scalars, "speed", case.operation.speed)
-    free = not _number(scalars, "contact_fraction", 0.0) > MIN_CONTACT
-    if free and film < MIXED * floor and 0.0 < case.operation.speed <= speed:
-        yield (
-            f"min_film_thickness: {format_quantity(film, 'm')} is under {MIXED:g} times "
-            f"surface.contact_film_thickness, {format_quantity(floor, 'm')}: peaks of the surfaces touch now and then, "
-            "which is not modelled; reduce the load, raise the speed, or take smoother surfaces"
-        )
-
-
 def _turbulence(case: Case, scalars: Scalars) -> Iterator[str]:
-    radius, speed = case.bearing.journal_radius, _number(scalars, "speed", case.operation.speed)
-    film = case.bearing.clearance if case.petals is None else _number(scalars, "min_film_thickness")
+    radius, speed = case.bearing.journal_radius, number(scalars, "speed", case.operation.speed)
+    film = case.bearing.clearance if case.petals is None else number(scalars, "min_film_thickness")
     reynolds = case.gas.ambient_density * speed * radius * film / case.gas.viscosity
     limit = TAYLOR * math.sqrt(radius / film) if film > 0.0 else math.inf
     if reynolds > limit:
@@ -320,42 +225,3 @@ def _turbulence(case: Case, scalars: Scalars) -> Iterator[str]:
             f"{reynolds:.3g}, above {limit:.3g}, where vortices form and the film becomes turbulent, which is not "
             "modelled: friction and stiffness would be larger; lower speed or ambient pressure, or a smaller clearance"
         )
-
-
-def _pressed_bumps(case: Case, scalars: Scalars) -> Iterator[str]:
-    for springs, name in ((case.bump_foil, "max_deflection"), (case.backing, "max_backing_deflection")):
-        deflection = _number(scalars, name)
-        if springs is not None and deflection > springs.travel:
-            yield (
-                f"{name}: the foil is pressed in by {format_quantity(deflection, 'm')}, more than the height of "
-                f"its bumps, {format_quantity(springs.travel, 'm')}: they would lie on the bushing, which is not "
-                "modelled; reduce the load, or take stiffer bumps"
-            )
-
-
-def warnings_of_errors(scalars: Scalars, errors: Mapping[str, float]) -> list[str]:
-    """Return what the error bars of an answer tell against it.
-
-    Parameters
-    ----------
-    scalars : mapping
-        The answer's scalars by name, SI.
-    errors : mapping
-        Their error bars.
-    """
-    wide = {name: errors[name] / abs(_number(scalars, name)) for name in JUDGED if name in errors and scalars.get(name)}
-    told = {name: share for name, share in wide.items() if share > WIDE}
-    if not told:
-        return []
-    worst = max(told, key=lambda name: told[name])
-    more = f" (and those of {', '.join(name for name in told if name != worst)})" if len(told) > 1 else ""
-    return [
-        f"{worst}: its error bar is {100.0 * told[worst]:.2g} % of it{more}, over {100.0 * WIDE:g} %: the grid is too "
-        "coarse for it; raise model.cells_per_pitch and, in 3-D, model.axial_cells, or see `converge`"
-    ]
-
-
-def _number(scalars: Scalars, name: str, default: float = math.nan) -> float:
-    """A scalar as a number; `default` where there is none."""
-    value = scalars.get(name)
-    return default if value is None or isinstance(value, str) or math.isnan(value) else float(value)

@@ -1,0 +1,175 @@
+"""What is implausible about an answer: one line each, with the reason and what to do."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from petalfoil.case import gas_properties
+from petalfoil.case.definitions import Case
+from petalfoil.case.sections import ModelKind
+from petalfoil.units.writing import format_quantity
+
+Scalars = Mapping[str, float | int | bool | str]
+
+MAX_STRESS = 2e9
+"""Yield strength of the strongest spring steels and nickel alloys in foils [Pa]."""
+
+MAX_KNUDSEN = 0.1
+"""Mean free path over film thickness above which first-order slip no longer holds (Burgdorfer 1959)."""
+
+MIN_CONTACT = 1e-3
+"""Fraction of the force on the journal that solid contact must carry to be called contact."""
+
+MIXED = 3.0
+"""Minimum film thickness over contact film thickness below which peaks of the surfaces touch now and then: the film
+parameter of mixed lubrication."""
+
+WIDE = 0.1
+"""Error bar over the result above which the result is known to its order of magnitude only."""
+
+BOTTOMED_OUT = ("bottomed out",)
+"""Words in the solution path of a foil pack that a load has closed to its solid height."""
+
+JUDGED = (
+    *("bearing_force", "min_film_thickness", "peak_pressure", "friction_torque", "max_bending_stress"),
+    *("critical_mass", "threshold_speed", "liftoff_speed", "starting_torque"),
+)
+"""Results whose error bars are judged: others may vanish, as a force across the load does."""
+
+
+def of_answer(case: Case, scalars: Scalars) -> Iterator[str]:
+    """Yield what is implausible about an answer, by its scalars; nothing without any."""
+    yield from _stress(case, number(scalars, "max_bending_stress"))
+    yield from _rarefaction(case, number(scalars, "knudsen_number"))
+    yield from _real_gas(case, scalars)
+    yield from _warm_parts(case, scalars)
+    yield from _contact(case, scalars)
+    yield from _mixed_lubrication(case, scalars)
+    yield from _pressed_bumps(case, scalars)
+    if any(words in str(scalars.get("solution_path", "")) for words in BOTTOMED_OUT):
+        yield (
+            "solution_path: the foil pack has bottomed out, journal, petals and bushing touch as a solid stack, whose "
+            "own stiffness is not modelled; reduce the load, or enlarge the pack's clearance"
+        )
+    at_nodes = "at nodes" in str(scalars.get("contact_slopes", ""))
+    if at_nodes and case.petals is not None and case.backing is None and case.model.kind is ModelKind.TWO_D:
+        yield (
+            "contact_slopes: no equilibrium with contact points was found, stiffness and damping are those of contacts "
+            "at nodes: known to several per cent where petals lie on each other along stretches; compare two grids "
+            "(--error)"
+        )
+
+
+def _stress(case: Case, stress: float) -> Iterator[str]:
+    given = None if case.petals is None else case.petals.yield_strength
+    limit = MAX_STRESS if given is None else given
+    if stress > limit:
+        what = "above which no foil alloy stays elastic" if given is None else "the yield strength"
+        yield (
+            f"max_bending_stress: {format_quantity(stress, 'Pa')} exceeds {format_quantity(limit, 'Pa')}, {what}: the "
+            "petals would yield, which is not modelled; use a larger petals.bend_radius or a smaller petals.thickness"
+        )
+
+
+def _real_gas(case: Case, scalars: Scalars) -> Iterator[str]:
+    peak, name = number(scalars, "peak_pressure"), case.gas.name
+    if name is None or not peak > case.gas.ambient_pressure:
+        return
+    temperature = number(scalars, "film_temperature", case.gas.temperature)
+    if gas_properties.within_temperatures(name, temperature):
+        if found := gas_properties.unlike_ideal(name, temperature, peak):
+            yield (
+                f"peak_pressure: {found}: at the peak of the film the density is not that of the ideal-gas law, which "
+                "is modelled alone; lower the load or gas.ambient_pressure, or take a warmer gas"
+            )
+
+
+def _warm_parts(case: Case, scalars: Scalars) -> Iterator[str]:
+    film, name = number(scalars, "film_temperature"), case.gas.name
+    if name is not None and not math.isnan(film) and not gas_properties.within_temperatures(name, film):
+        yield (
+            f"film_temperature: {format_quantity(film, 'K', digits=5)} is outside the range in which CoolProp knows "
+            f"{name}: its viscosity there is extrapolated; cool the bearing, or give the gas by numbers"
+        )
+    metal, pack = None if case.petals is None else case.petals.metal, number(scalars, "pack_temperature")
+    if metal is not None and not math.isnan(pack) and not metal.range[0] <= pack <= metal.range[1]:
+        low, high = (end - 273.15 for end in metal.range)
+        yield (
+            f"pack_temperature: at {pack - 273.15:.0f} °C the modulus of {metal.name} is not known, only from "
+            f"{low:.0f} to {high:.0f} °C, and that of petals.metal_temperature is used; cool the bearing, or give the "
+            "modulus as a number"
+        )
+
+
+def _rarefaction(case: Case, knudsen: float) -> Iterator[str]:
+    if knudsen > MAX_KNUDSEN:
+        slip = (
+            "first-order slip"
+            if case.model.slip
+            else "without slip the film is too stiff: set model.slip = true, which"
+        )
+        yield (
+            f"knudsen_number: the mean free path is {knudsen:.2g} of the minimum film thickness, over {MAX_KNUDSEN:g}, "
+            f"where the gas is no continuum; {slip} holds up to there: take the film's force and damping as an estimate"
+        )
+
+
+def _contact(case: Case, scalars: Scalars) -> Iterator[str]:
+    fraction, speed = number(scalars, "contact_fraction"), number(scalars, "speed", case.operation.speed)
+    if fraction > MIN_CONTACT and 0.0 < case.operation.speed <= speed:
+        yield (
+            f"contact_fraction: at operating speed solid contact carries {100.0 * fraction:.2g} % of the force on the "
+            "journal: it would heat up, and wear, which is not modelled; reduce the load, or raise the speed"
+        )
+
+
+def _mixed_lubrication(case: Case, scalars: Scalars) -> Iterator[str]:
+    film, floor = number(scalars, "min_film_thickness"), case.surface.contact_film_thickness
+    speed = number(scalars, "speed", case.operation.speed)
+    free = not number(scalars, "contact_fraction", 0.0) > MIN_CONTACT
+    if free and film < MIXED * floor and 0.0 < case.operation.speed <= speed:
+        yield (
+            f"min_film_thickness: {format_quantity(film, 'm')} is under {MIXED:g} times "
+            f"surface.contact_film_thickness, {format_quantity(floor, 'm')}: peaks of the surfaces touch now and then, "
+            "which is not modelled; reduce the load, raise the speed, or take smoother surfaces"
+        )
+
+
+def _pressed_bumps(case: Case, scalars: Scalars) -> Iterator[str]:
+    for springs, name in ((case.bump_foil, "max_deflection"), (case.backing, "max_backing_deflection")):
+        deflection = number(scalars, name)
+        if springs is not None and deflection > springs.travel:
+            yield (
+                f"{name}: the foil is pressed in by {format_quantity(deflection, 'm')}, more than the height of "
+                f"its bumps, {format_quantity(springs.travel, 'm')}: they would lie on the bushing, which is not "
+                "modelled; reduce the load, or take stiffer bumps"
+            )
+
+
+def warnings_of_errors(scalars: Scalars, errors: Mapping[str, float]) -> list[str]:
+    """Return what the error bars of an answer tell against it.
+
+    Parameters
+    ----------
+    scalars : mapping
+        The answer's scalars by name, SI.
+    errors : mapping
+        Their error bars.
+    """
+    wide = {name: errors[name] / abs(number(scalars, name)) for name in JUDGED if name in errors and scalars.get(name)}
+    told = {name: share for name, share in wide.items() if share > WIDE}
+    if not told:
+        return []
+    worst = max(told, key=lambda name: told[name])
+    more = f" (and those of {', '.join(name for name in told if name != worst)})" if len(told) > 1 else ""
+    return [
+        f"{worst}: its error bar is {100.0 * told[worst]:.2g} % of it{more}, over {100.0 * WIDE:g} %: the grid is too "
+        "coarse for it; raise model.cells_per_pitch and, in 3-D, model.axial_cells, or see `converge`"
+    ]
+
+
+def number(scalars: Scalars, name: str, default: float = math.nan) -> float:
+    """A scalar as a number; `default` where there is none."""
+    value = scalars.get(name)
+    return default if value is None or isinstance(value, str) or math.isnan(value) else float(value)
