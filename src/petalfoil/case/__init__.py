@@ -39,7 +39,7 @@ from petalfoil.case.heat import Heat, HotGas
 from petalfoil.case.implausible_answers import warnings_of_errors
 from petalfoil.case.package import Package, package_of
 from petalfoil.case.parameters import Parameter, parameter_of, parameters_of, parameters_of_petals, with_values
-from petalfoil.case.petal_table import Mount, Petals, PetalTheory
+from petalfoil.case.petal_table import LinearAbout, Mount, Petals, PetalTheory
 from petalfoil.case.plausibility import warnings_of
 from petalfoil.case.rotor import Rotor
 from petalfoil.case.sections import Bearing, Edges, Method, Model, ModelKind, Operation, Surface
@@ -57,6 +57,7 @@ __all__ = [
     "Growth",
     "Heat",
     "HotGas",
+    "LinearAbout",
     "Method",
     "Model",
     "ModelKind",

@@ -65,6 +65,32 @@ def arc_radius(phi: ArrayLike, *, metric_radius: float, bend_radius: float, tilt
     return radius
 
 
+def pulled_down_radius(phi: ArrayLike, *, metric_radius: float, bend_radius: float, tilt: float) -> FloatArray:
+    """Return the radius of the free mid-surface in a theory that is linear about the bore [m].
+
+    Its curvature `1/r_m − (w'' + w)/r_m²`, ``w = r0 − r_m``, is that of the bend radius, whatever it stands off (G7)::
+
+        r0 = r_m + r_m (1 − r_m/R_p) (1 − cos φ) − r_m ψ sin φ
+
+    Parameters
+    ----------
+    phi : array_like
+        Angles from the root [rad].
+    metric_radius, bend_radius : float
+        `r_m`, `R_p` [m].
+    tilt : float
+        `ψ` [rad].
+    """
+    angle = np.asarray(phi, dtype=np.float64)
+    flatter = metric_radius * (1.0 - metric_radius / bend_radius)
+    return np.asarray(metric_radius + flatter * (1.0 - np.cos(angle)) - metric_radius * tilt * np.sin(angle))
+
+
+def pulled_down_tilt(metric_radius: float, bend_radius: float, petal_angle: float) -> float:
+    """Return the root tilt that lays the free edge of `pulled_down_radius` on the bore [rad]."""
+    return (1.0 - metric_radius / bend_radius) * math.tan(0.5 * petal_angle)
+
+
 def arc_reach(*, metric_radius: float, bend_radius: float, tilt: float) -> float:
     """Return the angle at which a free arc turns back on the angle [rad]; infinite where it goes round the axis.
 

@@ -18,9 +18,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from petalfoil.case.free_shape import arc_radius, arc_reach, chordal_tilt
+from petalfoil.case.free_shape import arc_radius, arc_reach, chordal_tilt, pulled_down_radius, pulled_down_tilt
 from petalfoil.case.measured_shape import EDGE_TOLERANCE, Table, fitted_bend_radius, measured_radius
-from petalfoil.case.petal_table import Petal, Petals
+from petalfoil.case.petal_table import LinearAbout, Petal, Petals
 from petalfoil.case.problems import Problem
 from petalfoil.case.sections import Bearing, Operation, Surface
 from petalfoil.units import format_quantity
@@ -47,6 +47,8 @@ class Package:
     """`R_p` [m]; of a measured free shape that of the circle which fits it best."""
     root_tilt: float
     """`ψ` [rad]; nan where a measured table gives the free shape."""
+    about_bore: bool = False
+    """Bending is linear about the bore, not about the free shape (G7)."""
     table: Table | None = None
     """Measured free shape, rows of angle [rad] and radius [m]."""
     table_tolerance: float = 0.0
@@ -72,11 +74,17 @@ class Package:
         """Angle from the root that the neighbour covers, `φ3` [rad]."""
         return self.petal_angle - self.pitch
 
+    @property
+    def reference_radius(self) -> float:
+        """Radius of the shape about which bending is linear: `R_p`, or `r_m` of the bore [m]."""
+        return self.metric_radius if self.about_bore else self.bend_radius
+
     def free_radius(self, phi: ArrayLike) -> NDArray[np.float64]:
         """Return the radius of the free mid-surface, `r0` [m], at angles `phi` from the root [rad]."""
         if self.table is not None:
             return measured_radius(phi, self.table, self.table_tolerance)
-        return arc_radius(phi, metric_radius=self.metric_radius, bend_radius=self.bend_radius, tilt=self.root_tilt)
+        radius = pulled_down_radius if self.about_bore else arc_radius
+        return radius(phi, metric_radius=self.metric_radius, bend_radius=self.bend_radius, tilt=self.root_tilt)
 
 
 def package_of(bearing: Bearing, petals: Petals) -> Package:
@@ -110,6 +118,7 @@ def package_with(bearing: Bearing, petals: Petals, one: tuple[Petal, float]) -> 
         petal_angle=angle,
         bend_radius=bend_radius,
         root_tilt=_tilt(petals, petal, (metric_radius, bend_radius, angle)),
+        about_bore=petals.linear_about is LinearAbout.BORE,
         table=petals.free_shape,
         table_tolerance=petals.free_shape_tolerance,
     )
@@ -129,7 +138,8 @@ def _tilt(petals: Petals, petal: Petal, arc: tuple[float, float, float]) -> floa
         return petal.root_tilt
     if bend_radius < metric_radius or petal_angle > MAX_ARC_ANGLE:
         return math.nan
-    return chordal_tilt(metric_radius, bend_radius, petal_angle)
+    tilt = pulled_down_tilt if petals.linear_about is LinearAbout.BORE else chordal_tilt
+    return tilt(metric_radius, bend_radius, petal_angle)
 
 
 def solid_height(petals: Petals, layers: int) -> float:
@@ -270,6 +280,8 @@ def _arc_problems(package: Package, number: int, petals: Petals) -> Iterator[Pro
             package.bend_radius,
             f"at least {package.metric_radius:g} m",
         )
+        return
+    if package.about_bore:  # a curve over the angle turns back nowhere
         return
     reach = arc_reach(metric_radius=package.metric_radius, bend_radius=package.bend_radius, tilt=package.root_tilt)
     if reach <= package.petal_angle:

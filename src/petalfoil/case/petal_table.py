@@ -42,6 +42,13 @@ class PetalTheory(StrEnum):
     SHELL = "shell"
 
 
+class LinearAbout(StrEnum):
+    """Shape about which bending is linear: the free petal as in the paper, or the petal pressed to the bore."""
+
+    FREE_SHAPE = "free_shape"
+    BORE = "bore"
+
+
 _Angle = Annotated[float, Quantity(unit="rad", meaning="angle from the root", symbol="phi", at_least=0.0, below=6.3)]
 _Radius = Annotated[
     float, Quantity(unit="m", meaning="radius of the free mid-surface", symbol="r_0", above=0.0, at_most=10.0)
@@ -154,6 +161,8 @@ class Petals(LookedUp, WallTable):
         Each, PerPetal(unit="1", meaning="Poisson's ratio", symbol="nu", above=-1.0, below=0.5)
     ] = Field(default=UNSET, validate_default=True)
     """Required unless the petals have a material."""
+    linear_about: LinearAbout = LinearAbout.FREE_SHAPE
+    """Shape about which bending is linear. About the `bore` pressed petals have the curvature of the bore (G7)."""
     first_root: Annotated[
         float,
         Quantity(unit="rad", meaning="angle of the first root", symbol="theta_ref", at_least=-6.3, at_most=6.3),
@@ -261,6 +270,17 @@ class Petals(LookedUp, WallTable):
         if any(after <= before for (before, _), (after, _) in pairwise(rows)):
             raise refuse(VALUE_PROBLEM, f"its angles do not grow from row to row; allowed: {allowed}", allowed)
         return rows
+
+    @field_validator("linear_about")
+    @classmethod
+    def _is_an_arc(cls, about: LinearAbout, info: ValidationInfo) -> LinearAbout:
+        """Refuse a measured free shape about the bore: its curvature is not that of an arc."""
+        if about is LinearAbout.BORE and info.data.get("free_shape") is not None:
+            allowed = '"free_shape", or an arc of petals.bend_radius'
+            raise refuse(
+                VALUE_PROBLEM, f'"bore" is for petals bent to an arc, not measured ones; allowed: {allowed}', allowed
+            )
+        return about
 
     @field_validator("bend_radius")
     @classmethod

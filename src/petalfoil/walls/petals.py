@@ -60,7 +60,7 @@ def build_shells(case: Case, mesh: PackMesh) -> list[PetalShell]:
                 phi=mesh.phi,
                 axial=mesh.axial,
                 metric_radius=package.metric_radius,
-                bend_radius=package.bend_radius,
+                bend_radius=package.reference_radius,
                 rigidity=petal.bending_stiffness,
                 poisson_ratio=petal.poisson_ratio,
                 clamped=petals.mount is Mount.CLAMPED,
@@ -84,7 +84,7 @@ def petal_faces(case: Case) -> Faces:
     return Faces(
         half_thickness=np.array([0.5 * package.thickness for package in case.packages]),
         metric_radius=np.array([package.metric_radius for package in case.packages]),
-        bend_radius=np.array([package.bend_radius for package in case.packages]),
+        bend_radius=np.array([package.reference_radius for package in case.packages]),
         membrane=np.array([petal.membrane_stiffness for petal in petals.each]),
         slides=case.petal_theory is PetalTheory.SHELL,
     )
