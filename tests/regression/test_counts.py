@@ -54,11 +54,12 @@ SPEED, LOW_SPEED = 8000.0, 2000.0
 """Speeds of the curves [rad/s]."""
 
 
-def warm(cells: int, speeds: tuple[float, ...]) -> list[int]:
+def warm(cells: int, speeds: tuple[float, ...], contacts: str = "nodes") -> list[int]:
     counts: list[int] = []
     for name in PACKAGES:
         for speed in speeds:
-            points = curve.records(bearing(name, cells), np.linspace(0.0, 280e-6, 15), speed=speed)
+            asked = bearing(name, cells).replace(**{"model.contacts": contacts})
+            points = curve.records(asked, np.linspace(0.0, 280e-6, 15), speed=speed)
             records = list(points)
             assert all(record.converged for record in records)
             assert not any(record.scalars["jump"] for record in records)
@@ -73,6 +74,14 @@ def check_warm_counts(counts: list[int]) -> None:
 
 def test_warm_points_of_a_curve() -> None:
     check_warm_counts(warm(32, (SPEED,)))
+
+
+@pytest.mark.slow
+def test_contact_points_add_few_factorisations_to_a_curve() -> None:
+    """A point or two where sets of contacts keep changing take dozens (88 at most, ten petals)."""
+    counts = np.array(warm(32, (SPEED,), "points"))
+    assert np.median(counts) <= 5
+    assert np.quantile(counts, 0.9) <= 16
 
 
 @pytest.mark.slow

@@ -22,8 +22,7 @@ from petalfoil.equilibrium.run_context import running
 from petalfoil.equilibrium.small_motion import AT_ASPERITIES, AT_NODES, AT_POINTS
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.system.asperity_equations import AsperityEquations
-from petalfoil.system.point_equations import PointEquations, PointLayout, PointState
-from petalfoil.walls import element_pack, wall_kind
+from petalfoil.system.point_equations import PointEquations, PointState
 from tests.cases import case
 from tests.contract.taylor import assert_tangent
 from tests.random_packages import random_case
@@ -91,13 +90,13 @@ def test_stiffness_is_the_slope_of_equilibria_with_contact_points(name: str) -> 
 
 
 @pytest.mark.parametrize("name", ["turbocharger", STRETCHES, "rig"])
-def test_slopes_do_not_depend_on_the_elements(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_slopes_do_not_depend_on_the_elements(name: str) -> None:
     """On 32 and 48 elements per pitch: stiffness within 0.15 %, damping within 0.4 %."""
     speed, found = BEARINGS[name].operation.speed, []
     for elements in (32, 48):
-        monkeypatch.setattr(element_pack, "PETAL_CELLS", elements)
+        bearing = BEARINGS[name].replace(**{"model.petal_cells": elements})
         with running():
-            found.append(impedance(elastic(BEARINGS[name], answer_of(name)), 0.0, speed))
+            found.append(impedance(elastic(bearing, operating_point(bearing, None).answer), 0.0, speed))
     assert apart(found[0][0], found[1][0]) <= 1.5e-3
     assert apart(found[0][1], found[1][1]) <= 4e-3
 
@@ -146,10 +145,10 @@ def test_stiffness_is_smooth_along_a_sweep(name: str) -> None:
 
 def test_a_result_says_where_its_contacts_are() -> None:
     coarse = {"model.cells_per_pitch": 32, "operation.load": (0.0, -20.0)}
-    assert coefficients.record(case("paper_n8", **coarse)).scalars["contact_slopes"] == AT_POINTS
+    assert coefficients.record(case("paper_n8", **coarse)).scalars["contact_model"] == AT_POINTS
     spatial = {"model.kind": "3d", "model.cells_per_pitch": 16, "model.axial_cells": 4, "operation.load": (0.0, -20.0)}
-    assert coefficients.record(case("paper_n8", **spatial)).scalars["contact_slopes"] == AT_NODES
-    assert "contact_slopes" not in coefficients.record(case("plain_journal")).scalars
+    assert coefficients.record(case("paper_n8", **spatial)).scalars["contact_model"] == AT_NODES
+    assert "contact_model" not in coefficients.record(case("plain_journal")).scalars
 
 
 def test_petals_that_stick_stiffen_contact_points() -> None:
@@ -181,19 +180,17 @@ def test_the_limit_of_the_turbocharger_bearing() -> None:
 
 def pressed_at(answer: Solution) -> AsperityContacts:
     """The equilibrium with contact pressures over asperities, near one with contacts at nodes."""
-    pack = wall_kind(answer.case).elements(answer.case, answer.problem.layout.wall)
-    assert pack is not None
-    whole = PointLayout(pack, answer.problem.layout)
+    whole = answer.problem.layout.elements
+    assert whole is not None
     with running():
-        found = with_asperities(whole, answer.problem, start_at(whole, answer))
-    assert found is not None
-    return found
+        return with_asperities(whole, answer.problem, start_at(whole, answer))
 
 
 @pytest.mark.parametrize("name", ["turbocharger", pytest.param(STRETCHES, marks=pytest.mark.slow)])
 def test_slopes_with_asperities_are_those_of_contact_points(name: str) -> None:
     """Stiffness within 0.2 % of its largest entry, damping within 0.5 %, reactions within 0.3 %."""
-    speed, answer = BEARINGS[name].operation.speed, replace(answer_of(name), load=None)  # both at one position
+    speed = BEARINGS[name].operation.speed
+    answer = replace(answer_of(name), load=None, elements=None, elements_sought=False)  # both at one position
     pressed, points = pressed_at(answer), near_nodes(answer)
     assert points is not None
     with running():
@@ -240,6 +237,6 @@ def test_a_stiff_clamped_pack_has_slopes_with_asperities() -> None:
     for cells in (64, 128):
         bearing = random_case(np.random.default_rng(2), **{"model.cells_per_pitch": cells})
         record = coefficients.record(bearing)
-        assert record.scalars["contact_slopes"] == AT_ASPERITIES
+        assert record.scalars["contact_model"] == AT_ASPERITIES
         found.append(record.fields["stiffness"][0])
     assert apart(found[0], found[1]) <= 1e-2

@@ -24,7 +24,6 @@ from petalfoil.errors import DefinitionError
 from petalfoil.mesh import hermite
 from petalfoil.physics.petal_sliding import INNER, OUTER, FacePlaces, Faces, face_compliance, face_slip
 from petalfoil.solvers.sparse_lu import LinearSolver
-from petalfoil.walls import element_pack
 from tests.cases import case
 from tests.verification.film_helpers import table
 from tests.verification.sliding_helpers import HalfArch
@@ -250,13 +249,13 @@ def test_where_petals_do_not_slide_is_said() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "load"), [("paper_n8", 20.0), ("rig", 55.6)])
-def test_damping_converges(name: str, load: float, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_damping_converges(name: str, load: float) -> None:
     """At 1, 10 and 50 um within 1 % between the default film grid and twice as many cells, petals within 5 %."""
     cells = case(name).cells_per_pitch
     found = []
     for film, petals in ((cells, 32), (2 * cells, 32), (cells, 64)):
-        monkeypatch.setattr(element_pack, "PETAL_CELLS", petals)
-        rubs = case(name, **{"surface.petal_friction": 0.3, "model.cells_per_pitch": film})
+        grid = {"model.cells_per_pitch": film, "model.petal_cells": petals}
+        rubs = case(name, **{"surface.petal_friction": 0.3, **grid})
         whirls = [coefficients.record(rubs, load=(0.0, -load), amplitude=a) for a in (1e-6, 10e-6, 50e-6)]
         found.append(np.array([whirl.fields["damping"][0].diagonal() for whirl in whirls]))
     assert_allclose(found[1], found[0], rtol=1e-2)

@@ -7,7 +7,14 @@ from dataclasses import dataclass
 from petalfoil.analysis.arguments import Load, Moment, Speed
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.evaluation import Evaluation
-from petalfoil.analysis.operating_point import ForceResidual, applied_load, at, under_load
+from petalfoil.analysis.operating_point import (
+    ForceResidual,
+    OperatingPoint,
+    applied_load,
+    at,
+    under_load,
+    with_reported,
+)
 from petalfoil.analysis.records import effort, position, solution_record
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, running
@@ -55,10 +62,9 @@ def balance(
     if moment is not None:
         case = case.replace(**{"operation.moment": moment, "operation.tilt": None})
     with running(progress, "balance") as run:
-        found, known = under_load(case, wanted)
-        return balance_record(
-            "balance", case, found, AppliedLoad.of(wanted, case.operation.moment), known, effort(run.seconds)
-        )
+        found = with_reported(case, OperatingPoint(*under_load(case, wanted)))
+        loaded = AppliedLoad.of(wanted, case.operation.moment)
+        return balance_record("balance", case, found.answer, loaded, found.branch, effort(run.seconds))
 
 
 def balance_record(analysis: str, case: Case, found: Solution, *parts: object) -> Record:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.equilibrium.small_motion import ElementEquilibrium
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.physics.reynolds import Flux
 
@@ -29,11 +30,25 @@ def mass_balance(answer: Solution, fluxes: Fluxes) -> float:
 
 def reaction_balance(answer: Solution) -> float:
     """Largest error of a petal's loads against its support, in motions that bend nothing (S4), over the loads [1]."""
+    if answer.elements is not None:
+        return balance_on_elements(answer.elements)
     layout = answer.problem.layout
     w, P = answer.deflection, answer.x[answer.problem.positive]
     wall, unit = layout.wall, layout.scales.length / layout.scales.force
     loads = layout.push @ (P - 1.0) + wall.contacts.G.T @ answer.lam
     parts = layout.push @ np.abs(P - 1.0) + abs(wall.contacts.G.T) @ answer.lam
     error = wall.free_motions.T @ loads + unit * (wall.support @ w + wall.support @ answer.state.low_order)
-    scale = abs(wall.free_motions.T) @ parts
+    return largest(error, abs(wall.free_motions.T) @ parts)
+
+
+def balance_on_elements(found: ElementEquilibrium) -> float:
+    """The same of petals with continuous slopes: the work of pressure, reactions and bending in these motions [1]."""
+    equations, wall = found.equations, found.equations.problem.layout.wall
+    motions = np.column_stack([found.pack.from_nodes(motion) for motion in wall.free_motions.T.toarray()])
+    elastic, loads, size = equations.wall_forces
+    return largest(motions.T @ (loads - elastic), np.abs(motions.T) @ size)
+
+
+def largest(error: Array, scale: Array) -> float:
+    """Largest error over its scale."""
     return float(np.max(np.abs(error) / np.maximum(scale, np.finfo(float).tiny), initial=0.0))

@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 
 from petalfoil.analysis.declaration import analysis
-from petalfoil.analysis.fields import coordinates, wall_state
+from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.analysis.fields import coordinates, state_of_wall
 from petalfoil.analysis.records import asked_position, geometry, record_of
 from petalfoil.case import Case, ModelKind
 from petalfoil.equilibrium.continuation import rest
@@ -56,8 +57,9 @@ def check(case: Case) -> Record:
         answer = rest(build_problem(slow))
     if answer is None:
         raise ConvergenceError("the foil pack did not settle at rest", history=run.history, advice="check its geometry")
-    section = kind.cross_section(slow, wall_state(answer).deflection)
-    return record_of("check", case, *derived, fields=dict(section), coords=coordinates(slow, answer), history=[])
+    found = Evaluation.of(slow, answer)
+    section = kind.cross_section(slow, state_of_wall(found.state).deflection)
+    return record_of("check", case, *derived, fields=dict(section), coords=coordinates(found), history=[])
 
 
 def bearing_numbers(case: Case) -> BearingNumbers:

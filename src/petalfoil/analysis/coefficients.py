@@ -11,10 +11,11 @@ import numpy as np
 
 from petalfoil.analysis.arguments import Flag, Load, Name, Quantity, Speed, Speeds, Values, Whole
 from petalfoil.analysis.classic_method import newton_only
+from petalfoil.analysis.contact_model import ContactModel
 from petalfoil.analysis.declaration import Export, analysis
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.heat_results import heat_results
-from petalfoil.analysis.impedance import Array, Slopes, cycle_impedance, elastic_and_sliding, impedances
+from petalfoil.analysis.impedance import Array, cycle_impedance, elastic_and_sliding, impedances
 from petalfoil.analysis.operating_point import OperatingPoint, Vector, at, operating_point
 from petalfoil.analysis.records import effort, failed_record, geometry, position, record_of
 from petalfoil.analysis.runs import Points
@@ -320,8 +321,8 @@ def point(case: Case, asked: Asked, load: Vector | None) -> Record:
         case,
         *state_parts(case, found),
         Amplitudes(asked.amplitude),
-        Slopes.of(motion),
-        Outcome(residual=found.answer.residual),
+        ContactModel.of_motion(motion),
+        Outcome(residual=found.answer.reported_residual),
         cost,
         fields=dict(blocks(case, pairs)),
         coords={"whirl_frequency": asked.frequencies, "row": np.arange(2), "column": np.arange(2)},

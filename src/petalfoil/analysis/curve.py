@@ -14,11 +14,12 @@ import numpy as np
 
 from petalfoil.analysis.arguments import DOWNWARD, Direction, Displacements, Speed
 from petalfoil.analysis.classic_method import is_classic, typical_steps
+from petalfoil.analysis.contact_model import reported
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.displacements import CHARACTERISTIC, displaced
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.heat_results import with_heat
-from petalfoil.analysis.operating_point import OperatingPoint, at_position, relaxed
+from petalfoil.analysis.operating_point import OperatingPoint, at_position, relaxed, with_reported
 from petalfoil.analysis.records import asked_position, branch, effort, failed_record, solution_record
 from petalfoil.analysis.resume import is_same
 from petalfoil.analysis.runs import Points
@@ -109,9 +110,9 @@ def _along(cases: Sequence[Case], base: CoupledProblem) -> Solution | None:
 
 def _point(case: Case, problem: CoupledProblem, before: Solution | None) -> OperatingPoint:
     if before is None or is_classic(case):
-        found = relaxed(case, problem, before) if is_classic(case) else at_position(case)
+        found = relaxed(case, problem, before) if is_classic(case) else with_reported(case, at_position(case))
         return replace(found, branch=replace(found.branch, jump=False))
     answer, jump = advance(before, problem.at(temperatures=before.problem.temperatures))
-    answer = with_heat(case, answer)
+    answer = reported(case, with_heat(case, answer), before)
     rate = leading_eigenvalue(answer)
     return OperatingPoint(answer, branch(rate, case, 2 if jump else 1, answer.solution_path, jump))

@@ -7,12 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from petalfoil.analysis.capacity_derivatives import capacity_derivatives
+from petalfoil.analysis.contact_model import reported
 from petalfoil.analysis.derivatives import GROWTH, Results, equilibrium_results, results_with_growth
 from petalfoil.analysis.heated_derivatives import derivatives_of
 from petalfoil.analysis.liftoff import own_load
 from petalfoil.analysis.liftoff_derivatives import speed_derivatives
 from petalfoil.analysis.load_limit import Limits
-from petalfoil.analysis.operating_point import at_position, under_load
+from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.sensitivity_table import Source
 from petalfoil.case import Case
 from petalfoil.equilibrium.continuation import rest
@@ -73,9 +74,9 @@ def sources_of(case: Case, asked: Asked) -> Sequence[Source]:
         direction = (round(math.cos(asked.direction), 15), round(math.sin(asked.direction), 15))
         return capacity_derivatives(case, asked.limits, direction, as_points=asked.as_points)
     if asked.verb == "static":
-        return [derivatives_of(case, at_zero_speed(case), results_at_rest, as_points=asked.as_points)]
-    load = case.operation.load
-    solution = at_position(case).answer if load is None else under_load(case, load)[0]
+        at_rest = reported(case, at_zero_speed(case))
+        return [derivatives_of(case, at_rest, results_at_rest, as_points=asked.as_points)]
+    solution = operating_point(case, None).answer
     results = results_with_growth(solution) if set(asked.quantities) & set(GROWTH) else equilibrium_results
     return [derivatives_of(case, solution, results, as_points=asked.as_points)]
 

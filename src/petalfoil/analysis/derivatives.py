@@ -8,8 +8,8 @@ or to close, the derivative has two values, one on either side.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeAlias
 
@@ -32,6 +32,8 @@ from petalfoil.analysis.variation import (
 from petalfoil.case import Case
 from petalfoil.case.parameters import parameter_of
 from petalfoil.dynamics.leading_mode import LeadingMode
+from petalfoil.equilibrium.element_rates import ElementRate, ElementValues, element_rate
+from petalfoil.equilibrium.element_tangent import NoPointsError
 from petalfoil.equilibrium.parameter_response import (
     Equations,
     EquationValues,
@@ -40,6 +42,7 @@ from petalfoil.equilibrium.parameter_response import (
     StateRate,
 )
 from petalfoil.equilibrium.point_rates import PointEquilibrium, point_response
+from petalfoil.equilibrium.small_motion import ElementEquilibrium
 from petalfoil.equilibrium.solution import Solution, total_residual
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.parts import scalars_of
@@ -95,8 +98,9 @@ class DerivativesOf:
     results : callable
         Results of a case and a solution.
     as_points : bool
-        Whether isolated contacts are points that travel between nodes (V5), or held at their nodes: the first
-        converges with the grid, the second is the derivative of the discrete equations.
+        Whether contacts are points that travel between nodes, or held at their nodes: the first converges with the
+        grid, the second is the derivative of the discrete equations. With petals of continuous slopes the first is
+        exact too (V9); without them, only isolated contacts travel (V5).
     """
 
     case: Case
@@ -105,24 +109,34 @@ class DerivativesOf:
     as_points: bool = False
 
     @cached_property
+    def at_nodes(self) -> Solution:
+        """The equilibrium with contacts at nodes."""
+        return replace(self.solution, elements=None)
+
+    @property
+    def told(self) -> Solution:
+        """The equilibrium that results are taken from."""
+        return self.solution if self.as_points else self.at_nodes
+
+    @cached_property
     def values(self) -> Results:
         """The results themselves."""
-        return self.results(self.case, self.solution)
+        return self.results(self.case, self.told)
 
     @property
     def residual(self) -> float:
         """Residual of the equilibrium."""
-        return self.solution.residual
+        return self.told.reported_residual
 
     @cached_property
     def held(self) -> HeldEquilibrium:
         """The equilibrium, its tangent factorised."""
-        return HeldEquilibrium.of(self.solution, self.solution.active)
+        return HeldEquilibrium.of(self.at_nodes, self.solution.active)
 
     @cached_property
     def with_points(self) -> PointEquilibrium | None:
         """The same with contacts as points; None where they are asked for at nodes, or are all there."""
-        return PointEquilibrium.of(self.solution) if self.as_points else None
+        return PointEquilibrium.of(self.at_nodes) if self.as_points else None
 
     @cached_property
     def own(self) -> Equations:
@@ -183,7 +197,11 @@ class DerivativesOf:
 
     def along(self, variation: EquationFamily) -> Derivative:
         """Derivatives along a variation of the case."""
-        response = self.response(variation.rates(self.solution), KINK * variation.size)
+        if self.told.elements is not None:
+            smooth = self._on_elements(self.told.elements, variation)
+            if smooth is not None:
+                return smooth
+        response = self.response(variation.rates(self.at_nodes), KINK * variation.size)
         finer = self._small_beside_the_film(variation, response)
         if not response.at_kink:
             along = self._along(finer, response.above, variation.stencil)
@@ -193,11 +211,69 @@ class DerivativesOf:
     def _small_beside_the_film(self, variation: EquationFamily, response: ParameterResponse) -> EquationFamily:
         """The variation in steps that change no film by more than `FILM_CHANGE` of it: petals may move it further."""
         steps = variation.stencil[-1][0]
-        there = response.above.moved(self.solution, steps * variation.step, variation.at(steps)[1])
+        there = response.above.moved(self.at_nodes, steps * variation.step, variation.at(steps)[1])
         unit = there.problem.layout.scales.length / self.solution.problem.layout.scales.length
         own, moved = self.solution.problem.film(self.solution.x), there.problem.film(there.x) * unit
         change = float(np.max(np.abs(moved / own - 1.0))) / abs(steps)
         return variation if change <= FILM_CHANGE else variation.finer(variation.fineness * FILM_CHANGE / change)
+
+    def _on_elements(self, found: ElementEquilibrium, variation: EquationFamily) -> Derivative | None:
+        """The derivative with petals of continuous slopes (V9); None at a kink, or where the elements change.
+
+        Raises
+        ------
+        ConvergenceError
+            The contacts do not determine the state.
+        """
+        values = [ElementValues.at(found, variation.at(steps)[1]) for steps, _ in variation.stencil]
+        known = [value for value in values if value is not None]
+        if len(known) < len(values):
+            return None
+        weights = [weight / variation.step for _, weight in variation.stencil]
+        try:
+            rate = element_rate(found, ElementValues.combined(known, weights), under_load=self.told.load is not None)
+        except NoPointsError as failure:
+            raise ConvergenceError(f"no derivative: {failure}", advice="change the case by a millionth") from None
+        if min(rate.reach) <= KINK * variation.size:
+            return None
+        own, steps = found.equations.film_thickness, variation.stencil[-1][0]
+        ahead = self._moved(rate, steps * variation.step, variation.at(steps)[1]).equations
+        unit = ahead.problem.layout.scales.length / found.equations.problem.layout.scales.length
+        change = float(np.max(np.abs(ahead.film_thickness * unit / own - 1.0))) / abs(steps)
+        finer = variation if change <= FILM_CHANGE else variation.finer(variation.fineness * FILM_CHANGE / change)
+        along = self._quotients(finer, finer.stencil, rate)
+        return Derivative(along, along, rate.reach, False, finer.fineness)
+
+    def _quotients(self, variation: EquationFamily, points: Stencil, rate: ElementRate) -> Results:
+        """Derivatives of the results along the line of the state."""
+        sampled = []
+        for steps, _ in points:
+            case, there = variation.at(steps)
+            ahead = self._moved(rate, steps * variation.step, there)
+            sampled.append(
+                self.results(case, replace(self.told, problem=there.problem, elements=ahead, load=there.load))
+            )
+        return self._differences(variation, points, sampled)
+
+    def _moved(self, rate: ElementRate, change: float, there: Equations) -> ElementEquilibrium:
+        """The equilibrium after a change of the parameter.
+
+        Raises
+        ------
+        ConvergenceError
+            The elements change with the parameter.
+        """
+        ahead = rate.moved(self.told, change, there)
+        if ahead is None:
+            raise ConvergenceError("no derivative: the elements of the petals change with the parameter")
+        return ahead
+
+    def _differences(self, variation: EquationFamily, points: Stencil, sampled: Sequence[Results]) -> Results:
+        """Difference quotients of results at the points of a stencil."""
+        return {
+            name: quotient(points, variation.step, [nearest_turn(name, at[name], value) for at in sampled])
+            for name, value in self.values.items()
+        }
 
     def _on_both_sides(self, variation: EquationFamily, response: ParameterResponse) -> Derivative:
         """Derivatives at a kink; nan on a side where the parameter cannot go."""
@@ -213,11 +289,8 @@ class DerivativesOf:
         sampled = []
         for steps, _ in points:
             case, equations = variation.at(steps)
-            sampled.append(self.results(case, rate.moved(self.solution, steps * variation.step, equations)))
-        return {
-            name: quotient(points, variation.step, [nearest_turn(name, at[name], value) for at in sampled])
-            for name, value in self.values.items()
-        }
+            sampled.append(self.results(case, rate.moved(self.at_nodes, steps * variation.step, equations)))
+        return self._differences(variation, points, sampled)
 
 
 def nearest_turn(name: str, angle: float, own: float) -> float:

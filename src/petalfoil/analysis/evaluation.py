@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from petalfoil.analysis.balances import mass_balance, reaction_balance
 from petalfoil.analysis.extremes import highest, lowest
 from petalfoil.case import Case
+from petalfoil.equilibrium.nodal_state import NodalState
+from petalfoil.equilibrium.small_motion import AT_POINTS
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.mesh.strips import FilmMesh
 from petalfoil.physics.forces import attitude_angle, contact_fraction, node_area, viscous_torque
 from petalfoil.results.parts import Balances, Film, Forces
-from petalfoil.system.film_rows import FilmState
 
 Array = NDArray[np.float64]
 
@@ -30,8 +31,8 @@ class Evaluation:
         The bearing.
     answer : Solution
         Its equilibrium.
-    rows : FilmState
-        Its film in the units of the problem.
+    state : NodalState
+        Film, deflections and reactions in the units of the problem.
     pressure, film_thickness : (strip, node, axial) arrays
         Absolute pressure [Pa] and film thickness [m] at the nodes that are solved.
     reactions : (strip, node) array
@@ -40,7 +41,7 @@ class Evaluation:
 
     case: Case
     answer: Solution
-    rows: FilmState
+    state: NodalState
     pressure: Array
     film_thickness: Array
     reactions: Array
@@ -48,13 +49,11 @@ class Evaluation:
     @classmethod
     def of(cls, case: Case, answer: Solution) -> Evaluation:
         """Evaluate pressure, film and reactions."""
-        problem, scales = answer.problem, answer.problem.layout.scales
-        film, contacts = problem.layout.wall.film, problem.layout.wall.contacts
-        lam = answer.lam[contacts.journal] * scales.force
+        state, layout = NodalState.of(answer), answer.problem.layout
+        film, contacts, scales = layout.wall.film, layout.wall.contacts, layout.scales
+        lam = state.lam[contacts.journal] * scales.force
         touching = lam.reshape(*film.theta.shape, -1).sum(axis=2) if len(lam) else np.zeros(film.theta.shape)
-        P, H = problem.pressure(answer.x), problem.film(answer.x)
-        rows = problem.layout.film_rows.at(P, H, problem.film_number)
-        return cls(case, answer, rows, P * scales.pressure, H * scales.length, touching)
+        return cls(case, answer, state, state.film.P * scales.pressure, state.film.H * scales.length, touching)
 
     @property
     def viscosity(self) -> float:
@@ -81,9 +80,9 @@ class Evaluation:
 
     def forces(self) -> Forces:
         """Forces on the journal (J1), (J2), and the fraction that solid contact carries (J3)."""
-        problem, total = self.answer.problem, self.normal_force
+        problem, total = self.state.problem, self.normal_force
         unit = problem.layout.scales.force
-        by_film, by_contact = problem.film_force(self.answer.x) * unit, problem.contact_force(self.answer.lam) * unit
+        by_film, by_contact = self.state.film_force * unit, self.state.contact_force * unit
         force = (by_film + by_contact)[:2]
         moment_x, moment_y = self._moment()
         return Forces(
@@ -115,6 +114,8 @@ class Evaluation:
         radius, omega = case.bearing.journal_radius, case.operation.speed
         thin, high = lowest(*whole_film(film, self.film_thickness)), highest(*whole_film(film, self.pressure))
         thinnest = closed_film(case, self.film_thickness, thin.value)
+        if self.answer.contact_model == AT_POINTS:  # gaps that close within a cell: not below zero at their contact
+            thinnest = max(thinnest, case.surface.contact_film_thickness)
         torque = viscous_torque(
             film,
             radius,
@@ -139,8 +140,8 @@ class Evaluation:
         """Residual and balances."""
         return Balances(
             reference_film_thickness=self.answer.problem.layout.scales.length,
-            residual=self.answer.residual,
-            mass_balance_error=mass_balance(self.answer, self.rows.fluxes),
+            residual=self.answer.reported_residual,
+            mass_balance_error=mass_balance(self.answer, self.state.film.fluxes),
             reaction_balance_error=reaction_balance(self.answer),
         )
 
@@ -154,7 +155,7 @@ class Evaluation:
         unit = scales.pressure**2 * scales.length**3 / (12.0 * self.viscosity)  # of pressure times volume flow
         warm = self.answer.problem.temperatures
         temperature = gas.temperature if warm is None else warm.film
-        leakage = self.answer.problem.layout.balance.side_leakage(self.rows.fluxes)
+        leakage = self.answer.problem.layout.balance.side_leakage(self.state.film.fluxes)
         return leakage * unit / (gas.gas_constant * temperature)
 
 

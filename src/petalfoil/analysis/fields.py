@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.analysis.evaluation import Evaluation
-from petalfoil.case import Case
-from petalfoil.equilibrium.solution import Solution
+from petalfoil.equilibrium.nodal_state import NodalState
 from petalfoil.walls import WallState, wall_kind
 
 Array = NDArray[np.float64]
@@ -20,21 +19,22 @@ def film_fields(found: Evaluation) -> Named:
     return {"pressure": whole(found.pressure), "film_thickness": whole(found.film_thickness)}
 
 
-def wall_state(answer: Solution) -> WallState:
-    """Deflections [m] and contact pressures [Pa] of a solution."""
-    layout = answer.problem.layout
-    deflection = (answer.deflection + answer.state.low_order) * layout.scales.length  # to the last digit of each
-    return WallState(deflection, answer.lam * layout.scales.force / layout.wall.contacts.area)
+def state_of_wall(state: NodalState) -> WallState:
+    """Deflections [m] and contact pressures [Pa] of a state."""
+    layout = state.problem.layout
+    pressure = state.lam * layout.scales.force / layout.wall.contacts.area
+    return WallState(state.deflection * layout.scales.length, pressure, state.placed)
 
 
-def wall_fields(case: Case, answer: Solution) -> Named:
-    """Fields that the wall of `case` declares, SI."""
-    return wall_kind(case).fields(case, answer.problem.layout.wall, wall_state(answer))
+def wall_fields(found: Evaluation) -> Named:
+    """Fields that the wall of the case declares, SI."""
+    wall = found.state.problem.layout.wall
+    return wall_kind(found.case).fields(found.case, wall, state_of_wall(found.state))
 
 
-def coordinates(case: Case, answer: Solution) -> dict[str, NDArray[np.generic]]:
+def coordinates(found: Evaluation) -> dict[str, NDArray[np.generic]]:
     """Coordinates of the fields."""
-    wall = answer.problem.layout.wall
+    case, wall, placed = found.case, found.state.problem.layout.wall, found.state.placed
     film = wall.film
     strips = len(film.theta)
     return {
@@ -42,10 +42,11 @@ def coordinates(case: Case, answer: Solution) -> dict[str, NDArray[np.generic]]:
         "root_angle": film.theta[:, 0] - film.phi[0],
         "phi_exposed": film.phi,
         "z": film.axial.whole_z,
+        **({} if placed is None else {"contact": np.arange(len(placed.force))}),
         **wall_kind(case).coordinates(case, wall),
     }
 
 
 def all_fields(found: Evaluation) -> Named:
     """All fields of a solution."""
-    return {**film_fields(found), **wall_fields(found.case, found.answer)}
+    return {**film_fields(found), **wall_fields(found)}

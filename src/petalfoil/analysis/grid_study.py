@@ -41,6 +41,10 @@ LEAST_AXIAL = 4
 """Coarsest division of the length: its pressure is zero at both ends, and one value is no profile."""
 
 
+LEAST_ELEMENTS, MOST_ELEMENTS = 12, 96
+"""Elements of a petal per pitch that a case may have."""
+
+
 POSITION = ("eccentricity_x", "eccentricity_y")
 
 ANGLES = {name for name, variable in SCALARS.items() if variable.units == "rad"}
@@ -189,10 +193,16 @@ def _can_be_halved(case: Case, cells: int, axial: int) -> bool:
 
 
 def on_grid(case: Case, cells: int, axial: int) -> Case:
-    """The case on `cells` per pitch, and `axial` over the length of a 3-D model."""
+    """The case on `cells` per pitch, and `axial` over the length of a 3-D model.
+
+    Elements of petals, of fourth order, grow as the root of the cells: their error falls as that of the film.
+    """
     changes: dict[str, object] = {"model.cells_per_pitch": cells}
     if case.model.kind is ModelKind.THREE_D:
         changes["model.axial_cells"] = axial
+    elements = round(case.model.petal_cells * math.sqrt(cells / case.cells_per_pitch))
+    if case.has_contact_points and elements != case.model.petal_cells:
+        changes["model.petal_cells"] = min(max(elements, LEAST_ELEMENTS), MOST_ELEMENTS)
     return case.replace(**changes)
 
 

@@ -112,6 +112,11 @@ class HeatedDerivatives:
         return self.frozen.case
 
     @property
+    def as_points(self) -> bool:
+        """Whether contacts are points; see `DerivativesOf`."""
+        return self.frozen.as_points
+
+    @property
     def solution(self) -> Solution:
         """The equilibrium."""
         return self.frozen.solution

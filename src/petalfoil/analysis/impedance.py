@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,7 +16,7 @@ from petalfoil.equilibrium.small_motion import Motion
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 from petalfoil.system.friction import friction_at_points, friction_of
-from petalfoil.system.point_equations import PointLayout
+from petalfoil.system.point_layout import PointLayout
 
 Array = NDArray[np.float64]
 
@@ -27,18 +25,6 @@ SLOW = 1e-6
 
 FEW = 3
 """Most frequencies that are solved for one by one: a reduced model costs three factorisations and its basis."""
-
-
-@dataclass(frozen=True)
-class Slopes:
-    """Where the contacts of stiffness and damping are; None where the wall has none."""
-
-    contact_slopes: str | None
-
-    @classmethod
-    def of(cls, motion: Motion) -> Slopes:
-        """Those of small motions."""
-        return cls(motion.contact_slopes if motion.problem.layout.n_wall else None)
 
 
 def sliding_at(case: Case, answer: Solution) -> SlidingContacts | None:

@@ -99,7 +99,7 @@ def speed_derivatives(case: Case, load: float, limit: float, *, as_points: bool 
     loaded = case.replace(**{"operation.load": (0.0, -load), "operation.eccentricity": (0.0, 0.0)})
     speeds = dict(zip(("liftoff_speed", "touchdown_speed"), crossings(loaded, load, limit), strict=True))
     found = [
-        of_contacts(refined(name, SpeedLine(loaded, (0.0, -load)), speed, limit), as_points=as_points)
+        of_contacts(refined(name, SpeedLine(loaded, (0.0, -load)), (speed, limit), as_points), as_points=as_points)
         for name, speed in speeds.items()
         if 0.0 < speed < math.inf
     ]
@@ -111,10 +111,17 @@ def speed_derivatives(case: Case, load: float, limit: float, *, as_points: bool 
     return found
 
 
-def refined(name: str, line: SpeedLine, speed: float, limit: float) -> SpeedDerivatives:
-    """Derivatives at the crossing near `speed`, found by Newton's method."""
+def refined(name: str, line: SpeedLine, where: tuple[float, float], as_points: bool) -> SpeedDerivatives:
+    """Derivatives at the crossing of a limit near a speed, `where` both, found by Newton's method.
+
+    Where contact points travel on petals with continuous slopes their derivatives are exact, and lead there; else those
+    of contacts at nodes do.
+    """
+    speed, limit = where
     for _ in range(NEWTON_STEPS):
-        balance = derivatives_of(at(line.case, speed), line.at(speed), fraction_of)
+        found = line.at(speed)
+        exact = as_points and found.elements is not None
+        balance = derivatives_of(at(line.case, speed), found, fraction_of, as_points=exact)
         by_speed = balance.by(SPEED)
         if by_speed.at_kink:
             raise at_kink(SPEED)
@@ -135,7 +142,7 @@ def refined(name: str, line: SpeedLine, speed: float, limit: float) -> SpeedDeri
 
 def of_contacts(found: SpeedDerivatives, *, as_points: bool) -> SpeedDerivatives:
     """The derivatives with contacts as points, or at nodes as they are."""
-    if not as_points:
+    if not as_points or found.balance.as_points:
         return found
     balance = derivatives_of(found.balance.case, found.balance.solution, fraction_of, as_points=True)
     by_speed = balance.by(SPEED)

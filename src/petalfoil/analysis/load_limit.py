@@ -13,10 +13,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.analysis.contact_model import reported
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.fields import all_fields
 from petalfoil.analysis.heat_results import with_heat
 from petalfoil.case import Case
+from petalfoil.equilibrium.element_tangent import ElementTangent
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.small_motion import ElementEquilibrium
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold, from_neighbour, reloaded
 from petalfoil.errors import ConvergenceError
@@ -168,8 +172,8 @@ class LoadRay:
             return NO_BALANCE
         if answer.contacts is None:  # the interior point had the last word
             return BOTTOMED_OUT
-        self.known = answer
-        return self._judged(size, answer)
+        self.known = reported(self.case, answer, known)
+        return self._judged(size, self.known)
 
     def _neighbour(self, known: Solution, load: Array) -> Solution | None:
         if self.case.heat is not None:
@@ -185,12 +189,7 @@ class LoadRay:
         answer = here.found.answer
         if answer.contacts is None or answer.load is None or self.case.heat is not None:
             return math.nan
-        tangent = answer.contacts.tangent
-        de = np.linalg.solve(tangent.gradient, -PROBE * self.load(here.size))
-        change, reactions = tangent.respond(tangent.forcing @ de, tangent.border.gap_derivative @ de)
-        moved = answer.problem.at(displacement=answer.problem.displacement + de)
-        state = replace(answer.state, x=answer.x + change, lam=answer.lam + reactions)
-        ahead = self._judged(here.size, replace(answer, problem=moved, state=state))
+        ahead = self._judged(here.size, foretold(answer, PROBE * answer.load))
         return (ahead.margin - here.margin) / PROBE if ahead.limit == here.limit else math.nan
 
     def growth(self, here: Loaded) -> float:
@@ -198,23 +197,45 @@ class LoadRay:
         answer, by_load = here.found.answer, self.slope(here)
         if answer.contacts is None or not by_load < 0.0:
             return math.nan
-        tangent, problem = answer.contacts.tangent, answer.problem
-        faster = problem.at(bearing_number=problem.bearing_number * (1.0 + PROBE))
-        forcing = faster.linearize(answer.x).residual - problem.linearize(answer.x).residual
-        closing = faster.gaps(answer.x) - problem.gaps(answer.x)
-        de = np.linalg.solve(tangent.gradient, -tangent.border.rows(*tangent.respond(forcing, closing)))
-        change, reactions = tangent.respond(
-            forcing + tangent.forcing @ de, closing + tangent.border.gap_derivative @ de
-        )
-        moved = faster.at(displacement=problem.displacement + de)
-        state = replace(answer.state, x=answer.x + change, lam=answer.lam + reactions)
-        ahead = self._judged(here.size, replace(answer, problem=moved, state=state))
+        ahead = self._judged(here.size, foretold(answer, np.zeros_like(self.load(here.size)), faster=PROBE))
         return -(ahead.margin - here.margin) / PROBE / by_load if ahead.limit == here.limit else math.nan
 
     def _judged(self, size: float, answer: Solution) -> Loaded:
         found = Evaluation.of(self.case, answer)
         margin, limit = self.limits.margin(found)
         return Loaded(size, found, margin, limit)
+
+
+def foretold(answer: Solution, more: Array, faster: float = 0.0) -> Solution:
+    """The balance under `more` load (n_position,) than that of `answer`, and a part `faster`, by its tangent alone."""
+    if answer.elements is not None:
+        return replace(answer, elements=foretold_on_elements(answer.elements, more, faster))
+    if answer.contacts is None:
+        raise ValueError("an equilibrium of the interior point alone has no tangent")
+    tangent, problem = answer.contacts.tangent, answer.problem
+    there = problem.at(bearing_number=problem.bearing_number * (1.0 + faster))
+    forcing = there.linearize(answer.x).residual - problem.linearize(answer.x).residual
+    closing = there.gaps(answer.x) - problem.gaps(answer.x)
+    move = np.linalg.solve(tangent.gradient, -more - tangent.border.rows(*tangent.respond(forcing, closing)))
+    change, reactions = tangent.respond(
+        forcing + tangent.forcing @ move, closing + tangent.border.gap_derivative @ move
+    )
+    moved = there.at(displacement=problem.displacement + move)
+    return replace(answer, problem=moved, state=replace(answer.state, x=answer.x + change, lam=answer.lam + reactions))
+
+
+def foretold_on_elements(found: ElementEquilibrium, more: Array, faster: float) -> ElementEquilibrium:
+    """The same of petals with continuous slopes; one factorisation."""
+    equations = found.equations
+    problem, whole = equations.problem, equations.problem.layout.elements
+    if whole is None:
+        raise ValueError("this bearing has no petals with continuous slopes")
+    there = problem.at(bearing_number=problem.bearing_number * (1.0 + faster))
+    ahead = found.under(whole, there)
+    tangent = ElementTangent.at(equations, -equations.force, current_run().probe_solver)
+    forcing = ahead.equations.newton_residual - equations.newton_residual
+    change, move = tangent.correction(forcing, ahead.equations.force - equations.force + more)
+    return ahead.moved(there.at(displacement=problem.displacement + move), change)
 
 
 def largest_load(ray: LoadRay, guess: float) -> Capacity:

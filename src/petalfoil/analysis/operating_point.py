@@ -5,11 +5,12 @@ Where several equilibria exist, the answer is the one that the assembled pack re
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from petalfoil.analysis.classic_method import by_classic, newton_only
+from petalfoil.analysis.contact_model import reported
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.heat_results import with_heat
 from petalfoil.analysis.neighbours import begun, keep
@@ -79,12 +80,21 @@ def operating_point(case: Case, load: Vector | None) -> OperatingPoint:
         None was found.
     """
     if load is None and case.operation.load is None:
-        return at_position(case)
+        return with_reported(case, at_position(case))
     wanted = applied_load(case, load)
-    found, known = under_load(at(case, eccentricity=(0.0, 0.0)), wanted)
-    return OperatingPoint(
-        found, known, (AppliedLoad.of(wanted, case.operation.moment), ForceResidual(found.force_residual))
-    )
+    found = with_reported(case, OperatingPoint(*under_load(at(case, eccentricity=(0.0, 0.0)), wanted)))
+    loaded = AppliedLoad.of(wanted, case.operation.moment), ForceResidual(found.answer.force_residual)
+    return replace(found, loaded=loaded)
+
+
+def with_reported(case: Case, found: OperatingPoint) -> OperatingPoint:
+    """The operating point with the equilibrium that results are taken from, its growth rate among them."""
+    answer = reported(case, found.answer)
+    if answer.elements is None:
+        return replace(found, answer=answer)
+    known = found.branch
+    rate = branch(leading_eigenvalue(answer), case, known.known_equilibria or 1, known.solution_path, known.jump)
+    return replace(found, answer=answer, branch=rate)
 
 
 def at(case: Case, speed: float | None = None, eccentricity: Vector | None = None) -> Case:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from petalfoil.analysis.contact_model import ContactModel
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.fields import all_fields, coordinates
 from petalfoil.analysis.heat_results import heat_results
@@ -24,7 +25,8 @@ def solution_record(analysis: str, found: Evaluation, *parts: object) -> Record:
     case, answer = found.case, found.answer
     fields = all_fields(found)
     hot = heat_results(case, answer)
-    film = (found.forces(), found.film(), found.balances(), wall_kind(case).scalars(fields), *([hot] if hot else []))
+    wall = wall_kind(case).scalars(fields), ContactModel.of(answer)
+    film = (found.forces(), found.film(), found.balances(), *wall, *([hot] if hot else []))
     return record_of(
         analysis,
         case,
@@ -33,7 +35,7 @@ def solution_record(analysis: str, found: Evaluation, *parts: object) -> Record:
         *parts,
         Outcome(),
         fields=dict(fields),
-        coords=coordinates(case, answer),
+        coords=coordinates(found),
     )
 
 
@@ -87,7 +89,7 @@ def asked_position(case: Case) -> Position:
 
 def position(case: Case, answer: Solution) -> Position:
     """Speed of the case and displacement of a solution."""
-    e, tilt = answer.problem.displacement * answer.problem.layout.scales.length, case.operation.tilt
+    e, tilt = answer.position * answer.problem.layout.scales.length, case.operation.tilt
     if case.operation.moment is not None:
         a_x, a_y = e[2:] / lever_of(case)
         tilt = (float(a_x), float(a_y))

@@ -141,7 +141,7 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     """
     newton_only(case)
     verb = ask or ("balance" if load is not None or (case.operation.load and eccentricity is None) else "solve")
-    there = posed(at(case, speed), verb, load, eccentricity)
+    there = posed(at(case.replace(**{"model.contacts": contacts}), speed), verb, load, eccentricity)
     paths = default_paths(there, verb) if vary is None else [checked(there, path) for path in vary]
     quantities = [known(name, [ALL, *ANSWERS], "result") for name in of or [MAIN_RESULT[verb]]]
     limits = Limits(min_film_thickness=min_film_thickness, contact_fraction=contact_fraction, max_stress=max_stress)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.analysis.contact_model import reported
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.heat_results import network_in_time, warm_up_step, with_heat
 from petalfoil.analysis.resume import is_same
@@ -68,7 +69,7 @@ class SpeedLine:
         scales, R_j = self.base.layout.scales, self.case.bearing.journal_radius
         number = scales.bearing_number(self.case.gas.viscosity, speed, R_j)
         problem, load = self.base.at(bearing_number=number), load_of(self.case, self.load, self.base.layout)
-        warm = self.temperatures
+        warm, before = self.temperatures, self.known
         if warm is None and after is not None:
             warm = network_in_time(self.case).start
         if self.known is None:
@@ -80,6 +81,7 @@ class SpeedLine:
         else:
             self.known = warm_up_step(self.case, found, warm, after)
         self.temperatures = self.known.problem.temperatures
+        self.known = reported(self.case, self.known, before)
         return self.known
 
     def climb(self, speed: float) -> Solution:
@@ -115,7 +117,7 @@ class SpeedLine:
                 found = self.known = None
         if found is None:
             return False
-        x, y = found.problem.displacement[:2] * self.base.layout.scales.length
+        x, y = found.position[:2] * self.base.layout.scales.length
         return is_same(last, {"eccentricity_x": float(x), "eccentricity_y": float(y)})
 
     def contact_fraction(self, speed: float) -> float:

@@ -14,8 +14,8 @@ from petalfoil.analysis.arguments import Load, Loads, Mass, Speed, Speeds
 from petalfoil.analysis.campbell import BRANCHES, CRITICAL, Branches
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.coefficients import state_parts
+from petalfoil.analysis.contact_model import ContactModel
 from petalfoil.analysis.declaration import analysis
-from petalfoil.analysis.impedance import Slopes
 from petalfoil.analysis.operating_point import OperatingPoint, Vector, applied_load, at, operating_point
 from petalfoil.analysis.records import branch, effort, failed_record, record_of
 from petalfoil.analysis.rotor_on_bearings import RotorOnBearings, whole_length
@@ -192,8 +192,8 @@ def point(case: Case, load: Vector | None, mass: float | None, progress: Progres
         whirl = rotor.whirl(impedance, speed)
         modes = None if math.isnan(rotor.mass) else rotor.modes(impedance, speed)
         threshold, ended = threshold_speed(rotor, load, whirl)
-        slopes = Slopes.of(impedance.motion)
-        parts = (Rotor(rotor.mass, threshold), *whirl_parts(case, found, whirl, ended), slopes, effort(run.seconds))
+        contacts = ContactModel.of_motion(impedance.motion)
+        parts = (Rotor(rotor.mass, threshold), *whirl_parts(case, found, whirl, ended), contacts, effort(run.seconds))
         fields, coords = ({}, {}) if modes is None else mode_fields(modes, speed, tilts=case.bearings > 1)
         return record_of("stability", case, *parts, fields=fields, coords=coords)
 
@@ -202,7 +202,7 @@ def whirl_parts(case: Case, found: OperatingPoint, whirl: Whirl, ended: str) -> 
     """The state and its critical mass; what has no number is told by the status."""
     any_mass = {0.0: "whirls at half the speed at any speed and rotor mass", math.inf: "stable for any rotor mass"}
     remarks = ["converged", any_mass.get(whirl.mass, ""), ended]
-    outcome = Outcome(status="; ".join(filter(None, remarks)), residual=found.answer.residual)
+    outcome = Outcome(status="; ".join(filter(None, remarks)), residual=found.answer.reported_residual)
     return *state_parts(case, found), CriticalMass(whirl.mass, whirl.ratio), outcome
 
 
@@ -236,8 +236,8 @@ def _points(
             with running(here, "stability") as run:
                 try:
                     found, whirl, impedance = _followed(line, case, rotor)
-                    slopes = Slopes.of(impedance.motion)
-                    parts = (*whirl_parts(case, found, whirl, ""), slopes, effort(run.seconds))
+                    contacts = ContactModel.of_motion(impedance.motion)
+                    parts = (*whirl_parts(case, found, whirl, ""), contacts, effort(run.seconds))
                     record = record_of("stability", case, *parts)
                 except ConvergenceError as failure:
                     line.known = None
@@ -268,8 +268,8 @@ def _campbell(
                 else:
                     found, whirl, impedance = _followed(line, case, rotor)
                 fields, _ = mode_fields(rotor.modes(impedance, speed), speed, tilts=case.bearings > 1)
-                slopes = Slopes.of(impedance.motion)
-                parts = (RotorMass(mass), *whirl_parts(case, found, whirl, ""), slopes, effort(run.seconds))
+                contacts = ContactModel.of_motion(impedance.motion)
+                parts = (RotorMass(mass), *whirl_parts(case, found, whirl, ""), contacts, effort(run.seconds))
                 coords: dict[str, Array] = {"mode": np.arange(1, BRANCHES + 1)}
                 placed = branches.placed(fields, speed)
                 record = record_of("stability", case, *parts, fields=dict(placed), coords=coords)

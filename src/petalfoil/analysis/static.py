@@ -12,6 +12,7 @@ import numpy as np
 
 from petalfoil.analysis.arguments import DOWNWARD, TURNING_ONLY, Direction, Displacements, Flag
 from petalfoil.analysis.classic_method import is_classic, rest_by_classic
+from petalfoil.analysis.contact_model import ContactModel, reported
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.displacements import CHARACTERISTIC, displaced
 from petalfoil.analysis.evaluation import Evaluation
@@ -129,7 +130,8 @@ def _without_friction(cases: list[Case], progress: Progress | None, done: Sequen
             if answer is None:
                 record = failed_record("static", case, "the foil pack did not settle")
             else:
-                record = static_record(case, answer, effort(run.seconds))
+                answer = reported(case, answer)
+                record = static_record(case, answer, ContactModel.of(answer), effort(run.seconds))
         yield record
 
 
@@ -146,7 +148,8 @@ def at_rest(case: Case, problem: CoupledProblem) -> Solution | None:
 
 def static_record(case: Case, answer: Solution, *parts: object) -> Record:
     """The record of a foil pack at zero speed: its reactions; there is no film to speak of."""
-    forces, fields = Evaluation.of(case, answer).forces(), wall_fields(case, answer)
+    found = Evaluation.of(case, answer)
+    forces, fields = found.forces(), wall_fields(found)
     torque = case.surface.friction_coefficient * case.bearing.journal_radius * forces.contact_normal_force
     return record_of(
         "static",
@@ -157,8 +160,8 @@ def static_record(case: Case, answer: Solution, *parts: object) -> Record:
         Torque(torque, torque),
         wall_kind(case).scalars(fields),
         Branch(solution_path=answer.solution_path, stable=True, known_equilibria=1),
-        Outcome(residual=answer.residual),
+        Outcome(residual=answer.reported_residual),
         *parts,
         fields=dict(fields),
-        coords=coordinates(case, answer),
+        coords=coordinates(found),
     )

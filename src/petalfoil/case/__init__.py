@@ -42,7 +42,7 @@ from petalfoil.case.parameters import Parameter, parameter_of, parameters_of, pa
 from petalfoil.case.petal_table import LinearAbout, Mount, Petals, PetalTheory
 from petalfoil.case.plausibility import warnings_of
 from petalfoil.case.rotor import Rotor
-from petalfoil.case.sections import Bearing, Edges, Method, Model, ModelKind, Operation, Surface
+from petalfoil.case.sections import Bearing, Contacts, Edges, Method, Model, ModelKind, Operation, Surface
 from petalfoil.case.wall_tables import WallTable, register_table, unregister_table
 
 __all__ = [
@@ -51,6 +51,7 @@ __all__ = [
     "BumpFoil",
     "Bushing",
     "Case",
+    "Contacts",
     "Edges",
     "Feet",
     "Gas",

@@ -27,7 +27,7 @@ from petalfoil.case.package import (
 from petalfoil.case.petal_table import Petals, PetalTheory
 from petalfoil.case.problems import Problem, refusal
 from petalfoil.case.rotor import Rotor
-from petalfoil.case.sections import ADAPTED, Bearing, Method, Model, ModelKind, Operation, Surface
+from petalfoil.case.sections import ADAPTED, Bearing, Contacts, Method, Model, ModelKind, Operation, Surface
 from petalfoil.case.wall_tables import WallTable, with_table
 from petalfoil.errors import DefinitionError, PackageError
 from petalfoil.text import for_terminal
@@ -244,6 +244,13 @@ class Case(Definition):
         """Density of the stations from an end to the middle; empty where cells follow `axial_grading` [1]."""
         density = self.model.axial_density
         return density if isinstance(density, tuple) else ()
+
+    @property
+    def has_contact_points(self) -> bool:
+        """Whether contacts are looked for between nodes: of petals in 2-D on a rigid bushing."""
+        model, on_bushing = self.model, self.petals is not None and self.backing is None
+        newton_2d = model.kind is ModelKind.TWO_D and model.method is Method.NEWTON
+        return on_bushing and newton_2d and model.contacts is Contacts.POINTS
 
     @property
     def adapts_stations(self) -> bool:

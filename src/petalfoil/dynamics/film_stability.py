@@ -7,8 +7,10 @@ The wall has no mass; the film has. With the contacts that carry load kept activ
 from __future__ import annotations
 
 import numpy as np
+import scipy.sparse as sp
 
 from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.small_motion import TangentEquations
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.eigenvalues import Pencil, rightmost
@@ -23,6 +25,8 @@ def leading_eigenvalue(solution: Solution) -> complex:
     problem = solution.problem
     if problem.bearing_number == 0.0:
         return complex(np.nan, np.nan)
+    if solution.elements is not None:
+        return rightmost(pencil_of(solution.elements.equations), TIME_STEP, current_run().probe_solver)
     linearized = problem.linearize(solution.x)
     steady = linearized.matrix(np.zeros(len(problem.weight)))
     contacts = solution.contacts
@@ -34,3 +38,12 @@ def leading_eigenvalue(solution: Solution) -> complex:
     return rightmost(
         Pencil(constraints.reduce(steady), constraints.reduce(linearized.stored), first, order), TIME_STEP, solver
     )
+
+
+def pencil_of(equations: TangentEquations) -> Pencil:
+    """The matrices of petals with continuous slopes: what stores nothing first, then the film."""
+    film = np.arange(equations.n) < len(equations.deflection) + len(equations.pressures)
+    film[: len(equations.deflection)] = False
+    order = np.concatenate([np.flatnonzero(~film), np.flatnonzero(film)])
+    steady, stored = (sp.csc_array(matrix[order][:, order]) for matrix in (equations.steady, equations.stored))
+    return Pencil(steady, stored, int(np.count_nonzero(~film)))

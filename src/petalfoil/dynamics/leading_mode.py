@@ -16,7 +16,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.dynamics.film_stability import leading_eigenvalue
+from petalfoil.dynamics.film_stability import leading_eigenvalue, pencil_of
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
@@ -84,7 +84,10 @@ class LeadingMode:
 
 
 def matrices(solution: Solution, constraints: ContactConstraints) -> tuple[sp.csc_array, sp.csc_array]:
-    """`J` and `M` of an equilibrium over the unknowns that are free under `constraints`."""
+    """`J` and `M` of an equilibrium over the unknowns that are free under `constraints`, or with contact points all."""
+    if solution.elements is not None:
+        pencil = pencil_of(solution.elements.equations)
+        return pencil.J, pencil.M
     linearized = solution.problem.linearize(solution.x)
     steady = linearized.matrix(np.zeros(len(solution.problem.weight)))
     return constraints.reduce(steady), constraints.reduce(linearized.stored)

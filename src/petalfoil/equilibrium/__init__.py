@@ -17,9 +17,12 @@
 `linear_response.py`       that response, contacts at nodes
 `travelling_contacts.py`   contacts of that response that move between nodes
 `contact_sets.py`          contact points and stretches: from active nodes, and corrected by signs
+`element_tangent.py`       a step of Newton's method for petals with continuous slopes, under a load or not
 `point_contacts.py`        equilibria with contact points as unknowns
 `asperity_contacts.py`     equilibria with contact pressures over low asperities
 `element_contacts.py`      which of the two is near an equilibrium with contacts at nodes
+`element_rates.py`         how such an equilibrium follows a parameter of its case
+`nodal_state.py`           film, deflections and reactions at nodes, wherever contacts are
 `element_response.py`      the response about these
 =========================  ====================================================================
 """

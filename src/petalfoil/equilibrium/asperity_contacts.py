@@ -12,16 +12,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.point_contacts import MOST_GROWTH, diverged
+from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError, scaled_force, unbalanced
+from petalfoil.equilibrium.point_contacts import FARTHEST_MOVE, MOST_GROWTH, diverged
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import AT_ASPERITIES
 from petalfoil.physics.asperity_contact import FULL_PRESSURE, ContactSamples
 from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.solvers.problem import POSITIVE_FRACTION, RESIDUAL_TOLERANCE, fraction_to_boundary
-from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.system.asperity_equations import AsperityEquations
 from petalfoil.system.coupled import CoupledProblem
-from petalfoil.system.point_equations import PointEquations, PointLayout, PointState
+from petalfoil.system.point_equations import PointEquations, PointState
+from petalfoil.system.point_layout import PointLayout
 from petalfoil.walls.element_pack import ElementPack
 
 Array = NDArray[np.float64]
@@ -54,10 +55,11 @@ LEAST = 1e-9
 
 @dataclass(frozen=True)
 class AsperityContacts:
-    """An equilibrium with contact pressures; its equations at the state and their largest scaled residual."""
+    """An equilibrium with contact pressures; attributes as of `PointContacts`."""
 
     equations: AsperityEquations
     residual: float
+    gradient: Array | None = None
 
     @property
     def pack(self) -> ElementPack:
@@ -70,13 +72,53 @@ class AsperityContacts:
         return self.equations.points
 
     @property
-    def contact_slopes(self) -> str:
+    def contact_model(self) -> str:
         """Where its contacts are, for people."""
         return AT_ASPERITIES
 
+    def at(self, problem: CoupledProblem, load: Array | None = None) -> AsperityContacts:
+        """The equilibrium of a neighbouring problem, with these asperities; under a load from there.
 
-def with_asperities(whole: PointLayout, problem: CoupledProblem, state: PointState) -> AsperityContacts | None:
-    """The equilibrium of `problem` near a state, whose points are not used; None where none is found."""
+        Raises
+        ------
+        NoPointsError
+            None was found.
+        """
+        start = replace(self.equations, smooth=replace(self.equations.smooth, problem=problem))
+        return settled(start, load)
+
+    @property
+    def gaps(self) -> tuple[Array, NDArray[np.bool_]]:
+        """No gap closes: contact pressures are everywhere."""
+        return np.zeros(0), np.zeros(0, dtype=bool)
+
+    def under(self, whole: PointLayout, problem: CoupledProblem) -> AsperityContacts:
+        """The same state under other equations with as many elements, unsolved."""
+        equations = self.equations
+        smooth = PointEquations(whole, problem, equations.smooth.state)
+        samples = replace(equations.samples, curves=whole.curves)
+        return replace(self, equations=replace(equations, smooth=smooth, samples=samples))
+
+    def moved(self, problem: CoupledProblem, change: Array) -> AsperityContacts:
+        """The state after a small `change` (n,) of the unknowns, under the equations of `problem`, unsolved."""
+        equations = self.equations
+        move = problem.displacement - equations.problem.displacement
+        ahead = changed(equations, change, move, 1.0)
+        return replace(self, equations=replace(ahead, smooth=replace(ahead.smooth, problem=problem)))
+
+
+def with_asperities(
+    whole: PointLayout, problem: CoupledProblem, state: PointState, load: Array | None = None
+) -> AsperityContacts:
+    """The equilibrium of `problem` near a state, whose points are not used.
+
+    Under a load it is at the position that carries it, which is followed at the last height alone.
+
+    Raises
+    ------
+    NoPointsError
+        None was found.
+    """
     mesh = whole.pack.mesh
     samples = ContactSamples(whole.curves, SAMPLES, 2.0 * np.pi / (mesh.count * mesh.cells))
     smooth = PointEquations(whole, problem, replace(state, points=ContactPoints.none()))
@@ -84,29 +126,48 @@ def with_asperities(whole: PointLayout, problem: CoupledProblem, state: PointSta
     pressure = FULL_PRESSURE * np.exp(-np.clip(gaps / HEIGHTS[0], -6.0, 80.0))
     equations = AsperityEquations(smooth, samples, pressure, HEIGHTS[0])
     for height in HEIGHTS:
-        last = height == HEIGHTS[-1]
-        found, steps = newton(replace(equations, height=height), RESIDUAL_TOLERANCE if last else ROUGH)
+        equations, steps, _ = newton(replace(equations, height=height), ROUGH)
         current_run().note("asperities", height=height, steps=steps)
-        if found is None:
-            return None
-        equations = found
-    return AsperityContacts(equations, float(np.max(np.abs(equations.scaled))))
+    return settled(equations, load)
 
 
-def newton(equations: AsperityEquations, tolerance: float) -> tuple[AsperityEquations | None, int]:
-    """Newton's method with one height, and its steps; None where they run out."""
+def settled(equations: AsperityEquations, load: Array | None) -> AsperityContacts:
+    """The equilibrium with the height of `equations`, near their state.
+
+    Raises
+    ------
+    NoPointsError
+        None was found.
+    """
+    equations, steps, gradient = newton(equations, RESIDUAL_TOLERANCE, load)
+    current_run().note("asperities", height=equations.height, steps=steps)
+    residual = float(np.max(np.abs(equations.scaled)))
+    return AsperityContacts(equations, residual, None if load is None else gradient)
+
+
+def newton(
+    equations: AsperityEquations, tolerance: float, load: Array | None = None
+) -> tuple[AsperityEquations, int, Array]:
+    """Newton's method with one height: the equations, its steps, the last gradient of the force by the position.
+
+    Raises
+    ------
+    NoPointsError
+        It does not converge.
+    """
+    gradient = np.zeros((0, 0))
     for steps in range(STEPS):
         equations = renewed(equations)
-        if np.max(np.abs(equations.scaled)) <= tolerance:
-            return equations, steps
+        left = np.concatenate([equations.scaled, scaled_force(equations, load)])
+        if np.max(np.abs(left)) <= tolerance:
+            return equations, steps, gradient
         if diverged(equations.smooth.state):
-            return None, steps
-        try:
-            factor = current_run().film_solver.factor(equations.steady)
-        except SingularMatrixError:
-            return None, steps
-        equations = stepped(equations, factor.solve(-equations.newton_residual))
-    return None, STEPS
+            raise NoPointsError(f"Newton's method with asperities of {equations.height:g} reference films diverges")
+        tangent = ElementTangent.at(equations, load, current_run().film_solver)
+        gradient = tangent.gradient
+        step = tangent.correction(equations.newton_residual, unbalanced(equations, load))
+        equations = stepped(equations, step)
+    raise NoPointsError(f"asperities of {equations.height:g} reference films: more than {STEPS} steps")
 
 
 def renewed(equations: AsperityEquations) -> AsperityEquations:
@@ -115,21 +176,38 @@ def renewed(equations: AsperityEquations) -> AsperityEquations:
     return replace(equations, pressure=pressure)
 
 
-def stepped(equations: AsperityEquations, change: Array) -> AsperityEquations:
-    """The equations after as much of `change` as film, pressures and contact pressures allow."""
-    smooth, samples, pressure = equations.smooth, equations.samples, equations.pressure
+def stepped(equations: AsperityEquations, change: tuple[Array, Array]) -> AsperityEquations:
+    """The equations after as much of `change` (of unknowns and position) as film and contact pressures allow."""
+    smooth, (dX, move) = equations.smooth, change
     state, whole = smooth.state, smooth.whole
-    dw, dP = change[: whole.n_wall], change[whole.n_wall :]
-    reaction = equations.contact.change(whole.curves.by_w @ dw)
-    grown = np.where(equations.bears, reaction / (samples.weight * pressure), 0.0)
-    farthest = float(np.max(np.abs(grown) * (pressure > MATTERS), initial=0.0))
+    dw, dP = dX[: whole.n_wall], dX[whole.n_wall :]
+    grown = growth(equations, dw, move)
+    farthest = float(np.max(np.abs(grown) * (equations.pressure > MATTERS), initial=0.0))
+    closing = whole.film_by_w @ dw + whole.film_by_e @ move
     length = min(
         1.0,
         POSITIVE_FRACTION * fraction_to_boundary(state.P, dP),
         fraction_to_boundary(MOST_GROWTH * state.P, -dP),
-        POSITIVE_FRACTION * fraction_to_boundary(smooth.film_thickness.ravel(), whole.film_by_w @ dw),
+        POSITIVE_FRACTION * fraction_to_boundary(smooth.film_thickness.ravel(), closing),
         max(FARTHEST / max(farthest, FARTHEST), SHORTEST),
+        FARTHEST_MOVE / max(float(np.linalg.norm(move)), FARTHEST_MOVE),
     )
-    ahead = PointState(state.w + length * dw, state.P + length * dP, state.points)
-    factor = np.exp(np.clip(length * grown, -2.0 * FARTHEST, 2.0 * FARTHEST))
-    return replace(equations, smooth=replace(smooth, state=ahead), pressure=pressure * factor)
+    return changed(equations, dX, move, length)
+
+
+def growth(equations: AsperityEquations, dw: Array, move: Array) -> Array:
+    """Change of the contact pressures over these by changes of deflections and position, (E, S)."""
+    curves = equations.smooth.whole.curves
+    reaction = equations.contact.change(curves.by_w @ dw + curves.by_e @ move)
+    return np.where(equations.bears, reaction / (equations.samples.weight * equations.pressure), 0.0)
+
+
+def changed(equations: AsperityEquations, change: Array, move: Array, length: float) -> AsperityEquations:
+    """The equations after a part `length` of a change of the unknowns (n,) and a move of the journal."""
+    smooth = equations.smooth
+    state, whole, problem = smooth.state, smooth.whole, smooth.problem
+    dw, dP = change[: whole.n_wall], change[whole.n_wall :]
+    factor = np.exp(np.clip(length * growth(equations, dw, move), -2.0 * FARTHEST, 2.0 * FARTHEST))
+    there = problem.at(displacement=problem.displacement + length * move)
+    ahead = replace(smooth, problem=there, state=PointState(state.w + length * dw, state.P + length * dP, state.points))
+    return replace(equations, smooth=ahead, pressure=equations.pressure * factor)

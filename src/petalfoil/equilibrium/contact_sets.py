@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from petalfoil.physics.gap_curves import ContactPoints, Facing, sampled
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
-from petalfoil.system.point_equations import PointEquations, PointLayout
+from petalfoil.system.point_equations import PointEquations
+from petalfoil.system.point_layout import PointLayout
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -25,12 +26,18 @@ SHORT_STRETCH = 0.25
 SPACING = 1.0
 """Spacing of the points of a stretch, in elements: as many as the elements have values."""
 
+SPLIT = 2.0
+"""Gaps below zero up to this far on both sides of a point, in elements, split it."""
+
 BRIDGED = 1.6
 """Travelling points up to this far apart, in elements, are the ends of a stretch if the gap between them is below
 zero."""
 
 SAMPLES = 8
 """Gaps looked at per element."""
+
+BESIDE = 1.0
+"""Distance from a contact, in elements, within which its travel opens and closes the gap."""
 
 OVERLAP = 2e-4
 """A gap this far below zero gains a contact, in units of the reference film (2 nm)."""
@@ -169,14 +176,52 @@ def settled(left: list[Contact], k: int) -> Contact:
 
 
 def with_fresh(contacts: list[Contact], fresh: list[tuple[int, float, int]]) -> list[Contact]:
-    """With contacts at further places: one more point in a stretch, a stretch between two points, or a point."""
+    """With contacts at further places: a point split in two, one more in a stretch, a stretch between two, a point."""
     new: list[Contact] = []
+    contacts, fresh = split(contacts, fresh)
     for curve, place, before in fresh:
         if before >= 0 and bridges(contacts, before):
             contacts[before].inner.append(0.0)
         else:
             new.append(Contact(curve, place, 0.0, []))
     return [*contacts, *new] if not new else sorted([*contacts, *new], key=lambda one: (one.curve, one.position))
+
+
+def split(
+    contacts: list[Contact], fresh: list[tuple[int, float, int]]
+) -> tuple[list[Contact], list[tuple[int, float, int]]]:
+    """The contacts with points that have gaps below zero beside them split in two, and the other gaps.
+
+    Petals that flatten against each other touch at two points in place of one. Those are about halfway to the lowest
+    gaps, and share the reaction so that its centroid stays. Without a gap on one side, the point there moves half as
+    far as the other one.
+    """
+    left: list[Contact] = []
+    numbers, used = [-1], set()
+    for k, one in enumerate(contacts):
+        near = [f for f in fresh if f[0] == one.curve and abs(f[1] - one.position) <= SPLIT]
+        beside = [f for f in near if f[2] in (k - 1, k, -1)]
+        before = max((f for f in beside if f[1] < one.position and f not in used), key=lambda f: f[1], default=None)
+        behind = min((f for f in beside if f[1] > one.position and f[2] == k), key=lambda f: f[1], default=None)
+        if one.inner or (k and contacts[k - 1].inner) or (before is None and behind is None):
+            left.append(one)
+        else:
+            used |= {gap for gap in (before, behind) if gap is not None}
+            left += halves(one, before, behind)
+        numbers.append(len(left) - 1)
+    return left, [(curve, at, numbers[last + 1]) for curve, at, last in fresh if (curve, at, last) not in used]
+
+
+def halves(
+    one: Contact, before: tuple[int, float, int] | None, behind: tuple[int, float, int] | None
+) -> tuple[Contact, Contact]:
+    """The two points that take the place of one, from the lowest gaps before and behind it."""
+    down = 0.0 if before is None else 0.5 * (one.position - before[1])
+    up = 0.0 if behind is None else 0.5 * (behind[1] - one.position)
+    down, up = down or 0.5 * up, up or 0.5 * down
+    share = up / (down + up)
+    first = Contact(one.curve, max(one.position - down, 0.0), share * one.reaction, [])
+    return first, Contact(one.curve, one.position + up, (1.0 - share) * one.reaction, [])
 
 
 def bridges(contacts: list[Contact], k: int) -> bool:
@@ -205,6 +250,18 @@ def overlapping(equations: PointEquations) -> list[tuple[int, float, int]]:
         last = int(mine[-1]) if len(mine) else -1
         found.setdefault((last, on) if last >= 0 else (-1 - int(k), on), (on, at, last))
     return list(found.values())
+
+
+def beside_contacts(points: ContactPoints, curve: Index, position: Array) -> Mask:
+    """Whether places on curves lie within an element of a contact, or in a stretch; (sample,).
+
+    Gaps there open and close as contacts travel.
+    """
+    last = points.position.copy()
+    stretches = np.flatnonzero(points.inner)
+    last[stretches] = points.position[stretches + 1]
+    near = (position[:, None] > points.position - BESIDE) & (position[:, None] < last + BESIDE)
+    return np.asarray(np.any(near & (curve[:, None] == points.curve), axis=1))
 
 
 def sagging(equations: PointEquations, curve: Index, position: Array) -> Array:

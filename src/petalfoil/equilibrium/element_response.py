@@ -54,9 +54,9 @@ class ElementMotion:
         return self.contacts.equations.problem
 
     @property
-    def contact_slopes(self) -> str:
+    def contact_model(self) -> str:
         """Where its contacts are, for people."""
-        return self.contacts.contact_slopes
+        return self.contacts.contact_model
 
     @property
     def film_thickness(self) -> Array:

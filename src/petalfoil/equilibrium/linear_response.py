@@ -69,7 +69,7 @@ class SmallMotion:
         return cls(problem, problem.linearize(solution.x), TravellingContacts.at_nodes(solution), sticking)
 
     @property
-    def contact_slopes(self) -> str:
+    def contact_model(self) -> str:
         """Where its contacts are, for people."""
         return AT_NODES
 

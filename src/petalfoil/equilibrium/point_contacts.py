@@ -1,8 +1,9 @@
 """Equilibria with contact points that travel: from an equilibrium with contacts at nodes, by Newton's method.
 
 Runs of active nodes become points or stretches (`contact_sets.py`). Newton's method on deflections, pressures,
-reactions and places (C6) to (C8) follows, with steps halved until the residual falls. Then signs are looked at: a
-reaction that pulls leaves, a gap that has closed elsewhere gains a contact, and Newton's method goes on.
+reactions and places (C6) to (C8) follows, under a load with the journal's position bordered (C10). Steps are halved
+until the residual falls. Then signs are looked at: a reaction that pulls leaves, a gap that has closed elsewhere gains
+a contact, and Newton's method goes on.
 """
 
 from __future__ import annotations
@@ -12,14 +13,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.contact_sets import merged, revised
+from petalfoil.equilibrium.contact_sets import SAMPLES, beside_contacts, merged, revised
+from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError, scaled_force, unbalanced
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import AT_POINTS
-from petalfoil.physics.gap_curves import ContactPoints
+from petalfoil.physics.gap_curves import ContactPoints, sampled
 from petalfoil.solvers.problem import POSITIVE_FRACTION, RESIDUAL_TOLERANCE, fraction_to_boundary
-from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.system.coupled import CoupledProblem
-from petalfoil.system.point_equations import PointEquations, PointLayout, PointState
+from petalfoil.system.point_equations import PointEquations, PointState
+from petalfoil.system.point_layout import PointLayout
 from petalfoil.walls.element_pack import ElementPack
 
 Array = NDArray[np.float64]
@@ -40,6 +42,15 @@ diverges."""
 SHORTEST = 0.1
 """Shortest step over Newton's; it is taken even if the residual does not fall."""
 
+FARTHEST_MOVE = 0.5
+"""Longest move of the journal under a load in a step, in units of the reference film (5 um)."""
+
+CHORD = 0.2
+"""Residual after a step over that before it, up to which the factor at hand serves another step, at half the cost."""
+
+POLISHED = 1e-3
+"""Residual over that of a solution below which another step changes no printed digit."""
+
 
 @dataclass(frozen=True)
 class PointContacts:
@@ -51,10 +62,13 @@ class PointContacts:
         The equations at its state.
     residual : float
         Largest scaled residual.
+    gradient : (n_position, n_position) array or None
+        Force by the journal's position under a load, from the last tangent; None at a given position.
     """
 
     equations: PointEquations
     residual: float
+    gradient: Array | None = None
 
     @property
     def pack(self) -> ElementPack:
@@ -67,27 +81,40 @@ class PointContacts:
         return self.equations.state.points
 
     @property
-    def contact_slopes(self) -> str:
+    def contact_model(self) -> str:
         """Where its contacts are, for people."""
         return AT_POINTS
 
-    def at(self, problem: CoupledProblem) -> PointContacts:
-        """The equilibrium of a neighbouring problem.
+    def at(self, problem: CoupledProblem, load: Array | None = None) -> PointContacts:
+        """The equilibrium of a neighbouring problem; under a load from there.
 
         Raises
         ------
         NoPointsError
             None was found.
         """
-        return with_points(self.equations.whole, problem, self.equations.state)
+        return with_points(self.equations.whole, problem, self.equations.state, load)
+
+    @property
+    def gaps(self) -> tuple[Array, NDArray[np.bool_]]:
+        """Gaps along all curves over the reference length [1], and which of them are beside a contact, (sample,)."""
+        curves, points = self.equations.whole.curves, self.points
+        curve, position, gap = sampled(curves, points, self.equations.nodal_gaps, SAMPLES)
+        return gap, beside_contacts(points, curve, position)
+
+    def under(self, whole: PointLayout, problem: CoupledProblem) -> PointContacts:
+        """The same state under other equations with as many elements, unsolved."""
+        return replace(self, equations=PointEquations(whole, problem, self.equations.state))
+
+    def moved(self, problem: CoupledProblem, change: Array) -> PointContacts:
+        """The state after a small `change` (n,) of the unknowns, under the equations of `problem`, unsolved."""
+        return replace(self, equations=replace(self.equations, problem=problem, state=changed(self.equations, change)))
 
 
-class NoPointsError(ArithmeticError):
-    """Newton's method found no equilibrium with contact points; it says why."""
-
-
-def with_points(whole: PointLayout, problem: CoupledProblem, state: PointState) -> PointContacts:
-    """The equilibrium of `problem` near a state.
+def with_points(
+    whole: PointLayout, problem: CoupledProblem, state: PointState, load: Array | None = None
+) -> PointContacts:
+    """The equilibrium of `problem` near a state; under a `load` (n_position,) at the position that carries it.
 
     Raises
     ------
@@ -95,12 +122,12 @@ def with_points(whole: PointLayout, problem: CoupledProblem, state: PointState) 
         None was found.
     """
     left, changes = STEPS, 0
+    equations = PointEquations(whole, problem, state)
     while True:
-        equations, steps = newton(PointEquations(whole, problem, state), left)
+        equations, steps, gradient = newton(equations, left, load)
         points, left = revised(equations), left - steps
         if points is None:
-            residual = float(np.max(np.abs(equations.scaled)))
-            found = equations.state.points
+            residual, found = float(np.max(np.abs(equations.scaled))), equations.state.points
             current_run().note(
                 "contact points",
                 residual=residual,
@@ -108,32 +135,41 @@ def with_points(whole: PointLayout, problem: CoupledProblem, state: PointState) 
                 points=len(found.curve),
                 in_stretches=int(found.inner.sum()),
             )
-            return PointContacts(equations, residual)
-        state, changes = replace(equations.state, points=points), changes + 1
+            return PointContacts(equations, residual, None if load is None else gradient)
+        equations, changes = replace(equations, state=replace(equations.state, points=points)), changes + 1
 
 
-def newton(equations: PointEquations, most: int) -> tuple[PointEquations, int]:
-    """Newton's method with the contacts as they are, apart from points that meet, and its steps, `most` at most.
+def newton(equations: PointEquations, most: int, load: Array | None) -> tuple[PointEquations, int, Array]:
+    """Newton's method with the contacts as they are, apart from points that meet, in at most `most` factorisations.
+
+    Returns the equations, the factorisations and the last gradient of the force by the journal's position. A factor
+    serves on as long as every step with it lessens the residual to `CHORD` of it.
 
     Raises
     ------
     NoPointsError
         It does not converge.
     """
-    last = np.inf
-    for step in range(most):
-        residual = float(np.max(np.abs(equations.scaled)))
-        if residual <= RESIDUAL_TOLERANCE and residual > 0.1 * last:
-            return equations, step
-        last = residual
+    (size, largest), gradient = norm(equations, load), np.zeros((0, 0))
+    for count in range(most):
+        if largest <= RESIDUAL_TOLERANCE and count:
+            return equations, count, gradient
         if diverged(equations.state):
             raise NoPointsError("Newton's method diverges")
-        try:
-            factor = current_run().film_solver.factor(equations.steady)
-        except SingularMatrixError:
-            raise NoPointsError("the contacts do not determine the petals") from None
-        equations = stepped(equations, factor.solve(-np.concatenate(equations.residual)))
-    raise NoPointsError(f"contacts or the residual, {last:.1e}, still change after {STEPS} steps")
+        tangent, gain = ElementTangent.at(equations, load, current_run().film_solver), 0.0
+        gradient = tangent.gradient
+        while gain <= CHORD and largest > POLISHED * RESIDUAL_TOLERANCE and tangent.n == equations.n:
+            step = tangent.correction(equations.newton_residual, unbalanced(equations, load))
+            equations = stepped(equations, step, load)
+            before, (size, largest) = size, norm(equations, load)
+            gain = size / before
+    raise NoPointsError(f"contacts or the residual, {largest:.1e}, still change after {STEPS} steps")
+
+
+def norm(equations: PointEquations, load: Array | None) -> tuple[float, float]:
+    """Root of the squares of all scaled residuals, and the largest of them; the unbalanced force among them."""
+    left = np.concatenate([equations.scaled, scaled_force(equations, load)])
+    return float(np.linalg.norm(left)), float(np.max(np.abs(left)))
 
 
 def diverged(state: PointState) -> bool:
@@ -142,32 +178,36 @@ def diverged(state: PointState) -> bool:
     return not far <= FARTHEST_STATE
 
 
-def stepped(equations: PointEquations, change: Array) -> PointEquations:
-    """The equations after the longest part of `change` that lessens the residual."""
-    before, state = equations.scaled, equations.state
-    sizes = len(state.w), len(state.P), len(state.points.reaction)
-    dw, dP, dlam, dt = np.split(change, np.cumsum(sizes))
-    closing = equations.whole.film_by_w @ dw
+def stepped(equations: PointEquations, change: tuple[Array, Array], load: Array | None) -> PointEquations:
+    """The equations after the longest part of `change` (of unknowns and position) that lessens the residual."""
+    (before, _), (dX, move), whole = norm(equations, load), change, equations.whole
+    dw, dP = dX[: whole.n_wall], dX[whole.n_wall : whole.n_wall + whole.n_film]
+    closing = whole.film_by_w @ dw + whole.film_by_e @ move
+    state = equations.state
     length = min(
         1.0,
         POSITIVE_FRACTION * fraction_to_boundary(state.P, dP),
         fraction_to_boundary(MOST_GROWTH * state.P, -dP),
         POSITIVE_FRACTION * fraction_to_boundary(equations.film_thickness.ravel(), closing),
+        FARTHEST_MOVE / max(float(np.linalg.norm(move)), FARTHEST_MOVE),
     )
     while True:
-        points = replace(
-            state.points,
-            position=moved(equations, np.clip(length * dt, -TRUST, TRUST)),
-            reaction=state.points.reaction + length * dlam,
-        )
-        ahead = replace(equations, state=PointState(state.w + length * dw, state.P + length * dP, merged(points)))
-        other_contacts = len(ahead.scaled) != len(before)
-        if other_contacts or length <= SHORTEST or np.linalg.norm(ahead.scaled) < np.linalg.norm(before):
+        problem = equations.problem.at(displacement=equations.problem.displacement + length * move)
+        ahead = replace(equations, problem=problem, state=changed(equations, length * dX))
+        other_contacts = ahead.n != equations.n
+        if other_contacts or length <= SHORTEST or norm(ahead, load)[0] < before:
             return ahead
         length = max(0.5 * length, SHORTEST)
 
 
-def moved(equations: PointEquations, change: Array) -> Array:
-    """Places of the travelling points after `change`, on their curves."""
-    points = equations.state.points
-    return np.clip(points.position + change, 0.0, equations.whole.curves.elements[points.curve])
+def changed(equations: PointEquations, change: Array) -> PointState:
+    """The state after a change of the unknowns, points on their curves and merged where they meet."""
+    state, whole = equations.state, equations.whole
+    dw, dP, dlam, dt = np.split(change, np.cumsum([whole.n_wall, whole.n_film, len(state.points.reaction)]))
+    place = state.points.position + np.clip(dt, -TRUST, TRUST)
+    points = replace(
+        state.points,
+        position=np.clip(place, 0.0, whole.curves.elements[state.points.curve]),
+        reaction=state.points.reaction + dlam,
+    )
+    return PointState(state.w + dw, state.P + dP, merged(points))

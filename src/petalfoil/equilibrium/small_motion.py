@@ -16,6 +16,8 @@ from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.solvers.reduced_model import MovedSystem
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.film_rows import FilmState
+from petalfoil.system.point_layout import PointLayout
 from petalfoil.walls.element_pack import ElementPack
 
 Array = NDArray[np.float64]
@@ -26,6 +28,9 @@ AT_POINTS = "contact points on petals with continuous slopes"
 AT_ASPERITIES = "contact pressures over asperities of 5 nm, petals with continuous slopes"
 AT_NODES = "contacts at nodes, isolated ones moved between them"
 """Where the contacts of a linear response are."""
+
+HELD_AT_NODES = "contacts at nodes"
+"""Where those of an equilibrium are that has no elements."""
 
 
 class TangentEquations(Protocol):
@@ -66,6 +71,26 @@ class TangentEquations(Protocol):
     def force(self) -> Array:
         """Force of film and contacts on the journal over the unit of force, (n_position,) [1]."""
 
+    @property
+    def film(self) -> FilmState:
+        """The film's rows."""
+
+    @property
+    def deflection(self) -> Array:
+        """Unknowns of the petals, (n_wall,) [1]."""
+
+    @property
+    def pressures(self) -> Array:
+        """Pressure unknowns, (n_film,) [1]."""
+
+    @property
+    def newton_residual(self) -> Array:
+        """Residual of Newton's method, (n,)."""
+
+    @property
+    def wall_forces(self) -> tuple[Array, Array, Array]:
+        """Generalised forces on the petals: elastic, by pressure and contacts, and magnitudes of these, (n_wall,)."""
+
 
 class ElementEquilibrium(Protocol):
     """An equilibrium of petals with continuous slopes."""
@@ -83,8 +108,29 @@ class ElementEquilibrium(Protocol):
         """Its contacts, as points."""
 
     @property
-    def contact_slopes(self) -> str:
+    def residual(self) -> float:
+        """Largest scaled residual."""
+
+    @property
+    def gradient(self) -> Array | None:
+        """Force by the journal's position under a load, (n_position, n_position); None where it was not asked for."""
+
+    @property
+    def contact_model(self) -> str:
         """Where its contacts are, for people."""
+
+    def at(self, problem: CoupledProblem, load: Array | None = None) -> ElementEquilibrium:
+        """The equilibrium of a neighbouring problem; under a load from there."""
+
+    @property
+    def gaps(self) -> tuple[Array, NDArray[np.bool_]]:
+        """Gaps along all curves over the reference length [1], and which of them are beside a contact, (sample,)."""
+
+    def under(self, whole: PointLayout, problem: CoupledProblem) -> ElementEquilibrium:
+        """The same state under other equations with as many elements, unsolved."""
+
+    def moved(self, problem: CoupledProblem, change: Array) -> ElementEquilibrium:
+        """The state after a small `change` (n,) of the unknowns, under the equations of `problem`, unsolved."""
 
 
 class Response(Protocol):
@@ -116,7 +162,7 @@ class Motion(Protocol):
         """Speed and position."""
 
     @property
-    def contact_slopes(self) -> str:
+    def contact_model(self) -> str:
         """Where its contacts are, for people."""
 
     @property

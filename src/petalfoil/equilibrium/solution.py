@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
+from petalfoil.equilibrium.small_motion import HELD_AT_NODES, ElementEquilibrium
 from petalfoil.solvers.contact_newton import ActiveContacts
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, Linearized, PrimalDualPoint, scaled_residual
 from petalfoil.system.coupled import CoupledProblem
@@ -71,6 +72,13 @@ class Solution:
         Active contacts and last tangent; None where the interior point had the last word.
     load : (n_position,) array or None
         The load that it balances, over the unit of force [1]; None at a fixed position.
+    elements : ElementEquilibrium or None
+        The equilibrium of petals with continuous slopes near this one, whose contacts are not at nodes: results are
+        those of it. None where there is none, or none was looked for.
+    elements_sought : bool
+        Whether it was looked for.
+    nodal_force_difference : float or None
+        Difference of its force from that with contacts at nodes, over that force; None without it [1].
     """
 
     problem: CoupledProblem
@@ -79,6 +87,25 @@ class Solution:
     solution_path: str
     contacts: ActiveContacts | None = field(default=None, repr=False)
     load: Array | None = None
+    elements: ElementEquilibrium | None = field(default=None, repr=False)
+    elements_sought: bool = False
+    nodal_force_difference: float | None = None
+
+    @property
+    def position(self) -> Array:
+        """Displacement of the journal over the reference length, (n_position,) [1]: that of results."""
+        problem = self.problem if self.elements is None else self.elements.equations.problem
+        return problem.displacement
+
+    @property
+    def contact_model(self) -> str:
+        """Where the contacts of results are, for people."""
+        return HELD_AT_NODES if self.elements is None else self.elements.contact_model
+
+    @property
+    def reported_residual(self) -> float:
+        """Largest scaled residual of the equilibrium that results are taken from."""
+        return self.residual if self.elements is None else self.elements.residual
 
     @property
     def x(self) -> Array:
@@ -113,12 +140,15 @@ class Solution:
         case, scales = self.case, self.problem.layout.scales
         radian = scales.bearing_number(case.gas.viscosity, 1.0, case.bearing.journal_radius)
         load = None if self.load is None else self.load * scales.force
-        return OperatingState(self.problem.bearing_number / radian, self.problem.displacement * scales.length, load)
+        return OperatingState(self.problem.bearing_number / radian, self.position * scales.length, load)
 
     @property
     def unbalanced(self) -> Array:
         """Force of film, contacts and load on the journal over the unit of force, (n_position,) [1]."""
-        force = self.problem.journal_force(self.x, self.lam)
+        if self.elements is not None:
+            force = self.elements.equations.force
+        else:
+            force = self.problem.journal_force(self.x, self.lam)
         return force if self.load is None else force + self.load
 
     @property

@@ -15,8 +15,10 @@ from petalfoil.errors import UsageError
 from petalfoil.plot import labels, style
 from petalfoil.plot.labels import MICRO
 from petalfoil.plot.views import (
+    ON_JOURNAL,
     Floats,
     array,
+    contact_places,
     is_3d,
     mid_plane,
     number,
@@ -86,8 +88,14 @@ def draw_film(ax: Axes, ds: xr.Dataset) -> None:
     """Draw the film thickness of the mid-plane against the bushing angle, and where the journal is in contact."""
     plane = mid_plane(ds)
     film = array(plane, "film_thickness") * MICRO
-    contact = touching(plane, "journal_contact_pressure") if "journal_contact_pressure" in ds else None
+    placed = "contact_force" in plane  # contacts between nodes have their own places
+    at_nodes = "journal_contact_pressure" in ds and not placed
+    contact = touching(plane, "journal_contact_pressure") if at_nodes else None
     label: str | None = "journal in contact"
+    if placed and len(angles := contact_places(plane, ON_JOURNAL)[0]):
+        degrees = np.degrees(np.mod(angles, 2.0 * np.pi))
+        floor = np.full(len(angles), number(ds, "contact_film_thickness") * MICRO)
+        ax.plot(degrees, floor, "o", color=style.CONTACT, markersize=3.5, label=label, zorder=3)
     for strip in strips(plane):
         ax.plot(strip.degrees, film[strip.petal], color=style.ALTERNATING[strip.petal % 2], linewidth=1.8)
         if contact is not None and contact[strip.petal].any():

@@ -26,6 +26,7 @@ from petalfoil.plot.stretch import Stretch, round_scale
 from petalfoil.plot.views import (
     Floats,
     array,
+    contact_places,
     displacement,
     grown_radius,
     is_3d,
@@ -205,19 +206,27 @@ def _between(low: Floats, high: Floats) -> Floats:
 def _draw_contacts(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
     kinds = {
         "journal_contact_pressure": ("journal in contact", style.VERMILLION),
-        "petal_contact_pressure": ("petal on petal", style.PURPLE),
         "bushing_contact_pressure": ("petal on bushing", style.ORANGE),
+        "petal_contact_pressure": ("petal on petal", style.PURPLE),
     }
-    for name, (label, colour) in kinds.items():
-        if name not in ds or not (touched := touching(ds, name)).any():
+    for facing, (name, (label, colour)) in enumerate(kinds.items()):
+        theta, radius = contact_places(ds, facing) if "contact_force" in ds else _at_nodes(ds, name)
+        if not len(theta):
             continue
-        theta = (array(ds, "root_angle")[:, None] + array(ds, str(ds[name].dims[-1])))[touched]
         if name == "journal_contact_pressure":
             radius = journal_surface(ds, theta)
-        else:
-            radius = array(ds, "radius")[touched] + number(ds, "petal_thickness") / 2
         look: style.Look = {"color": colour, "markersize": 4, "markeredgecolor": style.WHITE, "markeredgewidth": 0.3}
         ax.plot(*stretch.points(radius, theta).T, "o", label=label, gid=name, zorder=5, **look)
+
+
+def _at_nodes(ds: xr.Dataset, name: str) -> tuple[Floats, Floats]:
+    """Bushing angles of contacts at nodes, and radii of the outer face of the petals there, (k,) each."""
+    nothing = np.zeros(0)
+    if name not in ds or not (touched := touching(ds, name)).any():
+        return nothing, nothing
+    theta = (array(ds, "root_angle")[:, None] + array(ds, str(ds[name].dims[-1])))[touched]
+    outer = array(ds, "radius") + number(ds, "petal_thickness") / 2
+    return theta, outer[touched] if outer.shape == touched.shape else nothing
 
 
 def _draw_arrows(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:

@@ -86,6 +86,27 @@ def touching(ds: xr.Dataset, name: str) -> Flags:
     return np.asarray(array(ds, name) > _ROUNDING * number(ds, "ambient_pressure"), dtype=np.bool_)
 
 
+def contact_places(ds: xr.Dataset, facing: int) -> tuple[Floats, Floats]:
+    """Contacts between nodes with the journal (0), the bushing (1) or the petal behind (2), that carry load.
+
+    Returns
+    -------
+    angles, radii : (k,) arrays
+        Bushing angles [rad], and radii of the outer face of the petals there [m].
+    """
+    force = array(ds, "contact_force")
+    least = _ROUNDING * number(ds, "ambient_pressure") * number(ds, "journal_radius") * number(ds, "length")
+    mine = (array(ds, "contact_facing") == facing) & (force > least)
+    petal, phi = array(ds, "contact_petal")[mine].astype(np.intp), array(ds, "contact_angle")[mine]
+    radius, nodes = array(ds, "radius"), array(ds, "phi")
+    mid = [float(np.interp(at, nodes, np.ravel(radius[one]))) for one, at in zip(petal, phi, strict=True)]
+    return array(ds, "root_angle")[petal] + phi, np.array(mid) + number(ds, "petal_thickness") / 2
+
+
+ON_JOURNAL = 0
+"""Contacts with the journal among those between nodes."""
+
+
 @dataclass(frozen=True)
 class Strip:
     """The exposed strip of one petal as it appears on the unrolled circle.

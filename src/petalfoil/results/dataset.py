@@ -22,6 +22,8 @@ _DTYPES: dict[DataType, type] = {
     DataType.BOOL: np.bool_,
     DataType.STR: np.str_,
 }
+RAGGED = ("contact",)
+"""Dimensions whose length differs from point to point of a curve: shorter ones end in NaN."""
 _POINT = {"long_name": "number of the point along the curve", "units": "1"}
 
 
@@ -132,6 +134,8 @@ def _curve_fields(records: Sequence[Record], coords: Mapping[str, Array]) -> dic
             continue
         nothing = np.full([len(coords[dim]) for dim in variable.dims], np.nan)
         values = [record.fields.get(name, nothing) if record.converged else nothing for record in records]
+        if variable.dims[0] in RAGGED:
+            values = [np.concatenate([value, nothing[len(value) :]]) for value in values]
         variables[name] = _labelled(variable, np.stack(values), ("point", *variable.dims))
     return variables
 
@@ -160,6 +164,9 @@ def _common_coordinates(records: Sequence[Record]) -> dict[str, Array]:
     coords: dict[str, Array] = {}
     for record in records:
         for name, values in record.coords.items():
+            if name in RAGGED:
+                coords[name] = max(coords.get(name, values), values, key=len)
+                continue
             if not np.array_equal(coords.setdefault(name, values), values):
                 raise ValueError(f"the points of a curve must share the coordinate {name!r}")
     return coords

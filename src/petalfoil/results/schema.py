@@ -92,6 +92,7 @@ def _geometry(units: str, long_name: str, symbol: str, kind: DataType = DataType
 _FILM = ("petal", "phi_exposed", "z")
 _PETAL = ("petal", "phi", "z")
 _TIME = ("time",)
+_CONTACT = ("contact",)
 
 COORDINATES: dict[str, Variable] = {
     "petal": Variable(
@@ -116,6 +117,7 @@ COORDINATES: dict[str, Variable] = {
     ),
     "mode": Variable(("mode",), "1", "number of the natural mode, by frequency", "k", DataType.INT, Role.GEOMETRY),
     "load": Variable(("load",), "N", "size of the load on the journal", "|load|", role=Role.GEOMETRY),
+    "contact": Variable(_CONTACT, "1", "number of a contact between nodes", "c", DataType.INT, Role.GEOMETRY),
     "z": Variable(("z",), "m", "distance along the bearing axis", "z", role=Role.GEOMETRY),
     "time": Variable(_TIME, "s", "time", "t", role=Role.GEOMETRY),
     "frame": Variable(("frame",), "s", "time of a picture of film and petals", "t", role=Role.GEOMETRY),
@@ -138,6 +140,13 @@ FIELDS: dict[str, Variable] = {
     "bushing_contact_pressure": Variable(_PETAL, "Pa", "contact pressure between petal and bushing", "lambda_B"),
     "petal_contact_pressure": Variable(
         _PETAL, "Pa", "contact pressure between petal l and petal l+1, at the angle of petal l", "lambda_P"
+    ),
+    "contact_petal": Variable(_CONTACT, "1", "petal that touches there", "l_c"),
+    "contact_facing": Variable(_CONTACT, "1", "what it touches: 0 the journal, 1 the bushing, 2 petal l+1", "f_c"),
+    "contact_angle": Variable(_CONTACT, "rad", "angle of the contact from the petal's root", "phi_c"),
+    "contact_force": Variable(_CONTACT, "N", "normal force of the contact over the whole length", "Lambda_c"),
+    "contact_bending_stress": Variable(
+        _CONTACT, "Pa", "bending stress at the contact, of the two petals the larger one", "sigma_c"
     ),
     "stiffness": Variable(("whirl_frequency", "row", "column"), "N m-1", "stiffness of the bearing", "K"),
     "damping": Variable(("whirl_frequency", "row", "column"), "N s m-1", "damping of the bearing", "C"),
@@ -313,7 +322,10 @@ SCALARS: dict[str, Variable] = {
     "converged": _run("", "the state satisfies the equations to tolerance", "converged", DataType.BOOL),
     "status": _run("", "how the run ended", "status", DataType.STR),
     "solution_path": _run("", "how the equilibrium was reached", "solution_path", DataType.STR),
-    "contact_slopes": _run("", "contacts of stiffness and damping", "contact_slopes", DataType.STR),
+    "nodal_force_difference": _run(
+        "1", "difference of the force from that with contacts at nodes, over that force", "dF_n"
+    ),
+    "contact_model": _run("", "where contacts are", "contact_model", DataType.STR),
     "known_equilibria": _run("1", "equilibria known at this position", "N_eq", DataType.INT),
     "jump": _run("", "this point left the branch of the point before", "jump", DataType.BOOL),
     "journal_radius": _geometry("m", "radius of the journal", "R_j"),

@@ -7,6 +7,7 @@
 `film_rows.py`           the film's equations
 `coupled.py`             film and wall together, at one speed and journal position
 `foil_pack.py`           the wall alone under a given pressure: a convex programme
+`point_layout.py`        what stays the same of these: petals of Hermite elements
 `point_equations.py`     film and petals with contact points as unknowns
 `asperity_equations.py`  film and petals with contact pressures over asperities
 `loaded.py`              the journal's position unknown, a load given

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from petalfoil.physics.asperity_contact import FULL_PRESSURE, ContactResponse, ContactSamples
 from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.film_rows import FilmState
 from petalfoil.system.point_equations import PointEquations
 
 Array = NDArray[np.float64]
@@ -62,6 +63,21 @@ class AsperityEquations:
         """All unknowns."""
         return self.smooth.n
 
+    @property
+    def film(self) -> FilmState:
+        """The film's rows."""
+        return self.smooth.film
+
+    @property
+    def deflection(self) -> Array:
+        """Unknowns of the petals, (n_wall,) [1]."""
+        return self.smooth.state.w
+
+    @property
+    def pressures(self) -> Array:
+        """Pressure unknowns, (n_film,) [1]."""
+        return self.smooth.state.P
+
     @cached_property
     def gaps(self) -> Array:
         """Gaps at the samples, (E, S) [1]."""
@@ -94,6 +110,14 @@ class AsperityEquations:
         by_w = self.smooth.whole.curves.by_w
         wall, film, *_ = self.smooth.residual
         return wall - by_w.T @ self.samples.nodal(self.samples.weight * self.pressure), film
+
+    @property
+    def wall_forces(self) -> tuple[Array, Array, Array]:
+        """Generalised forces on the petals: elastic, by pressure and contacts, and magnitudes of these, (n_wall,)."""
+        elastic, loads, size = self.smooth.wall_forces
+        reaction = self.samples.nodal(self.samples.weight * self.pressure)
+        by_w = self.smooth.whole.curves.by_w
+        return elastic, loads + by_w.T @ reaction, size + abs(by_w.T) @ np.abs(reaction)
 
     @cached_property
     def scaled(self) -> Array:

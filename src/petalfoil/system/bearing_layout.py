@@ -15,9 +15,11 @@ from petalfoil.physics.mass_balance import FilmBalance
 from petalfoil.solvers.problem import Border
 from petalfoil.sparsity import SparseRows, add_up
 from petalfoil.system.film_rows import FilmRows
+from petalfoil.system.point_layout import PointLayout
 from petalfoil.system.scales import Scales
 from petalfoil.system.temperatures import Temperatures
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE, BlockEntries, BlockPattern, ExtraField, Unknowns
+from petalfoil.walls import wall_kind
 from petalfoil.walls.base import Wall
 from petalfoil.walls.tilting import tilt_columns
 
@@ -97,6 +99,14 @@ class BearingLayout:
         if self.case.heat is None:
             raise ValueError("this case has no [heat]")
         return self.case.heat.of_gas(self.case.gas)
+
+    @cached_property
+    def elements(self) -> PointLayout | None:
+        """The same bearing with contacts between nodes; None where it is not asked for so, or its shaft tilts."""
+        plain = not self.fields and self.n_position == len(self.case.operation.eccentricity)
+        points = plain and self.case.has_contact_points
+        pack = wall_kind(self.case).elements(self.case, self.wall) if points else None
+        return None if pack is None else PointLayout(pack, self)
 
     @cached_property
     def film_rows(self) -> FilmRows:

@@ -21,7 +21,7 @@ from petalfoil.physics.dry_friction import Friction
 from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.solvers.problem import ContactProblem, Linearized
 from petalfoil.system.bearing_layout import BearingLayout
-from petalfoil.system.point_equations import PointLayout
+from petalfoil.system.point_layout import PointLayout
 from petalfoil.walls.pack_slip import slip_compliance, slip_rows
 
 Array = NDArray[np.float64]

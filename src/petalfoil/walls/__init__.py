@@ -17,12 +17,13 @@
 ===================  ============================================================================
 """
 
-from petalfoil.walls.base import Wall, WallState
+from petalfoil.walls.base import PlacedContacts, Wall, WallState
 from petalfoil.walls.kind import Capability, WallKind
 from petalfoil.walls.registry import build_wall, register, required, unregister, wall_kind, wall_kinds
 
 __all__ = [
     "Capability",
+    "PlacedContacts",
     "Wall",
     "WallKind",
     "WallState",

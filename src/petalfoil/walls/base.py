@@ -100,6 +100,31 @@ class Wall:
 
 
 @dataclass(frozen=True)
+class PlacedContacts:
+    """Contacts between nodes, at their places.
+
+    Attributes
+    ----------
+    petal : (k,) int array
+        Petal that touches.
+    facing : (k,) int array
+        What it touches: 0 the journal, 1 the bushing, 2 the petal behind it, on which it lies.
+    angle : (k,) array
+        Angle from its root [rad].
+    force : (k,) array
+        Normal force [N].
+    curvature : (k, 2) array
+        Change of curvature of this petal there, and of the one on which it lies; nan where there is none [1/m].
+    """
+
+    petal: NDArray[np.intp]
+    facing: NDArray[np.intp]
+    angle: Array
+    force: Array
+    curvature: Array
+
+
+@dataclass(frozen=True)
 class WallState:
     """What film and contacts do to a wall.
 
@@ -109,10 +134,13 @@ class WallState:
         Deflections, positive toward the bushing [m].
     contact_pressure : (m,) array
         Contact pressure on each gap [Pa].
+    placed : PlacedContacts or None
+        The contacts at their places; None where they are at nodes.
     """
 
     deflection: Array
     contact_pressure: Array
+    placed: PlacedContacts | None = None
 
 
 def axial_grid(case: Case) -> AxialGrid:

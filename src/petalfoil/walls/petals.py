@@ -20,7 +20,7 @@ from petalfoil.physics.forces import node_area
 from petalfoil.physics.petal_sliding import Faces
 from petalfoil.physics.shell import PetalShell, bending_stress
 from petalfoil.walls.backing import covered, on_springs
-from petalfoil.walls.base import Wall, WallState, axial_grid
+from petalfoil.walls.base import PlacedContacts, Wall, WallState, axial_grid
 from petalfoil.walls.bump_foil import foundation_stiffness
 from petalfoil.walls.elasticity import Elasticity
 from petalfoil.walls.element_pack import ElementPack, element_pack
@@ -164,7 +164,7 @@ class PetalWall(WallKind):
         if not wall.film.axial.is_2d or case.backing is not None:
             return None
         mesh = build_mesh(case)
-        return element_pack(build_shells(case, mesh), mesh, wall, petal_faces(case))
+        return element_pack(build_shells(case, mesh), mesh, wall, case.model.petal_cells, petal_faces(case))
 
     def loses_energy(self, case: Case) -> bool:
         """By the loss factor of its backing springs."""
@@ -183,13 +183,33 @@ class PetalWall(WallKind):
         on_neighbour[:, mesh.on_neighbour] = pressure[rows.petals].reshape(mesh.count, -1, mesh.n_z)
         parts = zip(build_shells(case, mesh), W, petals.each, strict=True)
         stress = np.stack([bending_stress(shell, w, one.youngs_modulus, one.thickness) for shell, w, one in parts])
+        placed = {} if state.placed is None else self._placed(case, state.placed)
         return {
+            **placed,
             "journal_contact_pressure": whole(pressure[rows.journal].reshape(mesh.count, -1, mesh.n_z)),
             "deflection": whole(W),
             **self.cross_section(case, state.deflection),
             "bushing_contact_pressure": whole(on_bushing),
             "petal_contact_pressure": whole(on_neighbour),
             "bending_stress": whole(stress),
+        }
+
+    def _placed(self, case: Case, contacts: PlacedContacts) -> Fields:
+        """Contacts between nodes; their bending stress is the larger one of the two petals."""
+        petals, _ = petals_of(case)
+        both = np.stack([contacts.petal, (contacts.petal + 1) % petals.count], axis=1)
+        E, nu, delta = (
+            np.array([getattr(one, name) for one in petals.each])[both]
+            for name in ("youngs_modulus", "poisson_ratio", "thickness")
+        )
+        stress = E / (1.0 - nu**2) * 0.5 * delta * contacts.curvature
+        larger = np.nanargmax(np.abs(stress), axis=1) if len(stress) else np.zeros(0, dtype=np.intp)
+        return {
+            "contact_petal": contacts.petal.astype(np.float64),
+            "contact_facing": contacts.facing.astype(np.float64),
+            "contact_angle": contacts.angle,
+            "contact_force": contacts.force,
+            "contact_bending_stress": np.take_along_axis(stress, larger[:, None], axis=1)[:, 0],
         }
 
     def coordinates(self, case: Case, wall: Wall) -> Fields:
@@ -210,8 +230,10 @@ class PetalWall(WallKind):
         return section
 
     def scalars(self, fields: Fields) -> Scalars:
-        """Maximum bending stress, and how far backing springs are pressed in."""
-        found: Scalars = {"max_bending_stress": float(np.max(np.abs(fields["bending_stress"])))}
+        """Maximum bending stress, that at contacts between nodes among it; how far backing springs are pressed in."""
+        at_contacts = np.max(np.abs(fields.get("contact_bending_stress", np.zeros(0))), initial=0.0)
+        stress = max(float(np.max(np.abs(fields["bending_stress"]))), float(at_contacts))
+        found: Scalars = {"max_bending_stress": stress}
         if "backing_deflection" in fields:
             found["max_backing_deflection"] = float(np.max(fields["backing_deflection"]))
         return found

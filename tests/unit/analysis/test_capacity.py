@@ -51,12 +51,13 @@ def test_the_first_limit_counts() -> None:
     assert float(film["load_capacity"]) > 21.0
 
 
-@pytest.mark.parametrize("bearing", [PLAIN, BUMPS, PETALS], ids=["plain", "bumps", "petals"])
-def test_warm_speeds_take_six_factorisations_at_most(bearing: Case) -> None:
+@pytest.mark.parametrize(("bearing", "most"), [(PLAIN, 6), (BUMPS, 6), (PETALS, 16)], ids=["plain", "bumps", "petals"])
+def test_warm_speeds_take_few_factorisations(bearing: Case, most: int) -> None:
+    """Six; of petals up to three more for the contact points of each balance."""
     speed = bearing.operation.speed
     found = petalfoil.capacity(bearing, min_film_thickness=4e-6, speeds=list(speed * np.linspace(0.9, 1.0, 5)))
     assert np.all(np.diff(found["load_capacity"]) > 0.0)
-    assert int(found["factorizations"][1:].max()) <= 6
+    assert int(found["factorizations"][1:].max()) <= most
     assert plot.capacity(found).axes
     assert set(str(name) for name in found["limited_by"].to_numpy()) == {"min_film_thickness"}
 

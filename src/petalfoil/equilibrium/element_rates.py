@@ -1,0 +1,145 @@
+"""How an equilibrium of petals with continuous slopes follows a parameter of its case (V9).
+
+Its equations `F(X, e, p) = 0`, reactions and places of contact points among the unknowns `X`, and the force on the
+journal `f(X, e, p)` are smooth as long as no contact begins or ends. With the tangent of Newton's method (C10),
+
+    J X' + F_e e' = -F_p ,     R X' + R_e e' = -f_p - load_p    under a load                           (V9)
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.equilibrium.element_tangent import ElementTangent
+from petalfoil.equilibrium.parameter_response import Equations
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.small_motion import AT_POINTS, ElementEquilibrium
+from petalfoil.equilibrium.solution import Solution
+
+Array = NDArray[np.float64]
+
+SMALL = 1e-4
+"""Largest change of an unknown over which the closing of gaps is measured: they are nearly linear in all of them."""
+
+
+@dataclass(frozen=True)
+class ElementValues:
+    """Left-hand sides at one value of a parameter, or their derivatives by it, the unknowns held.
+
+    Attributes
+    ----------
+    residual : (n,) array
+        Rows of the equations.
+    force : (d,) array
+        Force on the journal, load included.
+    displacement : (d,) array
+        Displacement of the journal where it is given.
+    gaps : (sample,) array
+        Gaps along all curves, see `ElementEquilibrium.gaps`.
+    """
+
+    residual: Array
+    force: Array
+    displacement: Array
+    gaps: Array
+
+    @classmethod
+    def at(cls, found: ElementEquilibrium, there: Equations) -> ElementValues | None:
+        """Those of the equations `there`; None where their petals have other elements."""
+        moved = under(found, there)
+        if moved is None:
+            return None
+        equations = moved.equations
+        load = np.zeros_like(equations.force) if there.load is None else there.load
+        return cls(equations.newton_residual, equations.force + load, equations.problem.displacement, moved.gaps[0])
+
+    @classmethod
+    def combined(cls, values: Sequence[ElementValues], weights: Sequence[float]) -> ElementValues:
+        """Weighted sum of several, such as a difference quotient."""
+        parts = zip(*((v.residual, v.force, v.displacement, v.gaps) for v in values), strict=True)
+        return cls(*(sum((w * a for w, a in zip(weights, part, strict=True)), 0.0 * part[0]) for part in parts))
+
+
+def under(found: ElementEquilibrium, there: Equations) -> ElementEquilibrium | None:
+    """The state of `found` under other equations, under a load at its own position; None on other elements."""
+    problem = there.problem
+    if there.load is not None:
+        problem = problem.at(displacement=found.equations.problem.displacement)
+    whole = problem.layout.elements
+    same = whole is not None and np.array_equal(whole.curves.elements, found.pack.curves.elements)
+    return found.under(whole, problem) if whole is not None and same else None
+
+
+@dataclass(frozen=True)
+class ElementRate:
+    """Derivative of an equilibrium by a parameter.
+
+    Attributes
+    ----------
+    change : (n,) array
+        Of the unknowns.
+    displacement : (d,) array
+        Of the journal's displacement.
+    reach : (float, float)
+        How far the parameter can decrease and increase until a contact begins or ends; infinite for never.
+    """
+
+    change: Array
+    displacement: Array
+    reach: tuple[float, float]
+
+    def moved(self, solution: Solution, change: float, there: Equations) -> ElementEquilibrium | None:
+        """The equilibrium after a `change` of the parameter, under the equations `there`; None on other elements."""
+        if solution.elements is None:
+            raise ValueError("the solution has no petals with continuous slopes")
+        moved = under(solution.elements, there)
+        if moved is None:
+            return None
+        before = moved.equations.problem.displacement if there.load is not None else solution.position
+        problem = moved.equations.problem.at(displacement=before + change * self.displacement)
+        return moved.moved(problem, change * self.change)
+
+
+def element_rate(found: ElementEquilibrium, rates: ElementValues, *, under_load: bool) -> ElementRate:
+    """The derivative (V9) from the rates of the equations at a fixed state; one factorisation.
+
+    Raises
+    ------
+    NoPointsError
+        The contacts do not determine the state.
+    """
+    equations = found.equations
+    tangent = ElementTangent.at(equations, -equations.force if under_load else None, current_run().probe_solver)
+    change, move = tangent.correction(rates.residual, rates.force)
+    displacement = move if under_load else rates.displacement
+    rate = ElementRate(change, displacement, (0.0, 0.0))
+    return replace(rate, reach=(reach(found, rates, rate, -1.0), reach(found, rates, rate, 1.0)))
+
+
+def reach(found: ElementEquilibrium, rates: ElementValues, rate: ElementRate, sign: float) -> float:
+    """Change of the parameter at which, as it moves by `sign`, a reaction vanishes or a gap closes; infinite for never.
+
+    Contact pressures over asperities do neither.
+    """
+    if found.contact_model != AT_POINTS:
+        return math.inf
+    equations, points = found.equations, found.points
+    first = len(equations.deflection) + len(equations.pressures)
+    ends = falling(points.reaction, sign * rate.change[first : first + len(points.reaction)])
+    part = SMALL / max(float(np.max(np.abs(rate.change), initial=0.0)), SMALL)
+    problem = equations.problem
+    ahead = found.moved(problem.at(displacement=problem.displacement + part * rate.displacement), part * rate.change)
+    (gaps, beside), (moved, _) = found.gaps, ahead.gaps
+    closing = rates.gaps + (moved - gaps) / part
+    return min(ends, falling(gaps[~beside], sign * closing[~beside]))
+
+
+def falling(value: Array, change: Array) -> float:
+    """Least amount of `change` at which one of the values (k,) vanishes; infinite where none falls."""
+    down = change < 0.0
+    return float(np.min(np.maximum(value[down], 0.0) / -change[down], initial=math.inf))

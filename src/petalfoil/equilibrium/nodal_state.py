@@ -1,0 +1,149 @@
+"""Film, deflections and reactions of an equilibrium at the nodes of its grid, wherever its contacts are.
+
+Contacts at nodes are there already. A contact point between two nodes is shared by them in proportion, which keeps its
+force and its place. Deflections of Hermite elements are sampled at the nodes, with what point loads bend within their
+own element (S7).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.equilibrium.small_motion import ElementEquilibrium
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.mesh import hermite
+from petalfoil.physics.gap_curves import Facing
+from petalfoil.physics.petal_elements import clamped_beam, clamped_beam_bend
+from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.film_rows import FilmState
+from petalfoil.walls import PlacedContacts
+from petalfoil.walls.element_pack import Loads
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class NodalState:
+    """An equilibrium as results read it.
+
+    Attributes
+    ----------
+    problem : CoupledProblem
+        Speed, position and temperatures.
+    film : FilmState
+        Pressures and film thicknesses at all film nodes [1].
+    deflection : (n_wall,) array
+        Deflections [1].
+    lam : (m,) array
+        Reactions at the gaps, over the unit of nodal force [1].
+    film_force, contact_force : (n_position,) array
+        Forces on the journal over the unit of force [1].
+    placed : PlacedContacts or None
+        Contacts at their places, SI; None where they are at nodes.
+    """
+
+    problem: CoupledProblem
+    film: FilmState
+    deflection: Array
+    lam: Array
+    film_force: Array
+    contact_force: Array
+    placed: PlacedContacts | None = None
+
+    @classmethod
+    def of(cls, solution: Solution) -> NodalState:
+        """The state that results are taken from: that with continuous slopes, where the solution has it."""
+        return cls.at_nodes(solution) if solution.elements is None else cls.of_elements(solution.elements)
+
+    @classmethod
+    def at_nodes(cls, solution: Solution) -> NodalState:
+        """The state of an equilibrium with contacts at nodes; deflections to the last digit of each."""
+        problem, x = solution.problem, solution.x
+        film = problem.layout.film_rows.at(problem.pressure(x), problem.film(x), problem.film_number)
+        deflection = solution.deflection + solution.state.low_order
+        return cls(problem, film, deflection, solution.lam, problem.film_force(x), problem.contact_force(solution.lam))
+
+    @classmethod
+    def of_elements(cls, found: ElementEquilibrium) -> NodalState:
+        """The state of petals with continuous slopes."""
+        equations = found.equations
+        problem = equations.problem
+        by_film = problem.layout.border.row_derivative @ (equations.pressures - 1.0)
+        deflection, lam = sampled_deflection(found), shared_reactions(found)
+        by_contact = equations.force - by_film
+        return cls(problem, equations.film, deflection, lam, by_film, by_contact, placed_contacts(found))
+
+
+def shared_reactions(found: ElementEquilibrium) -> Array:
+    """Reactions of contact points, each shared by the two nodes beside it, (m,) [1]."""
+    points, pack, contacts = found.points, found.pack, found.equations.problem.layout.wall.contacts
+    lam = np.zeros(len(contacts.rest))
+    kinds, lines = np.divmod(points.every_curve, pack.mesh.count)
+    for kind, nodes in enumerate(pack.nodes.values()):
+        mine = kinds == kind
+        gap_line, phi = contacts.lines[kind], pack.elements.phi[nodes]
+        angle = np.interp(points.every_position[mine], np.arange(len(phi), dtype=np.float64), phi)
+        cell, share = hermite.located(angle, gap_line.phi)
+        numbers, reaction = gap_line.number[lines[mine]], points.reaction[mine]
+        row = np.arange(len(cell))
+        np.add.at(lam, numbers[row, cell], (1.0 - share) * reaction)
+        np.add.at(lam, numbers[row, cell + 1], share * reaction)
+    return lam
+
+
+def sampled_deflection(found: ElementEquilibrium) -> Array:
+    """Deflections at the nodes of the pack, (n_wall,) [1], bending by the loads within each element (S7) included."""
+    pack, equations = found.pack, found.equations
+    layout, count = equations.problem.layout, pack.mesh.count
+    element, t = hermite.located(pack.mesh.phi[1:], pack.elements.phi)
+    smooth = (hermite.rows(element, t, pack.elements.element_angle) @ nodal_deflection(found).T).T
+    pressed = (layout.push @ (equations.pressures - 1.0)).reshape(count, -1)
+    bent = pressed @ np.where(element[:, None] == element, clamped_beam(t[:, None], t[None, :]), 0.0)
+    for loads in pack.contact_places(found.points):
+        same = loads.element[:, None] == element
+        bend = np.where(same, clamped_beam(t[None, :], loads.place[:, None]), 0.0)
+        np.add.at(bent, loads.petal, loads.force[:, None] * bend)
+    C = np.stack([petal.point_compliance[element] for petal in pack.petals])
+    return np.asarray((smooth + C * (layout.scales.force / layout.scales.length) * bent).ravel())
+
+
+def nodal_deflection(found: ElementEquilibrium) -> Array:
+    """(value, slope) at the nodes of all petals, (petal, 2 n_node) [1]."""
+    return np.asarray((found.pack.nodal @ found.equations.deflection).reshape(found.pack.mesh.count, -1))
+
+
+def placed_contacts(found: ElementEquilibrium) -> PlacedContacts:
+    """Contact points at their places, with the curvature of the petals there, SI."""
+    pack, points, scales = found.pack, found.points, found.equations.problem.layout.scales
+    facing, petal = np.divmod(points.every_curve, pack.mesh.count)
+    curvature = np.full((len(petal), 2), np.nan)
+    own, below = pack.contact_places(points)
+    angle = pack.elements.phi[own.element] + own.place * pack.elements.element_angle[own.element]
+    lies = facing == list(pack.nodes).index(Facing.PETAL)
+    curvature[:, 0], curvature[lies, 1] = curvatures(found, own), curvatures(found, below)
+    return PlacedContacts(petal, facing, angle, points.reaction * scales.force, curvature)
+
+
+def curvatures(found: ElementEquilibrium, at: Loads) -> Array:
+    """Change of curvature of petals (S6) at places within elements, (k,) [1/m], by all loads within an element."""
+    pack, equations = found.pack, found.equations
+    layout, angle = equations.problem.layout, pack.elements.element_angle[at.element]
+    nodal = nodal_deflection(found)[at.petal[:, None], 2 * at.element[:, None] + np.arange(4)]
+    nodal[:, 1::2] *= angle[:, None]
+    value, second = (np.einsum("ki,ki->k", hermite.basis(at.place, k), nodal) for k in (0, 2))
+    element, t = hermite.located(pack.mesh.phi[1:], pack.elements.phi)
+    pressed = (layout.push @ (equations.pressures - 1.0)).reshape(pack.mesh.count, -1)[at.petal]
+    bend = np.where(at.element[:, None] == element, clamped_beam_bend(at.place[:, None], t[None, :]), 0.0)
+    bent = (pressed * bend).sum(axis=1)
+    for loads in pack.contact_places(found.points):
+        same = (loads.petal == at.petal[:, None]) & (loads.element == at.element[:, None])
+        bent += np.where(same, clamped_beam_bend(at.place[:, None], loads.place[None, :]), 0.0) @ loads.force
+    C = np.stack([petal.point_compliance for petal in pack.petals])[at.petal, at.element] * layout.scales.force
+    r_m, R_p = (
+        np.array([getattr(petal, name) for petal in pack.petals])[at.petal] for name in ("metric_radius", "bend_radius")
+    )
+    length = layout.scales.length
+    return np.asarray((length * second + C * bent) / (r_m * angle) ** 2 + length * value / R_p**2)

@@ -1,0 +1,91 @@
+"""What stays the same of the equations with contact points: petals of Hermite elements under the film of the nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from petalfoil.physics.gap_curves import GapCurves
+from petalfoil.walls.element_pack import ElementPack
+
+if TYPE_CHECKING:
+    from petalfoil.system.bearing_layout import BearingLayout
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class PointLayout:
+    """What stays the same while speed, position and contacts change, over the units of the problem.
+
+    Attributes
+    ----------
+    pack : ElementPack
+        The petals.
+    layout : BearingLayout
+        Film, units and forces, those of the nodal pack.
+    """
+
+    pack: ElementPack
+    layout: BearingLayout
+
+    @property
+    def n_wall(self) -> int:
+        """Unknowns of the petals."""
+        return self.pack.n_unknown
+
+    @property
+    def n_film(self) -> int:
+        """Pressures."""
+        return self.layout.wall.film.n_unknown
+
+    @cached_property
+    def stiffness(self) -> sp.csr_array:
+        """`K` [1]."""
+        return sp.csr_array(self.pack.stiffness * (self.layout.scales.length / self.layout.scales.force))
+
+    @cached_property
+    def stiffness_size(self) -> sp.csr_array:
+        """Magnitudes of the entries of `K` [1]."""
+        return sp.csr_array(abs(self.stiffness))
+
+    @cached_property
+    def curves(self) -> GapCurves:
+        """The gap curves [1]."""
+        scales, curves = self.layout.scales, self.pack.curves
+        return replace(
+            curves,
+            rest=curves.rest / scales.length,
+            compliance=curves.compliance * (scales.force / scales.length),
+        )
+
+    @property
+    def journal_entries(self) -> int:
+        """Nodal (value, slope) of the gaps toward the journal, which come first."""
+        return 2 * int(self.curves.first[self.pack.mesh.count])
+
+    @cached_property
+    def film_by_w(self) -> sp.csr_array:
+        """Derivative of the film thickness by the petals' unknowns, (film nodes, n_wall)."""
+        return sp.csr_array(self.pack.film_rows @ self.curves.by_w)
+
+    @cached_property
+    def film_by_e(self) -> Array:
+        """Derivative of the film thickness by the journal's displacement, (film nodes, d)."""
+        return np.asarray(self.pack.film_rows @ self.curves.by_e)
+
+    @cached_property
+    def push(self) -> sp.csr_array:
+        """`A`: generalised forces on the petals from the pressure unknowns, (n_wall, n_film)."""
+        wall, scales = self.layout.wall, self.layout.scales
+        unknown = wall.film.unknown.ravel()
+        nodes = np.flatnonzero(unknown >= 0)
+        area = wall.load_area.ravel()[nodes] * scales.pressure / scales.force
+        shape = (len(unknown), self.n_film)
+        nodal = sp.coo_array((area, (nodes, unknown[nodes])), shape=shape).tocsr()
+        return sp.csr_array(self.film_by_w.T @ nodal)
