@@ -12,7 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from petalfoil.analysis.derivatives import DerivativesOf, Results, equilibrium_results, results_with_growth
-from petalfoil.analysis.liftoff_derivatives import refined, speed_derivatives
+from petalfoil.analysis.liftoff_derivatives import fraction_of, refined, speed_derivatives
 from petalfoil.analysis.operating_point import at_position, under_load
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
@@ -250,12 +250,12 @@ def test_the_lift_off_speed_is_inverse_to_the_viscosity_and_follows_its_thicknes
     assert_allclose(found.above["liftoff_speed"], (speeds[1] - speeds[0]) / (2.0 * change), rtol=1e-5)
 
 
-def again(balance: DerivativesOf, values: dict[str, float], near: float) -> float:
+def again(balance: DerivativesOf, values: dict[str, float], near: float, limit: float = 0.01) -> float:
     """Lift-off speed of another bearing, found from that of the first."""
     there = with_values(balance.case, values)
     line = SpeedLine(there, there.operation.load)
     line.known = balance.solution
-    return refined("liftoff_speed", line, near, 0.01).values["liftoff_speed"]
+    return refined("liftoff_speed", line, near, limit).values["liftoff_speed"]
 
 
 # ---------------------------------------------------------------------------------------------- refusals
@@ -281,3 +281,30 @@ def test_a_parameter_at_the_end_of_its_range_is_differentiated_inside() -> None:
     by_coating = derivatives.by("petals.coating")
     assert derivatives.variation("petals.coating").stencil[0][0] == 0
     assert math.isfinite(by_coating.above["bearing_force"])
+
+
+@pytest.mark.slow
+def test_at_a_contact_that_opens_at_the_lift_off_speed_both_sides_are_told() -> None:
+    """The limit of the contact fraction is put where a contact ends; speeds found again on either side agree."""
+    of = loaded(case("rig", **{"model.cells_per_pitch": 12}), 46.4)
+    line, speed = SpeedLine(of, (0.0, -46.4)), 5000.0 * math.pi / 30.0
+    for _ in range(6):  # onto the kink: how far the next contact is follows from the rates
+        there = with_values(of, {"operation.speed": speed})
+        balance = DerivativesOf(there, line.at(speed), fraction_of)
+        by_speed = balance.by("operation.speed")
+        if by_speed.at_kink:
+            break
+        speed += by_speed.reach[1]
+    assert by_speed.at_kink
+    limit = balance.values["contact_fraction"]
+    lift_off = refined("liftoff_speed", line, speed, limit)
+    found = lift_off.by("petals.thickness")
+    assert found.at_kink
+    change = 2e-9
+    for side, sign in ((found.below, -1.0), (found.above, 1.0)):
+        ends = [
+            again(lift_off.balance, {"petals.thickness": of.petals.thickness + sign * part * change}, speed, limit)
+            for part in (1.0, 2.0)
+        ]
+        assert_allclose(side["liftoff_speed"], sign * (ends[1] - ends[0]) / change, rtol=2e-3)
+    assert abs(found.below["liftoff_speed"] / found.above["liftoff_speed"] - 1.0) > 1e-3

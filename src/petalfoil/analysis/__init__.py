@@ -42,8 +42,9 @@ What they share:
 `variation.py`         a case at values of one of its parameters
 `derivatives.py`       exact derivatives of the results of an equilibrium
 `heated_derivatives.py` the same where temperatures follow
-`liftoff_derivatives.py`  the same of lift-off and touchdown speed
-`capacity_derivatives.py`  the same of the load capacity
+`crossing_derivatives.py`  the same of a quantity that keeps a result at its limit
+`liftoff_derivatives.py`  lift-off and touchdown speed as such quantities
+`capacity_derivatives.py`  the load capacity as one
 `derivative_sources.py` where the results of each question have them
 `sensitivity_table.py` the rows of `sensitivity`
 `impedance.py`         small motions of the journal

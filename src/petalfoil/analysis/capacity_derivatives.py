@@ -10,72 +10,23 @@ with both derivatives at the balance under that load.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 
 from petalfoil.analysis.capacity import FIRST
-from petalfoil.analysis.derivatives import Derivative, Results, equilibrium_results
+from petalfoil.analysis.crossing_derivatives import AlongWith, CrossingDerivatives
+from petalfoil.analysis.derivatives import Derivative, equilibrium_results
 from petalfoil.analysis.heated_derivatives import Derivatives, derivatives_of
 from petalfoil.analysis.load_limit import Limits, LoadRay, largest_load
-from petalfoil.analysis.variation import Variation
 from petalfoil.case import Case
 from petalfoil.errors import ConvergenceError
 
 NAME = "load_capacity"
 
 
-@dataclass(frozen=True, eq=False)
-class CapacityDerivatives:
-    """Derivatives of the load capacity.
-
-    Attributes
-    ----------
-    size : float
-        The load capacity [N].
-    balance : DerivativesOf or HeatedDerivatives
-        Derivatives at the balance under it.
-    limited : str
-        The result that is at its limit.
-    by_load : Derivative
-        Derivatives of the results along the load, toward less and toward more of it.
-    """
-
-    size: float
-    balance: Derivatives
-    limited: str
-    by_load: Derivative
-
-    @property
-    def values(self) -> Results:
-        """The load capacity [N]."""
-        return {NAME: self.size}
-
-    @property
-    def residual(self) -> float:
-        """Residual of the balance."""
-        return self.balance.residual
-
-    def variation(self, path: str) -> Variation:
-        """The case at values of the parameter `path`; see `DerivativesOf.variation`."""
-        return self.balance.variation(path)
-
-    def along(self, variation: Variation) -> Derivative:
-        """Derivative of the load capacity along a variation of the case.
-
-        Raises
-        ------
-        ConvergenceError
-            There is none.
-        """
-        found = self.balance.along(variation)
-        if found.at_kink:
-            raise at_kink(variation.parameter.path)
-        rate = {NAME: -found.above[self.limited] / self.by_load.above[self.limited]}
-        return replace(found, below=rate, above=rate)
-
-
 def capacity_derivatives(
     case: Case, limits: Limits, direction: tuple[float, float], *, as_points: bool = False
-) -> list[CapacityDerivatives]:
+) -> list[CrossingDerivatives]:
     """Derivatives of the load capacity in a direction (unit vector) within limits; `as_points` as in `DerivativesOf`.
 
     Raises
@@ -94,22 +45,16 @@ def capacity_derivatives(
     load = (size * direction[0], size * direction[1])
     loaded = case.replace(**{"operation.load": load, "operation.eccentricity": (0.0, 0.0)})
     balance = derivatives_of(loaded, found.at.found.answer, equilibrium_results, as_points=as_points)
-    by_load = along_direction(balance, direction, found.at.limit)
-    return [CapacityDerivatives(size, balance, found.at.limit, by_load)]
+    paths = {f"operation.load.{axis}": part for axis, part in zip("xy", direction, strict=True)}
+    by_load = along_load(balance, paths)
+    return [CrossingDerivatives(NAME, size, balance, found.at.limit, paths, by_load)]
 
 
-def along_direction(balance: Derivatives, direction: tuple[float, float], limited: str) -> Derivative:
-    """Derivative of the limited result by the size of a load in a direction."""
-    parts = [(part, balance.by(f"operation.load.{axis}")) for axis, part in zip("xy", direction, strict=True) if part]
-    if any(found.at_kink for _, found in parts):
-        raise at_kink("the load")
-    slope = {limited: sum(part * found.above[limited] for part, found in parts)}
-    return replace(parts[0][1], below=slope, above=slope)
-
-
-def at_kink(path: str) -> ConvergenceError:
-    """The error of a limit that is reached where a contact opens or closes."""
-    return ConvergenceError(
-        f"no derivative of the load capacity by {path}: a contact opens or closes at this very load",
-        advice="change the limit by a millionth",
-    )
+def along_load(balance: Derivatives, paths: Mapping[str, float]) -> Derivative:
+    """Derivatives by the size of a load whose direction stays: `paths` are its components over the size."""
+    path = max(paths, key=lambda one: abs(paths[one]))
+    part = paths[path]
+    others = {other: share / part for other, share in paths.items() if other != path and share}
+    found = balance.along(AlongWith.of(balance.variation(path), others))
+    below, above = ({name: part * value for name, value in side.items()} for side in (found.below, found.above))
+    return replace(found, below=below, above=above) if part > 0.0 else replace(found, below=above, above=below)

@@ -11,15 +11,15 @@ bracket of 0.1 %.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from petalfoil.analysis.crossing_derivatives import CrossingDerivatives
 from petalfoil.analysis.crossings import PRECISION, crossings
-from petalfoil.analysis.derivatives import Derivative, Results
+from petalfoil.analysis.derivatives import Results
 from petalfoil.analysis.evaluation import Evaluation
-from petalfoil.analysis.heated_derivatives import Derivatives, derivatives_of
+from petalfoil.analysis.heated_derivatives import derivatives_of
 from petalfoil.analysis.operating_point import at
 from petalfoil.analysis.speeds import SpeedLine
-from petalfoil.analysis.variation import Variation
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
@@ -35,58 +35,7 @@ PRECISE = 1e-8
 """Relative change of the speed at which they end; a balance determines it to some 1e-9."""
 
 
-@dataclass(frozen=True, eq=False)
-class SpeedDerivatives:
-    """Derivatives of a speed at which the contact fraction has its limit.
-
-    Attributes
-    ----------
-    name : str
-        Name of the speed in results.
-    balance : DerivativesOf or HeatedDerivatives
-        Derivatives at the balance there.
-    by_speed : float
-        Derivative of the contact fraction by the speed [s/rad].
-    """
-
-    name: str
-    balance: Derivatives
-    by_speed: float
-
-    @property
-    def values(self) -> Results:
-        """The speed [rad/s]."""
-        return {self.name: self.balance.case.operation.speed}
-
-    @property
-    def residual(self) -> float:
-        """Residual of the balance."""
-        return self.balance.residual
-
-    def variation(self, path: str) -> Variation:
-        """The case at values of the parameter `path`; see `DerivativesOf.variation`."""
-        return self.balance.variation(path)
-
-    def by(self, path: str) -> Derivative:
-        """Derivative of the speed by the parameter `path`; see `DerivativesOf.by`."""
-        return self.along(self.variation(path))
-
-    def along(self, variation: Variation) -> Derivative:
-        """Derivative of the speed along a variation of the case.
-
-        Raises
-        ------
-        ConvergenceError
-            There is none.
-        """
-        fraction = self.balance.along(variation)
-        if fraction.at_kink:
-            raise at_kink(variation.parameter.path)
-        rate = {self.name: -fraction.above[FRACTION] / self.by_speed}
-        return replace(fraction, below=rate, above=rate)
-
-
-def speed_derivatives(case: Case, load: float, limit: float, *, as_points: bool = False) -> list[SpeedDerivatives]:
+def speed_derivatives(case: Case, load: float, limit: float, *, as_points: bool = False) -> list[CrossingDerivatives]:
     """Derivatives of lift-off and touchdown speed of a load [N] along -y, as far as these speeds are finite.
 
     `as_points` as in `DerivativesOf`.
@@ -111,6 +60,7 @@ def speed_derivatives(case: Case, load: float, limit: float, *, as_points: bool 
     return found
 
 
+<<<<<<< HEAD
 def refined(name: str, line: SpeedLine, where: tuple[float, float], as_points: bool) -> SpeedDerivatives:
     """Derivatives at the crossing of a limit near a speed, `where` both, found by Newton's method.
 
@@ -128,8 +78,18 @@ def refined(name: str, line: SpeedLine, where: tuple[float, float], as_points: b
         slope = by_speed.above[FRACTION]
         change = math.nan if slope == 0.0 else (limit - balance.values[FRACTION]) / slope
         current_run().note("crossing", speed=speed, contact_fraction=balance.values[FRACTION])
+=======
+def refined(name: str, line: SpeedLine, speed: float, limit: float) -> CrossingDerivatives:
+    """Derivatives at the crossing near `speed`, found by Newton's method."""
+    for _ in range(NEWTON_STEPS):
+        balance = derivatives_of(at(line.case, speed), line.at(speed), fraction_of)
+        by_speed, fraction = balance.by(SPEED), balance.values[FRACTION]
+        slope = (by_speed.above if fraction > limit else by_speed.below)[FRACTION]
+        change = math.nan if slope == 0.0 else (limit - fraction) / slope
+        current_run().note("crossing", speed=speed, contact_fraction=fraction)
+>>>>>>> 3988061 (feat: both one-sided derivatives of lift-off speed and load capacity at a kink)
         if abs(change) <= PRECISE * speed:
-            return SpeedDerivatives(name, balance, slope)
+            return CrossingDerivatives(name, speed, balance, FRACTION, {SPEED: 1.0}, by_speed)
         if not abs(change) <= 10.0 * PRECISION * speed:
             break
         speed += change
@@ -140,25 +100,14 @@ def refined(name: str, line: SpeedLine, where: tuple[float, float], as_points: b
     )
 
 
-def of_contacts(found: SpeedDerivatives, *, as_points: bool) -> SpeedDerivatives:
+def of_contacts(found: CrossingDerivatives, *, as_points: bool) -> CrossingDerivatives:
     """The derivatives with contacts as points, or at nodes as they are."""
     if not as_points or found.balance.as_points:
         return found
     balance = derivatives_of(found.balance.case, found.balance.solution, fraction_of, as_points=True)
-    by_speed = balance.by(SPEED)
-    if by_speed.at_kink:
-        raise at_kink(SPEED)
-    return replace(found, balance=balance, by_speed=by_speed.above[FRACTION])
+    return replace(found, balance=balance, by_quantity=balance.by(SPEED))
 
 
 def fraction_of(case: Case, solution: Solution) -> Results:
     """The contact fraction of a balance."""
     return {FRACTION: Evaluation.of(case, solution).contact_fraction}
-
-
-def at_kink(path: str) -> ConvergenceError:
-    """The error of a crossing at which a contact opens or closes."""
-    return ConvergenceError(
-        f"no derivative by {path}: a contact opens or closes at this very speed",
-        advice="change the case by a millionth, or ask for another contact fraction",
-    )

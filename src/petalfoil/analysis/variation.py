@@ -166,11 +166,15 @@ class Variation(EquationFamily):
     def at_value(self, change: float) -> tuple[Case, Equations]:
         """Case and equations with the parameter changed."""
         if change not in self._built:
-            there = with_values(self.case, {self.parameter.path: self.value + change})
+            there = with_values(self.case, self.values_at(change))
             known = self.own if self.parameter.path.startswith(NO_WALL) and there.operation.moment is None else None
             equations = equations_of(there, under_load=self.own.load is not None, known=known)
             self._built[change] = (there, equations.at_temperatures(self.own.problem.temperatures))
         return self._built[change]
+
+    def values_at(self, change: float) -> dict[str, float]:
+        """Values of what varies by path, with the parameter changed."""
+        return {self.parameter.path: self.value + change}
 
     @cached_property
     def stencil(self) -> Stencil:

@@ -1,0 +1,133 @@
+"""How a quantity follows a parameter when it keeps a result at a limit: lift-off speed, load capacity.
+
+Where a contact opens or closes at that very state, the result has another derivative in every direction of the plane of
+quantity and parameter. On either side of the parameter the quantity then moves by the rate along which the result stays
+at its limit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from scipy.optimize import root_scalar
+
+from petalfoil.analysis.derivatives import Derivative, Results
+from petalfoil.analysis.heated_derivatives import Derivatives
+from petalfoil.analysis.variation import Variation
+from petalfoil.case.parameters import parameter_of
+from petalfoil.errors import ConvergenceError
+
+RATE = 1e-9
+"""Relative precision of the rate of the quantity at a kink."""
+
+SECANTS = 40
+"""Steps to it: the result's derivative is linear in it but for one bend."""
+
+
+@dataclass(frozen=True, eq=False)
+class AlongWith(Variation):
+    """A case at several values of a parameter, others changing in proportion.
+
+    Attributes
+    ----------
+    rates_of_others : mapping
+        Change of the others by path, over that of the parameter.
+    """
+
+    rates_of_others: Mapping[str, float] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, variation: Variation, others: Mapping[str, float]) -> AlongWith:
+        """A variation, and the rates of the others."""
+        v = variation
+        return cls(v.case, v.parameter, v.own, v.film, v.fineness, rates_of_others=others)
+
+    def values_at(self, change: float) -> dict[str, float]:
+        """Values of the parameter and of the others."""
+        values = super().values_at(change)
+        for path, rate in self.rates_of_others.items():
+            own = values.get(path, float(parameter_of(self.case, path).value or 0.0))
+            values[path] = own + rate * change
+        return values
+
+
+@dataclass(frozen=True, eq=False)
+class CrossingDerivatives:
+    """Derivatives of a quantity that keeps a result at its limit.
+
+    Attributes
+    ----------
+    name : str
+        Name of the quantity in results.
+    value : float
+        The quantity [SI].
+    balance : DerivativesOf or HeatedDerivatives
+        Derivatives at the equilibrium there.
+    limited : str
+        The result that is at its limit.
+    paths : mapping
+        Parameters that change with the quantity, and by how much.
+    by_quantity : Derivative
+        Derivatives by the quantity.
+    """
+
+    name: str
+    value: float
+    balance: Derivatives
+    limited: str
+    paths: Mapping[str, float]
+    by_quantity: Derivative
+
+    @property
+    def values(self) -> Results:
+        """The quantity [SI]."""
+        return {self.name: self.value}
+
+    @property
+    def residual(self) -> float:
+        """Residual of the equilibrium."""
+        return self.balance.residual
+
+    def variation(self, path: str) -> Variation:
+        """The case at values of the parameter `path`; see `DerivativesOf.variation`."""
+        return self.balance.variation(path)
+
+    def by(self, path: str) -> Derivative:
+        """Derivative of the quantity by the parameter `path`; see `DerivativesOf.by`."""
+        return self.along(self.variation(path))
+
+    def along(self, variation: Variation) -> Derivative:
+        """Derivative of the quantity along a variation of the case.
+
+        Raises
+        ------
+        ConvergenceError
+            There is none.
+        """
+        found = self.balance.along(variation)
+        if not (found.at_kink or self.by_quantity.at_kink):
+            rate = {self.name: -found.above[self.limited] / self.by_quantity.above[self.limited]}
+            return replace(found, below=rate, above=rate)
+        below, above = ({self.name: self._on_side(variation, found, side)} for side in ("below", "above"))
+        return replace(found, below=below, above=above, at_kink=True)
+
+    def _on_side(self, variation: Variation, found: Derivative, side: str) -> float:
+        """Rate of the quantity along which the result stays at its limit, on one side of the parameter."""
+        sides, q = (self.by_quantity.above, self.by_quantity.below), self.limited
+        first, other = (-getattr(found, side)[q] / by[q] for by in sides)
+
+        def change(rate: float) -> float:
+            others = {path: rate * part for path, part in self.paths.items()}
+            return float(getattr(self.balance.along(AlongWith.of(variation, others)), side)[q])
+
+        apart = 1e-3 * max(abs(first), abs(other)) or 1.0
+        second = other if abs(other - first) > apart else first + apart
+        root = root_scalar(change, method="secant", x0=first, x1=second, rtol=RATE, maxiter=SECANTS)
+        if not root.converged:
+            raise ConvergenceError(
+                f"no derivative of {self.name} by {variation.parameter.path}: several contacts open or close at this "
+                "very state",
+                advice="change the case or the limit by a millionth",
+            )
+        return float(root.root)
