@@ -13,6 +13,7 @@ import importlib
 import math
 import re
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -39,19 +40,28 @@ def markers(words: str) -> Iterator[tuple[str, tuple[float, ...]]]:
         yield hit["name"], tuple(float(number) * factor for number in NUMBER.findall(shown.group()))
 
 
+def defined(node: ast.stmt) -> Iterator[str]:
+    """Names of the constants or the class that a statement at the top of a module defines."""
+    if isinstance(node, ast.ClassDef):
+        yield node.name
+    targets = [node.target] if isinstance(node, ast.AnnAssign) else node.targets if isinstance(node, ast.Assign) else []
+    flat = [item for target in targets for item in (target.elts if isinstance(target, ast.Tuple) else [target])]
+    yield from (item.id for item in flat if isinstance(item, ast.Name))
+
+
+@cache
+def homes_of_all() -> dict[str, list[Path]]:
+    """Modules that assign a constant or define a class at their top, by its name."""
+    found: dict[str, list[Path]] = {}
+    for path in modules():
+        for name in {name for node in tree(path).body for name in defined(node)}:
+            found.setdefault(name, []).append(path)
+    return found
+
+
 def homes(name: str) -> list[Path]:
     """Modules that assign a constant or define a class of this name at their top."""
-
-    def defines(node: ast.stmt) -> bool:
-        if isinstance(node, ast.ClassDef):
-            return node.name == name
-        targets = (
-            [node.target] if isinstance(node, ast.AnnAssign) else node.targets if isinstance(node, ast.Assign) else []
-        )
-        flat = [item for target in targets for item in (target.elts if isinstance(target, ast.Tuple) else [target])]
-        return any(isinstance(item, ast.Name) and item.id == name for item in flat)
-
-    return [path for path in modules() if any(defines(node) for node in tree(path).body)]
+    return homes_of_all().get(name, [])
 
 
 def constants(name: str) -> list[Value]:

@@ -116,6 +116,9 @@ def pattern(phrase: str) -> str:
 SPOKEN = [(re.compile(pattern(old), re.IGNORECASE), new) for old, new in WORDS.items()]
 NAMED = [(re.compile(pattern(old)), new) for old, new in NAMES.items()]
 
+ANY = re.compile(r"(?<![\w/-])(?=\w)(?:" + "|".join(WORDS).replace(" ", GAP) + ")", re.IGNORECASE)
+"""Begins wherever one of the phrases does: one search in place of sixty."""
+
 
 def files(root: str) -> list[Path]:
     """Texts of a root."""
@@ -126,7 +129,8 @@ def files(root: str) -> list[Path]:
 
 def prose(path: Path) -> str:
     """What a reader reads in a file: comments and strings of a module, all of a page."""
-    return of_module(text(path)) if path.suffix == ".py" else text(path)
+    code = text(path)
+    return of_module(code) if path.suffix == ".py" and ANY.search(code) else code
 
 
 def of_module(code: str) -> str:
@@ -144,7 +148,7 @@ def of_module(code: str) -> str:
 
 def found_in(words: str, table: list[tuple[re.Pattern[str], str]] = SPOKEN) -> Iterator[str]:
     """Every phrase of a table in `words`: line, phrase, what is said in its place."""
-    for old, new in table:
+    for old, new in table if table is not SPOKEN or ANY.search(words) else ():
         for hit in old.finditer(words):
             line = words.count("\n", 0, hit.start()) + 1
             yield f"line {line}: {' '.join(hit.group().split())!r} -> {new}"

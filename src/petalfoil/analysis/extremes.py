@@ -9,6 +9,7 @@ within a cell of the node is found by Newton's method.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -145,8 +146,8 @@ def _quartic(rise: Array, lines: tuple[Line, Line]) -> tuple[float, float, float
 
     Newton's method from the node, in the directions that have neighbours on both sides.
     """
-    along, across = (line.local[:, None] ** np.arange(len(line.local)) for line in lines)
-    c = np.linalg.solve(across, np.linalg.solve(along, rise).T).T.tolist()  # sum c[a][b] x^a y^b
+    along, across = (_interpolating(*line.local.tolist()) for line in lines)
+    c = (along @ rise @ across.T).tolist()  # sum c[a][b] x^a y^b
     (first, last), (near, far) = (line.reach for line in lines)
     x = y = 0.0
     for _ in range(STEPS):
@@ -160,6 +161,12 @@ def _quartic(rise: Array, lines: tuple[Line, Line]) -> tuple[float, float, float
             at_bound = (lines[0].inside and x in (first, last)) or (lines[1].inside and y in (near, far))
             return None if at_bound else (max(0.0, -value), x, y)
     return None
+
+
+@lru_cache(maxsize=4096)
+def _interpolating(*places: float) -> Array:
+    """Coefficients of the polynomial through values at `places`, (k, k); a motion asks at the same nodes every step."""
+    return np.asarray(np.linalg.inv(np.vander(places, increasing=True)))
 
 
 def _newton_step(

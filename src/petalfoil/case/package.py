@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,6 +29,7 @@ from petalfoil.units import format_quantity
 MAX_ARC_ANGLE = 2.4  # rad; beyond it an arc is no longer a shallow shell (model of the free shape)
 ROOT_TOLERANCE = 1e-9  # m; a measured root may lie outside the bore by rounding only
 ROOT_SCATTER = 3.0  # standard deviations by which a measured root may lie outside the bore
+KNOWN = 256  # packs that are remembered: a run asks for those of its cases hundreds of times
 BEND_TOLERANCE = 0.05  # by which a stated bend radius may miss the measured shape's: what production scatters by
 FLUSH = 1e-9  # pitches; an overlap this close below a whole number is that number, rounded
 
@@ -87,6 +89,7 @@ class Package:
         return radius(phi, metric_radius=self.metric_radius, bend_radius=self.bend_radius, tilt=self.root_tilt)
 
 
+@lru_cache(maxsize=KNOWN)
 def package_of(bearing: Bearing, petals: Petals) -> Package:
     """Derive the foil pack of `petals` in `bearing`; of unequal petals that of the mean one.
 
@@ -96,6 +99,7 @@ def package_of(bearing: Bearing, petals: Petals) -> Package:
     return package_with(bearing, petals, (petals.mean, petals.arc_length / metric_radius))
 
 
+@lru_cache(maxsize=KNOWN)
 def packages_of(bearing: Bearing, petals: Petals) -> tuple[Package, ...]:
     """The same of each petal: all span the angle of the mean one, and each lies on the bore with its own thickness.
 

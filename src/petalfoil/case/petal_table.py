@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from enum import StrEnum
+from functools import lru_cache
 from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
@@ -193,15 +194,12 @@ class Petals(LookedUp, WallTable):
     @property
     def each(self) -> tuple[Petal, ...]:
         """The petals one by one; equal ones are the same object."""
-        lists = [of_each(getattr(self, field.name), self.count) for field in fields(Petal)]
-        known: dict[Petal, Petal] = {}
-        made = (Petal(*values) for values in zip(*lists, strict=True))
-        return tuple(known.setdefault(petal, petal) for petal in made)
+        return _each_of(self)
 
     @property
     def mean(self) -> Petal:
         """The petal that is the mean of all; of equal ones, one of them."""
-        return Petal(*(mean(of_each(getattr(self, field.name), self.count)) for field in fields(Petal)))
+        return _mean_of(self)
 
     @property
     def total_thickness(self) -> float:
@@ -290,3 +288,20 @@ class Petals(LookedUp, WallTable):
             allowed = "bend radius of the free petal [m], or a measured petals.free_shape"
             raise refuse(VALUE_PROBLEM, f"is missing; expected {allowed}", allowed)
         return radius
+
+
+KNOWN = 256
+"""Tables of petals whose petals are remembered: a run asks for those of its cases hundreds of times."""
+
+
+@lru_cache(maxsize=KNOWN)
+def _each_of(petals: Petals) -> tuple[Petal, ...]:
+    lists = [of_each(getattr(petals, field.name), petals.count) for field in fields(Petal)]
+    known: dict[Petal, Petal] = {}
+    made = (Petal(*values) for values in zip(*lists, strict=True))
+    return tuple(known.setdefault(petal, petal) for petal in made)
+
+
+@lru_cache(maxsize=KNOWN)
+def _mean_of(petals: Petals) -> Petal:
+    return Petal(*(mean(of_each(getattr(petals, field.name), petals.count)) for field in fields(Petal)))

@@ -60,6 +60,7 @@ class UnitTextError(ValueError):
     """A unit that cannot be read or converted; the message completes "… <value> …"."""
 
 
+@lru_cache(maxsize=4096)
 def convert(number: Fraction, text: str, unit: str, *, whirl: bool = False) -> float:
     """Convert `number` times the unit written in `text` to the SI unit `unit` (``"1"`` for a plain number).
 
