@@ -15,8 +15,9 @@ from former_tasks import TASKS
 from measure import Row, at_most
 
 ROOT = Path(__file__).parents[1]
-COMMIT = "36133d0"
-"""The earlier state: extremes by parabolas, stations at equal distances."""
+COMMIT = "2286840"
+"""The earlier state, before any of the work that these ratios are asked of: contacts at nodes alone, no reduced model,
+extremes by parabolas, stations at equal distances."""
 
 LIMITS = {
     "cold_3d": 0.4,
@@ -41,7 +42,7 @@ def rows(repeats: int, quick: bool = False) -> list[Row]:
 
 def unpacked(folder: Path) -> str:
     """Unpack the earlier sources into `folder`; why not, if they are not at hand."""
-    call = ["git", "-C", str(ROOT), "archive", "--format=tar", COMMIT, "src"]
+    call = ["git", "-C", str(ROOT), "archive", "--format=tar", COMMIT, "src", "examples"]
     try:
         archive = subprocess.run(call, capture_output=True, check=True).stdout
     except (OSError, subprocess.CalledProcessError):

@@ -12,15 +12,18 @@ import json
 import sys
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 import petalfoil
 from petalfoil.case import Case
 
-EXAMPLES = Path(__file__).parents[1] / "examples"
+SOURCES = Path(petalfoil.__file__).parents[2]
+EXAMPLES = (SOURCES if (SOURCES / "examples").is_dir() else Path(__file__).parents[1]) / "examples"
+"""The cases as the sources read them: the same bearings, in an earlier state under earlier keys."""
 
 
 def pack(name: str, cells: int, axial: int = 0, down: float = 0.0) -> Case:
@@ -31,6 +34,15 @@ def pack(name: str, cells: int, axial: int = 0, down: float = 0.0) -> Case:
     return Case.load(EXAMPLES / f"{name}.toml").replace(**changes)
 
 
+def records(case: Case, displacements: NDArray[np.float64]) -> Iterator[object]:
+    """The points of a curve as they are found, in either state."""
+    if hasattr(petalfoil.curve, "records"):
+        return iter(petalfoil.curve.records(case, displacements))
+    from petalfoil.analysis import load_curve  # an earlier name
+
+    return iter(load_curve.iterate(case, displacements.tolist()))
+
+
 def cold_3d(quick: bool) -> None:
     """A position from nothing in 3-D, on the default grid."""
     petalfoil.solve(pack("paper_n8_spatial", *((12, 4) if quick else (0, 0)), down=2e-4))
@@ -39,7 +51,7 @@ def cold_3d(quick: bool) -> None:
 def warm_3d(quick: bool) -> float:
     """Three followed points of a curve in 3-D [s]."""
     case = pack("paper_n8_spatial", *((12, 4) if quick else (24, 16)))
-    points = petalfoil.curve.records(case, 2e-5 * np.arange(4))
+    points = records(case, 2e-5 * np.arange(4))
     next(points)
     begin = time.process_time()
     for _ in points:
@@ -80,7 +92,8 @@ def orbit_2d(quick: bool) -> None:
 
 def orbit_3d(quick: bool) -> None:
     """Three turns in 3-D."""
-    case = pack("orbit_n8", *((8, 4) if quick else (24, 16))).replace(**{"model.kind": "3d"})
+    case = pack("orbit_n8", *((8, 4) if quick else (24, 16)))
+    case = case.replace(**{"model.kind": pack("paper_n8_spatial", 8, 4).model.kind})
     petalfoil.orbit(case, revolutions=1.0 if quick else 3.0)
 
 
