@@ -60,8 +60,7 @@ def speed_derivatives(case: Case, load: float, limit: float, *, as_points: bool 
     return found
 
 
-<<<<<<< HEAD
-def refined(name: str, line: SpeedLine, where: tuple[float, float], as_points: bool) -> SpeedDerivatives:
+def refined(name: str, line: SpeedLine, where: tuple[float, float], as_points: bool) -> CrossingDerivatives:
     """Derivatives at the crossing of a limit near a speed, `where` both, found by Newton's method.
 
     Where contact points travel on petals with continuous slopes their derivatives are exact, and lead there; else those
@@ -72,22 +71,10 @@ def refined(name: str, line: SpeedLine, where: tuple[float, float], as_points: b
         found = line.at(speed)
         exact = as_points and found.elements is not None
         balance = derivatives_of(at(line.case, speed), found, fraction_of, as_points=exact)
-        by_speed = balance.by(SPEED)
-        if by_speed.at_kink:
-            raise at_kink(SPEED)
-        slope = by_speed.above[FRACTION]
-        change = math.nan if slope == 0.0 else (limit - balance.values[FRACTION]) / slope
-        current_run().note("crossing", speed=speed, contact_fraction=balance.values[FRACTION])
-=======
-def refined(name: str, line: SpeedLine, speed: float, limit: float) -> CrossingDerivatives:
-    """Derivatives at the crossing near `speed`, found by Newton's method."""
-    for _ in range(NEWTON_STEPS):
-        balance = derivatives_of(at(line.case, speed), line.at(speed), fraction_of)
         by_speed, fraction = balance.by(SPEED), balance.values[FRACTION]
         slope = (by_speed.above if fraction > limit else by_speed.below)[FRACTION]
         change = math.nan if slope == 0.0 else (limit - fraction) / slope
         current_run().note("crossing", speed=speed, contact_fraction=fraction)
->>>>>>> 3988061 (feat: both one-sided derivatives of lift-off speed and load capacity at a kink)
         if abs(change) <= PRECISE * speed:
             return CrossingDerivatives(name, speed, balance, FRACTION, {SPEED: 1.0}, by_speed)
         if not abs(change) <= 10.0 * PRECISION * speed:
