@@ -12,7 +12,8 @@ from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 
 PRECISION = 1e-3
-"""Relative width of the bracket of a speed."""
+"""Relative width of the bracket of a speed. Within it the speed is interpolated: rounding that moves the bracket moves
+the speed by some 1e-6 of it."""
 
 CONTACT_FRACTION = 0.01
 """Contact fraction below which the journal has lifted off, unless another is asked for."""
@@ -117,7 +118,13 @@ def narrowed(line: SpeedLine, bracket: Bracket, limit: float) -> float:
         else:
             near, known = found, line.known or known
         halved = abs(far[0] - near[0]) <= 0.5 * width
-    return math.exp(0.5 * (near[0] + far[0]))
+    return math.exp(near[0] + crossed(near, far, limit) * (far[0] - near[0]))
+
+
+def crossed(near: tuple[float, float], far: tuple[float, float], limit: float) -> float:
+    """Part of the way from `near` to `far` at which a straight line of the fraction's root crosses the limit."""
+    a, b = (math.sqrt(value) - math.sqrt(limit) for _, value in (near, far))
+    return a / (a - b) if a != b else 0.5
 
 
 def aim(near: tuple[float, float], far: tuple[float, float], limit: float) -> float:
@@ -125,8 +132,7 @@ def aim(near: tuple[float, float], far: tuple[float, float], limit: float) -> fl
 
     A look at an end would close nothing: it keeps a little less than the precision from both.
     """
-    a, b = (math.sqrt(value) - math.sqrt(limit) for _, value in (near, far))
-    part = a / (a - b) if a != b else 0.5
+    part = crossed(near, far, limit)
     least = min(0.4 * PRECISION / abs(far[0] - near[0]), 0.5)
     return near[0] + min(max(part, least), 1.0 - least) * (far[0] - near[0])
 

@@ -160,3 +160,19 @@ def found_or_bounded(seed: int, least: float = 1.5e-6) -> str:
 def test_random_bearings_are_found_or_bounded() -> None:
     ended = [found_or_bounded(seed) for seed in range(20)]
     assert ended.count("found") >= 4
+
+
+@pytest.mark.slow
+def test_a_bearing_without_capacity_has_such_a_film_nowhere() -> None:
+    """One of those of which not even the least load keeps to the limit: at no position is the film that thick."""
+    bearing = random_case(np.random.default_rng(10), **{"model.cells_per_pitch": 16})
+    assert found_or_bounded(10) == "none"
+    room = bearing.pack_clearance
+    films = [
+        float(petalfoil.solve(bearing.replace(**{"operation.eccentricity": place}))["min_film_thickness"])
+        for part in (0.0, 0.3, 0.7)
+        for angle in np.arange(4 if part else 1) * 0.5 * math.pi
+        for place in [(part * room * math.cos(angle), part * room * math.sin(angle))]
+    ]
+    assert len(films) == 9
+    assert max(films) == pytest.approx(1.3447e-6, rel=1e-3)
