@@ -10,7 +10,7 @@ import pytest
 
 from petalfoil.analysis import known_verbs
 from petalfoil.case import Case
-from petalfoil.results.summary import rows
+from petalfoil.results.tables import tables_of
 from tests.studio.server import CHROMIUM, OPTIONS, Studio, running_studio, why_no_browser
 
 pytestmark = [
@@ -65,11 +65,11 @@ def answered(page: Page, words: str = "converged in") -> None:
     page.wait_for_function("words => document.querySelector('.status')?.textContent.includes(words)", arg=words)
 
 
-def numbers(page: Page) -> dict[str, tuple[str, ...]]:
-    """Cells of the results by label."""
-    read = "all => all.map(row => [...row.querySelectorAll('td')].map(cell => cell.textContent))"
-    lines = page.eval_on_selector_all(".numbers tbody tr", read)
-    return {cells[0].strip(): tuple(cell.strip() for cell in cells[1:]) for cells in lines}
+def numbers(page: Page) -> dict[str, dict[str, str]]:
+    """Results by label: their cells by the heading of the column."""
+    read = "all => all.map(row => [...row.querySelectorAll('th, td')].map(cell => cell.textContent.trim()))"
+    headings, *lines = page.eval_on_selector_all(".numbers tr", read)
+    return {cells[0]: dict(zip(headings, cells, strict=True)) for cells in lines}
 
 
 def drag(page: Page, name: str, part: float) -> None:
@@ -102,29 +102,35 @@ def downloaded_case(page: Page, folder: Path) -> Case:
     return Case.load(folder / "case.toml")
 
 
-def printed(case: Case) -> dict[str, str]:
-    """What `petalfoil balance` prints for a case, by label; labels that come twice carry the last value."""
+def printed(case: Case) -> dict[str, tuple[str, str]]:
+    """Values and error bars that `petalfoil balance --error` prints for a case, by label."""
     balance = known_verbs.find("balance")
     assert balance is not None
-    return {row.label.strip(): row.value for row in rows(balance.record(case))}
+    run = balance.start(case, balance.read({"error": True}), lambda part, text: None)
+    for _ in balance.advance(run, lambda part, text: None):
+        pass
+    (table,) = tables_of(balance.answer(run))
+    return {line[0].strip(): (line[1].strip(), line[2].strip("± ") if len(line) > 3 else "") for line in table.lines}
 
 
 def test_dragging_moves_picture_and_numbers_to_those_of_balance(page: Page, tmp_path: Path) -> None:
     before, picture = numbers(page), page.inner_html(".section-chart .main-svg >> nth=0")
     drag(page, "petals.thickness", 0.1)
     page.wait_for_function(
-        "old => !document.querySelector('.numbers').textContent.includes(old)", arg=before["minimum film thickness"][0]
+        "old => !document.querySelector('.numbers').textContent.includes(old)",
+        arg=before["minimum film thickness"]["now"],
     )
     page.wait_for_selector(".numbers .grid-note:has-text('balance: cells_per_pitch = 128')")
-    answered(page)
-    page.wait_for_timeout(500)
+    answered(page, "with error bars")
+    page.wait_for_function("[...document.querySelectorAll('.numbers th')].some(one => one.textContent.trim() === '±')")
     after, case = numbers(page), downloaded_case(page, tmp_path)
     assert case.petals is not None
     assert case.petals.thickness > 180e-6
     assert page.inner_html(".section-chart .main-svg >> nth=0") != picture
     expected = printed(case)
-    shown = {label: cells[0] for label, cells in after.items() if label not in NOT_OF_THE_STATE}
+    shown = {label: (cells["now"], cells["±"]) for label, cells in after.items() if label not in NOT_OF_THE_STATE}
     assert {"bearing force", "minimum film thickness", "peak pressure", "friction torque"} <= set(shown)
+    assert shown["minimum film thickness"][1]
     assert shown == {label: expected[label] for label in shown}
 
 
@@ -134,11 +140,11 @@ def test_a_refusal_stands_at_its_field_and_goes_when_it_is_mended(page: Page) ->
     page.get_by_text("measures something else").wait_for()
     near = page.locator(".key", has=page.locator('[aria-label^="petals.thickness "]'))
     assert "expected a length" in near.inner_text()
-    assert numbers(page) == before
+    assert numbers(page)["minimum film thickness"]["now"] == before["minimum film thickness"]["now"]
     type_in(page, "petals.thickness", "180 um")
     page.get_by_text("measures something else").wait_for(state="detached")
     answered(page)
-    assert numbers(page)["minimum film thickness"] != before["minimum film thickness"]
+    assert numbers(page)["minimum film thickness"]["now"] != before["minimum film thickness"]["now"]
 
 
 def test_a_long_run_is_cancelled_and_the_next_is_answered(page: Page) -> None:
@@ -158,20 +164,23 @@ def test_a_long_run_is_cancelled_and_the_next_is_answered(page: Page) -> None:
 
 
 def test_a_pinned_design_stands_beside_the_new_one_and_history_goes_back(page: Page) -> None:
-    first = numbers(page)["minimum film thickness"][0]
+    answered(page, "with error bars")
+    first = numbers(page)["minimum film thickness"]["now"]
     page.get_by_label("Pin as A").click()
     type_in(page, "petals.thickness", "190 um")
     page.wait_for_selector(".past tbody tr:nth-child(2)")
-    answered(page)
-    now, before = numbers(page), numbers(page)["minimum film thickness"]
-    assert before[0] == first
-    assert re.fullmatch(r"[+-][\d.]+ %", before[2])
-    assert now["minimum film thickness"][1] != first
+    answered(page, "with error bars")
+    row = numbers(page)["minimum film thickness"]
+    assert float(row["A"]) == pytest.approx(float(first), rel=1e-2)  # to the digits of the table, without a bar
+    assert re.fullmatch(r"[+-][\d.]+ %", row["difference"])
+    assert row["now"] != first
     assert page.evaluate("document.querySelector('.film-chart').data.length") == 4
     page.locator(".past tbody tr").last.click()
+    answered(page, "with error bars")
     page.wait_for_function(
         "first => [...document.querySelectorAll('.numbers tbody tr')].some(row =>"
-        " row.cells[0].textContent.trim() === 'minimum film thickness' && row.cells[2].textContent.trim() === first)",
+        " row.cells[0].textContent.trim() === 'minimum film thickness' &&"
+        " [...row.cells].some(cell => cell.textContent.trim() === first))",
         arg=first,
     )
 
@@ -179,10 +188,11 @@ def test_a_pinned_design_stands_beside_the_new_one_and_history_goes_back(page: P
 def test_the_state_survives_a_reload_and_another_tab_has_its_own(page: Page, studio: Studio) -> None:
     type_in(page, "petals.thickness", "185 um")
     page.wait_for_selector(".past tbody tr:nth-child(2)")
-    answered(page)
+    answered(page, "with error bars")
     before = numbers(page)
     page.reload()
     answered(page)
+    page.wait_for_selector(".numbers tbody tr")
     assert page.locator('[aria-label^="petals.thickness "]').input_value() == "185 um"
     assert numbers(page) == before
     assert page.locator(".past tbody tr").count() == 2
@@ -264,3 +274,115 @@ def test_names_for_screen_readers_and_a_narrow_window(page: Page) -> None:
     assert nameless == []
     page.set_viewport_size({"width": 400, "height": 800})
     page.wait_for_function("document.documentElement.scrollWidth <= 400")
+
+
+def test_a_motion_plays_its_section(page: Page, tmp_path: Path) -> None:
+    rotor = '\n[rotor]\nmass = "1.5 kg"\nunbalance = "1 um"\n'
+    text = downloaded_case(page, tmp_path).replace(**{"model.cells_per_pitch": 16, "operation.load": None}).to_toml()
+    (tmp_path / "rotor.toml").write_text(text + rotor)
+    page.set_input_files("input[type=file]", tmp_path / "rotor.toml")
+    page.wait_for_selector(".numbers .grid-note:has-text('solve: cells_per_pitch = 16')")
+    page.get_by_role("tab", name="orbit").click()
+    page.get_by_label("orbit revolutions").fill("2")
+    page.get_by_role("button", name="Run orbit").click()
+    answered(page, "orbit: done")
+    chart = page.locator(".motion-chart")
+    chart.wait_for()
+    journal = (
+        "document.querySelector('.motion-chart').data.find(one => one.xaxis === 'x4' && one.line.width === 1).x[0]"
+    )
+    before = page.evaluate(journal)
+    chart.get_by_text("animate").click()
+    page.wait_for_function(f"{journal} !== {before!r}")
+
+
+def test_a_design_of_a_front_opens_its_case(page: Page) -> None:
+    type_in(page, "petals.thickness", "175 um")
+    answered(page)
+    page.get_by_role("tab", name="Optimum").click()
+    page.get_by_label("range varied", exact=True).fill("160 um : 190 um")
+    page.get_by_label("range also varied").fill("44 mm : 46 mm")
+    page.get_by_label("designs", exact=True).fill("many")
+    page.get_by_role("button", name="Run search").click()
+    page.locator(".past .refusal:visible", has_text="whole number").wait_for()
+    page.get_by_label("designs", exact=True).fill("12")
+    page.get_by_role("button", name="Run search").click()
+    answered(page, "search: done")
+    point = page.locator(".past .scatterlayer .point:visible").last
+    point.wait_for()
+    point.scroll_into_view_if_needed()
+    page.wait_for_timeout(500)
+    box = point.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    page.wait_for_timeout(300)
+    page.mouse.down()
+    page.mouse.up()
+    page.wait_for_function("document.querySelector('[aria-label^=\"petals.thickness \"]').value !== '175 um'")
+
+
+def test_capacity_has_a_tab_of_its_own(page: Page) -> None:
+    page.locator(".table-of-case", has_text="model").last.locator(".q-item").first.click()
+    type_in(page, "model.cells_per_pitch", "16")
+    page.wait_for_selector(".numbers .grid-note:has-text('balance: cells_per_pitch = 16')")
+    page.get_by_role("tab", name="capacity").click()
+    page.set_default_timeout(4.0 * PATIENCE)  # twenty balances and more
+    page.get_by_role("button", name="Run capacity").click()
+    answered(page, "capacity: done")
+    page.locator(".question:visible", has_text="load capacity").wait_for()
+
+
+CONTRAST = """
+([selector, least]) => {
+  const colour = text => text.match(/[\\d.]+/g).map(Number);
+  const light = ([r, g, b]) => [r, g, b].map(one => one / 255).map(one =>
+    one <= 0.04045 ? one / 12.92 : ((one + 0.055) / 1.055) ** 2.4).reduce((sum, one, k) =>
+    sum + one * [0.2126, 0.7152, 0.0722][k], 0);
+  const ground = element => {
+    for (let one = element; one; one = one.parentElement) {
+      const found = colour(getComputedStyle(one).backgroundColor);
+      if (found.length < 4 || found[3] === 1) return found;
+    }
+    return [255, 255, 255];
+  };
+  return [...document.querySelectorAll(selector)].filter(one => one.offsetParent && one.textContent.trim()
+    && ![...one.children].some(child => child.textContent.trim())).map(one => {
+      const [a, b] = [light(colour(getComputedStyle(one).color)), light(ground(one))].sort((x, y) => y - x);
+      return [(a + 0.05) / (b + 0.05), one.textContent.trim().slice(0, 40), getComputedStyle(one).color];
+    }).filter(([ratio]) => ratio < least);
+}
+"""
+"""Texts whose contrast with what is behind them is below a ratio (WCAG 2, 1.4.3)."""
+
+
+def test_texts_have_contrast_on_a_light_and_a_dark_page(page: Page) -> None:
+    texts = "div, span, label, td, th, button, p"
+    assert page.evaluate(CONTRAST, [texts, 4.5]) == []
+    page.get_by_label("light or dark").click()
+    page.wait_for_selector("body.body--dark")
+    page.wait_for_timeout(1000)
+    assert page.evaluate(CONTRAST, [texts, 4.5]) == []
+
+
+FOCUSED = """
+(one => one ? one.getAttribute('role') || one.tagName : '')(
+  document.activeElement.closest('[role=slider], [role=tab], button, input'))
+"""
+"""What kind of control has the focus."""
+
+
+def test_the_keyboard_reaches_fields_sliders_and_tabs(page: Page) -> None:
+    """A person without a mouse changes the thickness with the arrow keys, and sees where the focus is."""
+    page.get_by_label("slide petals.thickness", exact=True).locator("[tabindex]").focus()
+    before = page.locator('[aria-label^="petals.thickness "]').input_value()
+    for _ in range(3):
+        page.keyboard.press("ArrowRight")
+    page.wait_for_function(
+        "old => document.querySelector('[aria-label^=\"petals.thickness \"]').value !== old", arg=before
+    )
+    seen = set()
+    for _ in range(60):
+        page.keyboard.press("Tab")
+        seen.add(page.evaluate(FOCUSED))
+    assert {"INPUT", "slider"} <= seen
+    assert {"BUTTON", "tab"} & seen

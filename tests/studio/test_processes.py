@@ -13,10 +13,10 @@ import psutil
 import pytest
 
 from petalfoil.errors import UsageError
+from petalfoil.studio.address import address_of
 from petalfoil.studio.design import Design
 from petalfoil.studio.engine import Engine, Job
 from petalfoil.studio.protocol import Cancelled, Done, Failure, Found, Work
-from petalfoil.studio.server import address_of
 from tests.studio.server import running_studio, wait_until
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")]
@@ -24,6 +24,8 @@ pytestmark = [pytest.mark.slow, pytest.mark.skipif(os.name != "posix", reason="s
 ORPHANS_END = 5.0
 """Time in which workers end after their server was killed [s]."""
 LONG = Design.starting().with_value("model.kind", "3d").with_value("model.cells_per_pitch", 96).to_toml()
+LITTLE = 300e6
+"""Memory in which a worker answers the short case and not the long one [bytes]: it takes 200 MB before it begins."""
 SHORT = Design.starting().with_value("model.cells_per_pitch", 24).to_toml()
 
 
@@ -88,7 +90,7 @@ def test_a_killed_worker_is_told_and_replaced() -> None:
 
 
 def test_a_worker_that_does_not_stop_is_killed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("petalfoil.studio.engine.PATIENCE", 0.5)
+    monkeypatch.setattr("petalfoil.studio.engine.PATIENCE", 0.1)
 
     async def ask(engine: Engine) -> None:
         job = answer(engine, LONG, is_long=True)
@@ -97,6 +99,18 @@ def test_a_worker_that_does_not_stop_is_killed(monkeypatch: pytest.MonkeyPatch) 
         engine.cancel(job)
         while pid in engine.worker_pids:
             await asyncio.sleep(0.05)
+        assert isinstance(await answer(engine, SHORT).outcome, Done)
+
+    with_engine(ask)
+
+
+def test_a_worker_that_takes_too_much_memory_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("petalfoil.studio.worker_process.MOST_MEMORY", LITTLE)
+
+    async def ask(engine: Engine) -> None:
+        outcome = await answer(engine, LONG, is_long=True).outcome
+        assert isinstance(outcome, Failure)
+        assert "memory" in f"{outcome.message} {outcome.advice}"
         assert isinstance(await answer(engine, SHORT).outcome, Done)
 
     with_engine(ask)

@@ -25,6 +25,8 @@ OPENS = 120.0
 """Time in which twenty pages that are opened at once have results, on a machine that others use [s]."""
 PAUSE = 4.0
 """Mean time between two changes of a session [s]."""
+FIRST_ANSWER = 5.0
+"""Processor time of the server and of its busiest worker until a page has its first answer [s]: measured 3.7."""
 MOST_A_SESSION = 15e6
 """Memory that the server takes for a session [bytes]: measured 2 to 3 MB."""
 
@@ -52,6 +54,23 @@ async def work(studio: Studio, number: int, seconds: float) -> int:
         await asyncio.sleep(chance.expovariate(1.0 / PAUSE))
     await robot.leave()
     return answers
+
+
+def test_the_first_answer_after_a_start_takes_little_work() -> None:
+    """Server and worker load side by side, so that the sum bounds the time on a machine with a core to spare."""
+
+    async def first(studio: Studio) -> float:
+        robot = robots.Robot(studio)
+        await robot.open()
+        await robots.until(robot.results)
+        spent = [sum(process.cpu_times()[:2]) for process in (psutil.Process(studio.process.pid), *studio.workers())]
+        await robot.leave()
+        return float(spent[0] + max(spent[1:]))
+
+    with running_studio() as studio:
+        spent = asyncio.run(first(studio))
+    print(f"{spent:.2f} s of processor time until the first answer")  # noqa: T201
+    assert spent <= FIRST_ANSWER
 
 
 def test_twenty_sessions_at_once(tmp_path: Path) -> None:

@@ -19,10 +19,13 @@ SYNONYMS = {
     "e": "petals.youngs_modulus",
     "elastic_modulus": "petals.youngs_modulus",
     "film_floor": "surface.contact_film_thickness",
+    "foil_length": "petals.arc_length",
     "foil_thickness": "petals.thickness",
     "inertia": "rotor.transverse_inertia",
     "journal_temperature": "shaft.temperature",
     "leaf_count": "petals.count",
+    "leaf_length": "petals.arc_length",
+    "leaf_thickness": "petals.thickness",
     "leaves": "petals",
     "min_film": "surface.contact_film_thickness",
     "modulus": "petals.youngs_modulus",
@@ -30,6 +33,9 @@ SYNONYMS = {
     "n": "petals.count",
     "nu": "petals.poisson_ratio",
     "number": "petals.count",
+    "number_of_foils": "petals.count",
+    "number_of_leaves": "petals.count",
+    "number_of_petals": "petals.count",
     "omega": "operation.speed",
     "pressure": "gas.ambient_pressure",
     "radius": "bearing.journal_radius",
@@ -46,6 +52,7 @@ SYNONYMS = {
 
 SAME_WORD = {
     "built-in": "clamped",
+    "cantilever": "clamped",
     "cantilevered": "clamped",
     "fixed": "clamped",
     "flat": "2d",
@@ -66,6 +73,19 @@ _EXPLAINED = (
         "The journal's axis is held at operation.tilt, or tilts under operation.moment, or with a rotor.span.",
     ),
     (r"backing|spring", "Springs behind petals stand in the table [backing]."),
+    (
+        r"bump_height",
+        "The height of a bump follows from its half length and angle: give bump_foil.bump_half_angle, "
+        "2 atan(height / half length).",
+    ),
+    (
+        r"chord",
+        "Lengths of petals are along the arc: give petals.arc_length, 2 R asin(chord / (2 R)) at the bend radius R.",
+    ),
+    (
+        r"preload|crush|interference",
+        "Preload follows: give the free shape (petals.bend_radius) and the radii of the bearing.",
+    ),
     (r"bump|compliant|foundation", "Bump foils stand in the table [bump_foil], in place of [petals]."),
     (
         r"feed|supply|orifice|inlet|recess|porous",

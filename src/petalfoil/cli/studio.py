@@ -40,14 +40,12 @@ def studio(
     with handled():
         if find_spec("nicegui") is None:
             raise UsageError("the studio needs NiceGUI and Plotly: pip install 'petalfoil[studio]'")
-        from petalfoil.studio.design import Design
+        import asyncio
 
-        design = Design.starting() if case is None else Design.from_file(case)
+        from petalfoil.studio.address import address_of, run_studio
 
-        from petalfoil.studio.server import address_of, serve
-
-        address, listening = address_of(host, port, to_network=allow_network)
+        place = address_of(host, port, to_network=allow_network)
         try:
-            serve(design, address, listening, lambda url: emit(f"{url}\n"), browse=not no_browser)
+            asyncio.run(run_studio(case, place, lambda url: emit(f"{url}\n"), browse=not no_browser))
         except KeyboardInterrupt:  # the usual end: Ctrl-C, or the signal of a service manager
             say("the studio is closed")

@@ -109,4 +109,22 @@ def motion(record: Record) -> Arrays:
     """Histories of a motion, thinned out, by name over `time`; pictures of the section along `frame`."""
     kept = thinned(len(record.coords["time"]), MOST_INSTANTS)
     names = [name for name in record.fields if FIELDS[name].dims == ("time",)]
-    return {"time": record.coords["time"][kept]} | {name: record.fields[name][kept] for name in names}
+    found = {"time": record.coords["time"][kept]} | {name: record.fields[name][kept] for name in names}
+    return found | pictures(record)
+
+
+def pictures(record: Record) -> Arrays:
+    """The section of the last turns along `frame`, at the mid-plane, its angles thinned out; empty where there is none.
+
+    Numbers are single: a picture has fewer digits.
+    """
+    if "frame_pressure" not in record.fields or "root_angle" not in record.coords:
+        return {}
+    found: Arrays = {name: record.coords[name] for name in ("frame", "root_angle")}
+    nodes = {dim: thinned(len(record.coords[dim]), MOST_ANGLES) for dim in record.coords if dim.startswith("phi")}
+    found |= {dim: np.asarray(record.coords[dim])[kept] for dim, kept in nodes.items()}
+    for name in ("frame_pressure", "frame_film_thickness", "frame_radius"):
+        if name in record.fields:
+            values = at_mid_plane(record, name)
+            found[name] = np.take(values, nodes[FIELDS[name].dims[2]], axis=2).astype(np.float32)
+    return found | {name: record.fields[name] for name in ("frame_x", "frame_y")}

@@ -1,4 +1,4 @@
-"""Charts of the browser other than the cross-section: film over angle, the 3-D view, series, motions.
+"""Charts of the browser other than section and motion: film over angle, the 3-D view, series, maps.
 
 Each is a plain mapping in the form of Plotly, made from the arrays of a result. Only the 3-D view uses WebGL.
 """
@@ -13,13 +13,11 @@ import numpy as np
 
 from petalfoil.results.schema import SCALARS, VARIABLES, Shown
 from petalfoil.results.summary import shown_as
-from petalfoil.studio.protocol import Found, Mapped
+from petalfoil.studio.motion_chart import motion_chart
+from petalfoil.studio.protocol import Found, Mapped, Searched
 from petalfoil.studio.section_chart import VIRIDIS, Chart, Floats, State, Trace
 from petalfoil.studio.themes import Theme
 from petalfoil.units import format_quantity
-
-FRAMES = 90
-"""Places of the journal that the animation of a motion shows: the last turns in a few seconds."""
 
 
 def empty(theme: Theme, words: str) -> Chart:
@@ -199,55 +197,7 @@ def coefficients_chart(found: Found, name: str, theme: Theme) -> Chart:
     return {"data": traces, "layout": layout, "config": theme.config(name)}
 
 
-# ---------------------------------------------------------------------------------------------- motions
-
-
-def motion_chart(found: Found, theme: Theme) -> Chart:
-    """The path of the journal with its animation, and film thickness and contact over time beside it."""
-    arrays = {name: np.asarray(values, dtype=np.float64) for name, values in found.arrays.items()}
-    x, y, time = 1e6 * arrays["x"], 1e6 * arrays["y"], 1e3 * arrays["time"]
-    shown = np.unique(np.linspace(0.5 * len(time), len(time) - 1, FRAMES).astype(int))
-    path = {
-        "type": "scatter",
-        "mode": "lines",
-        "x": _or_gap(x),
-        "y": _or_gap(y),
-        "line": {"color": theme.accent, "width": 1},
-    }
-    spot = {"type": "scatter", "mode": "markers", "marker": {"size": 11, "color": theme.second}}
-    films = 1e6 * arrays["min_film_thickness"], 100.0 * arrays["contact_fraction"]
-    over_time = [
-        {"type": "scatter", "mode": "lines", "x": _or_gap(time), "y": _or_gap(values), "xaxis": "x2", "yaxis": axis,
-         "line": {"color": colour, "width": 1.5}}
-        for values, axis, colour in zip(films, ("y2", "y3"), (theme.accent, theme.second), strict=True)
-    ]  # fmt: skip
-    frames = [{"name": str(k), "data": [{"x": [float(x[k])], "y": [float(y[k])]}], "traces": [1]} for k in shown]
-    layout = theme.layout(
-        xaxis=theme.axis("x [µm]", domain=[0.0, 0.42]),
-        yaxis=theme.axis("y [µm]", scaleanchor="x"),
-        xaxis2=theme.axis("time [ms]", domain=[0.55, 1.0], anchor="y3"),
-        yaxis2=theme.axis("min. film thickness [µm]", domain=[0.55, 1.0], anchor="x2", rangemode="tozero"),
-        yaxis3=theme.axis("contact fraction [%]", domain=[0.0, 0.45], anchor="x2", rangemode="tozero"),
-        showlegend=False,
-        updatemenus=[_play_button(theme)],
-        uirevision="motion",
-    )
-    data = [path, spot | {"x": [float(x[-1])], "y": [float(y[-1])]}, *over_time]
-    return {"data": data, "layout": layout, "frames": frames, "config": theme.config("orbit")}
-
-
-def _play_button(theme: Theme) -> dict[str, Any]:
-    """A button that moves the journal along the last half of its path."""
-    timing = {"frame": {"duration": 50, "redraw": False}, "transition": {"duration": 0}, "fromcurrent": True}
-    play = {"label": "▶ animate", "method": "animate", "args": [None, timing]}
-    stop = {"label": "■ stop", "method": "animate", "args": [[None], timing | {"mode": "immediate"}]}
-    place = {"type": "buttons", "direction": "right", "x": 0.0, "y": 1.0, "xanchor": "left", "yanchor": "bottom"}
-    return place | {
-        "buttons": [play, stop],
-        "showactive": False,
-        "font": {"color": theme.ink},
-        "bgcolor": theme.bushing,
-    }
+# ---------------------------------------------------------------------------------------------- maps
 
 
 def map_chart(found: Mapped, name: str, theme: Theme) -> Chart:
@@ -269,6 +219,36 @@ def map_chart(found: Mapped, name: str, theme: Theme) -> Chart:
     cases = {**dot, "mode": "markers", "x": x, "y": y, "hovertemplate": "%{x}, %{y}<extra>open</extra>"}
     layout = theme.layout(xaxis=theme.axis(titles[0]), yaxis=theme.axis(titles[1]), uirevision=name)
     return {"data": [contour | {"hoverinfo": "z"}, cases], "layout": layout, "config": theme.config("map")}
+
+
+def optimum_axes(found: Searched) -> list[tuple[str, Floats]]:
+    """What designs are drawn over and of, and its values as shown: the first two objectives, or one over the design."""
+    names = [objective.partition(" ")[2] for objective in found.objectives]
+    axes = [(titled(name), np.asarray(found.results[name], dtype=np.float64) * label_of(name).factor) for name in names]
+    return axes[:2] if len(axes) > 1 else [("design", np.arange(1.0, len(axes[0][1]) + 1.0)), *axes]
+
+
+def optimum_chart(found: Searched, theme: Theme) -> Chart:
+    """Designs of a search: those that miss a limit, those that keep all, and the best ones, a front where they are."""
+    (across, x), (up, y) = optimum_axes(found)
+    best, kept = found.on_front, found.feasible & ~found.on_front
+    order = np.flatnonzero(best)[np.argsort(x[best])]
+    missed, line = np.flatnonzero(~found.feasible), {"color": theme.second, "width": 1}
+    looks: list[tuple[str, Any, str, dict[str, Any]]] = [
+        ("misses a limit", missed, "markers", {"symbol": "x", "color": theme.ghost, "size": 7}),
+        ("keeps every limit", np.flatnonzero(kept), "markers", {"color": theme.accent, "size": 7}),
+        ("best", order, "lines+markers", {"color": theme.second, "size": 10}),
+    ]
+    traces = [
+        {
+            "type": "scatter", "mode": mode, "name": name, "marker": marker, "line": line,
+            "x": _or_gap(x[chosen]), "y": _or_gap(y[chosen]), "text": [f"design {number + 1}" for number in chosen],
+            "hovertemplate": "%{text}: %{x:.4g}, %{y:.4g}<extra>open</extra>",
+        }
+        for name, chosen, mode, marker in looks if len(chosen)
+    ]  # fmt: skip
+    layout = theme.layout(xaxis=theme.axis(across), yaxis=theme.axis(up), uirevision="optimum", showlegend=True)
+    return {"data": traces, "layout": layout, "config": theme.config("optimum")}
 
 
 def unit_of(values: Sequence[float], unit: str) -> tuple[str, float]:

@@ -11,7 +11,8 @@ from typing import Any
 from nicegui import ui
 
 from petalfoil.studio.protocol import Found, Work
-from petalfoil.studio.session import Session, Shown
+from petalfoil.studio.session import Session
+from petalfoil.studio.state import Shown
 from petalfoil.text import for_terminal
 
 MADE = {

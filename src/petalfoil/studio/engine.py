@@ -18,7 +18,8 @@ from petalfoil.studio.protocol import Cancelled, Done, Failure, Progress, Task, 
 from petalfoil.studio.worker_process import WorkerProcess
 
 PATIENCE = 5.0
-"""Time that a worker has to stop a cancelled task before it is killed [s]: a large factorisation takes some seconds."""
+"""Processor time that a worker has to stop a cancelled task before it is killed [s]: a large factorisation takes some
+seconds."""
 MOST_WAITING = 8
 """Jobs that one session may have waiting: two of the sliders, a question, a file, and as many again."""
 MOST_STARTS_IN_A_ROW = 3
@@ -69,13 +70,17 @@ class Engine:
         self._numbers = itertools.count(1)
         self._waiting: list[Job] = []
         self._workers: list[WorkerProcess] = []
+        self._starting: set[asyncio.Task[None]] = set()
         self._failed_starts = 0
         self._is_open = False
 
     async def start(self) -> None:
-        """Start the workers; they warm up while the caller goes on."""
+        """Start a worker, which warms up while the caller goes on; the others follow when it is ready.
+
+        All at once they would share the cores with the server that loads its page, and the first answer would wait.
+        """
         self._is_open = True
-        await asyncio.gather(*(self._add_worker() for _ in range(self._size)))
+        await self._add_worker()
 
     async def stop(self) -> None:
         """End all workers, and tell whoever waits."""
@@ -83,6 +88,7 @@ class Engine:
         for job in self._waiting:
             job.outcome.set_result(Cancelled(job.task.number))
         self._waiting.clear()
+        await asyncio.gather(*self._starting)
         await asyncio.gather(*(worker.end() for worker in list(self._workers)))
 
     @property
@@ -173,6 +179,18 @@ class Engine:
         running = sum(worker.job is not None and worker.job.is_long for worker in self._workers)
         return next(iter(self._waiting), None) if running < self._size - 1 else None
 
+    def _grow(self) -> None:
+        """Start the workers that are missing."""
+        for _ in range(self._size - len(self._workers) - len(self._starting)):
+            task = asyncio.get_running_loop().create_task(self._add_worker())
+            self._starting.add(task)
+            task.add_done_callback(self._started)
+
+    def _started(self, task: asyncio.Task[None]) -> None:
+        self._starting.discard(task)
+        if not task.cancelled():
+            task.result()  # a start that failed is told by the loop
+
     async def _add_worker(self) -> None:
         worker = await WorkerProcess.start(self._told, self._ended)
         self._workers.append(worker)
@@ -183,6 +201,7 @@ class Engine:
         """What a worker reports: its first report, None, is that it is ready."""
         if message is None:
             self._failed_starts = 0
+            self._grow()
         elif isinstance(message, Progress):
             if worker.job is not None and worker.job.on_progress is not None and not worker.job.outcome.done():
                 worker.job.on_progress(message.part, message.text)
@@ -204,12 +223,19 @@ class Engine:
             advice = "another one takes its place: ask again; a grid too fine for the memory may have been the reason"
             job.outcome.set_result(Failure(job.task.number, words, advice))
         if self._is_open and self._failed_starts < MOST_STARTS_IN_A_ROW:
-            task = asyncio.get_running_loop().create_task(self._add_worker())
-            task.add_done_callback(lambda done: done.result() if not done.cancelled() else None)
+            self._grow()
         elif not self._workers:
             for waiting in self._waiting:
                 waiting.outcome.set_result(Failure(waiting.task.number, "no worker process starts"))
             self._waiting.clear()
+
+
+def words_of(outcome: Outcome) -> str:
+    """Why an outcome holds no answer."""
+    if isinstance(outcome, Failure):
+        text = f"{outcome.message}. {outcome.advice}" if outcome.advice else outcome.message
+        return f"a fault of petalfoil, please report it: {text}" if outcome.is_fault else text
+    return "cancelled" if isinstance(outcome, Cancelled) else "no answer"
 
 
 def ending(code: int) -> str:

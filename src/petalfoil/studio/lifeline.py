@@ -13,10 +13,12 @@ import select
 import signal
 
 COMMAND = (
-    "import sys; from petalfoil.studio.lifeline import end_with; end_with(int(sys.argv[1])); "
+    "import sys; from petalfoil.studio.lifeline import end_with, limit_memory; "
+    "end_with(int(sys.argv[1])); limit_memory(int(sys.argv[2])); "
     "from petalfoil.studio.worker import main; main()"
 )
-"""What a worker's process runs; its argument is the reading end of the pipe, negative where there is none."""
+"""What a worker's process runs; its arguments are the reading end of the pipe, negative where there is none, and the
+memory that it may take [bytes]."""
 
 
 def end_with(lifeline: int) -> None:
@@ -37,3 +39,20 @@ def end_with(lifeline: int) -> None:
     fcntl.fcntl(lifeline, fcntl.F_SETFL, fcntl.fcntl(lifeline, fcntl.F_GETFL) | os.O_ASYNC)
     if select.select([lifeline], [], [], 0.0)[0]:  # readable: the other end was closed before
         os._exit(0)
+
+
+def limit_memory(most: int) -> None:
+    """Let the operating system refuse this process memory beyond a limit; a request beyond it raises `MemoryError`.
+
+    What counts is what the process may write, and not the libraries that it maps. A system without such limits
+    (Windows; macOS takes the limit and ignores it) is left as it is: there the bound of the grid is the only one.
+
+    Parameters
+    ----------
+    most : int
+        Memory that it may take [bytes].
+    """
+    if os.name == "posix":
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_DATA, (most, most))

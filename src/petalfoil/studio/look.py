@@ -35,7 +35,7 @@ body { background: var(--ground); color: var(--ink); }
 .key .assumed .q-field__label { color: var(--assumed); font-style: italic; }
 .key .assumed .q-field__label::after { content: " · assumed"; }
 .key .q-slider { margin: 0 6px; width: calc(100% - 12px); }
-.board { display: grid; gap: 12px; padding: 12px; grid-template-columns: minmax(0, 1.35fr) minmax(330px, 1fr);
+.board { display: grid; gap: 12px; padding: 12px; grid-template-columns: minmax(0, 1.15fr) minmax(330px, 1fr);
          align-items: start; }
 .board > section { background: var(--panel); border: 1px solid var(--line); border-radius: 8px; padding: 10px 12px;
                    min-width: 0; }
@@ -44,6 +44,7 @@ body { background: var(--ground); color: var(--ink); }
 .chart { width: 100%; height: 380px; }
 .section-chart { height: 460px; }
 .film-chart { height: 300px; }
+.motion-chart { height: 540px; }
 .fill { width: 100%; height: 100%; }
 .grid-note, .summary { color: var(--faint); font-size: .85rem; }
 .coarse { color: var(--warned); font-weight: 600; }

@@ -8,18 +8,11 @@ import numpy as np
 from nicegui import events, ui
 
 from petalfoil.studio.charts import map_chart, titled, unit_of
-from petalfoil.studio.form import Control, Entry, sections, sliders_of
+from petalfoil.studio.parameter_choice import NOTHING, USUAL, ParameterChoice, as_typed
 from petalfoil.studio.protocol import Mapped
 from petalfoil.studio.session import MAP, Session
 from petalfoil.studio.themes import DARK, LIGHT
-from petalfoil.units import format_quantity
 
-NOTHING = "none"
-"""The second parameter of a line."""
-LEVELS = 7
-"""Values of a parameter that are proposed."""
-NEAR = 0.15
-"""How far the proposed values lie from that of the case, over it."""
 FIRST = "min_film_thickness"
 """Result that is drawn first."""
 
@@ -38,10 +31,11 @@ class MapPanel:
         self._built_for: Mapped | None = None
         self._drawn: Any = None
         self._result = FIRST
-        paths = list(self._entries())
         with ui.element("div").classes("arguments"):
-            self._parameters = [self._parameter("over", paths, paths[0] if paths else NOTHING)]
-            self._parameters.append(self._parameter("and", [NOTHING, *paths], NOTHING))
+            choices = (("over", USUAL), ("and", NOTHING))
+            self._parameters = [
+                ParameterChoice(lambda: session.design, label, first, is_range=False) for label, first in choices
+            ]
         with ui.row().classes("run"):
             ui.button("Run map", icon="grid_on", on_click=self.run).props("no-caps unelevated")
             self._note = ui.label("A click on a point opens its case.").classes("grid-note")
@@ -51,8 +45,7 @@ class MapPanel:
 
     def run(self) -> None:
         """Compute the map."""
-        chosen = [(path.value, values.value) for path, values in self._parameters if path.value != NOTHING]
-        self._session.study({path: str(text) for path, text in chosen})
+        self._session.study({path: text for one in self._parameters for path, text in one.given.items()})
 
     def show(self) -> None:
         """Show the map, or why there is none."""
@@ -96,38 +89,5 @@ class MapPanel:
             unit = self._built_for.units[path]
             wanted = float(point[axis]) * unit_of(values, unit)[1]
             value = values[int(np.abs(np.array(values) - wanted).argmin())]
-            is_count = self._entries()[path].control is Control.COUNT
-            place[path] = int(value) if is_count else format_quantity(value, unit, digits=12) if unit != "1" else value
+            place[path] = as_typed(self._session.design, path, value, unit)
         self._session.open_place(place)
-
-    def _entries(self) -> dict[str, Entry]:
-        """Keys that can vary: numbers that the case gives."""
-        entries = (entry for section in sections() for entry in section.entries)
-        numbers = (Control.QUANTITY, Control.COUNT)
-        given = {entry.path: entry for entry in entries if entry.control in numbers}
-        design = self._session.design
-        return {path: one for path, one in given.items() if sliders_of(one, one.text(design.get(path)))}
-
-    def _parameter(self, label: str, paths: list[str], first: str) -> tuple[Any, Any]:
-        """The choice of a parameter, and its values."""
-        usual = "petals.thickness"
-        chosen = ui.select(paths, value=usual if label == "over" and usual in paths else first, label=label)
-        chosen.props("dense options-dense stack-label")
-        values = ui.input(f"values {label}", value=self._proposed(chosen.value)).props("dense stack-label")
-        values.props["aria-label"] = f"values {label}"
-        chosen.on_value_change(lambda event: values.set_value(self._proposed(event.value)))
-        return chosen, values
-
-    def _proposed(self, path: str) -> str:
-        """Values around that of the case."""
-        entry = self._entries().get(path)
-        if entry is None:
-            return ""
-        (slider,) = sliders_of(entry, entry.text(self._session.design.get(path)))
-        if entry.control is Control.COUNT:
-            middle = int(slider.value)
-            near = range(max(int(slider.low), middle - 2), min(int(slider.high), middle + 2) + 1)
-            return ", ".join(map(str, near))
-        low, high = sorted(((1.0 - NEAR) * slider.value, (1.0 + NEAR) * slider.value))
-        ends = (slider.text(max(low, slider.low)), slider.text(min(high, slider.high)))
-        return f"{ends[0]} : {ends[1]} : {LEVELS}"

@@ -16,15 +16,20 @@ from petalfoil.studio.design import MOST_BYTES, Design
 from petalfoil.studio.downloads import download_menu, quiet_button
 from petalfoil.studio.look import STYLE
 from petalfoil.studio.map_panel import MapPanel
+from petalfoil.studio.optimum_panel import OptimumPanel
 from petalfoil.studio.questions import Questions
 from petalfoil.studio.results_panel import ResultsPanel
 from petalfoil.studio.section_chart import has_section, section_chart
-from petalfoil.studio.session import Aspect, Session, Tried
+from petalfoil.studio.session import Session
+from petalfoil.studio.state import Aspect, Tried
 from petalfoil.studio.themes import DARK, LIGHT, Theme
 from petalfoil.text import for_terminal
 
 HISTORY = ("bearing_force", "min_film_thickness", "peak_pressure", "contact_fraction", "friction_torque")
 """Results that the list of tried designs shows."""
+
+PAST = ("History", "Map", "Optimum", "Log")
+"""Tabs below: what was tried, studies, and the log."""
 
 
 class Page:
@@ -129,9 +134,9 @@ class Page:
 
     def _build_past(self) -> None:
         with ui.tabs().props("dense no-caps align=left") as tabs:
-            for name in ("History", "Map", "Log"):
+            for name in PAST:
                 ui.tab(name)
-        panels = {name: ui.element("div") for name in ("History", "Map", "Log")}
+        panels = {name: ui.element("div") for name in PAST}
 
         def show(chosen: str) -> None:
             for name, panel in panels.items():
@@ -143,6 +148,8 @@ class Page:
             self._build_history()
         with panels["Map"]:
             self._map = MapPanel(self.session)
+        with panels["Optimum"]:
+            self._optimum = OptimumPanel(self.session)
         with panels["Log"]:
             self._log = ui.element("div").classes("log").props("role=log")
 
@@ -157,6 +164,7 @@ class Page:
     def _show_answers(self) -> None:
         self._questions.show()
         self._map.show()
+        self._optimum.show()
 
     # ------------------------------------------------------------------------------------------ following
 
@@ -233,6 +241,7 @@ class Page:
         self._show_state()
         self._questions.redraw()
         self._map.redraw()
+        self._optimum.redraw()
 
     async def _uploaded(self, event: events.UploadEventArguments) -> None:
         """Open a case that was uploaded; what is no case is refused."""

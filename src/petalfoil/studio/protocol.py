@@ -11,13 +11,14 @@ import struct
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 import numpy.typing as npt
 
-from petalfoil.results.record import Record
-from petalfoil.results.tables import TextTable
+if TYPE_CHECKING:  # the server starts its first worker before it loads these
+    from petalfoil.results.record import Record
+    from petalfoil.results.tables import TextTable
 
 HEADER = struct.Struct("!Q")
 """Length of a frame [bytes], in front of it."""
@@ -30,6 +31,8 @@ class Work(Enum):
     """Run an analysis."""
     STUDY = "study"
     """Run an analysis over one or two parameters."""
+    OPTIMUM = "optimum"
+    """Find the best designs, or the front of several objectives."""
     NETCDF, PNG, SVG, REPORT = "nc", "png", "svg", "html"
     """Make a file of the records of an answer."""
 
@@ -56,6 +59,8 @@ class Task:
         Records of the answer that a file is made of.
     vary : mapping
         Values of parameters by path, as typed.
+    goals : mapping
+        Of an optimum: what to maximize and to minimize, limits, and the budget of designs.
     """
 
     number: int
@@ -66,6 +71,7 @@ class Task:
     coarse: bool = False
     records: tuple[Record, ...] = ()
     vary: Mapping[str, str] = field(default_factory=dict)
+    goals: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -186,12 +192,44 @@ class Mapped:
     seconds: float
 
 
+@dataclass(frozen=True, kw_only=True)
+class Searched:
+    """Designs that a search for the best one tried, in their order.
+
+    Attributes
+    ----------
+    parameters : mapping
+        Value of each parameter by path, one for each design, SI.
+    units : mapping
+        SI unit of each, by path.
+    results : mapping
+        Results by name, one for each design, SI; NaN where a design has no answer.
+    objectives : tuple of str
+        What was wanted, such as ``"maximize min_film_thickness"``.
+    feasible, on_front : (design,) array of bool
+        Which keep every limit; which no other beats in every objective.
+    ended : str
+        How the search ended.
+    seconds : float
+        Wall time that it took [s].
+    """
+
+    parameters: Mapping[str, tuple[float, ...]]
+    units: Mapping[str, str]
+    results: Arrays
+    objectives: tuple[str, ...]
+    feasible: npt.NDArray[np.bool_]
+    on_front: npt.NDArray[np.bool_]
+    ended: str
+    seconds: float
+
+
 @dataclass(frozen=True)
 class Done:
     """A task is done: what was found, or the bytes of a file."""
 
     number: int
-    result: Found | Mapped | bytes
+    result: Found | Mapped | Searched | bytes
 
 
 Message = Task | Cancel | Ready | Progress | Cancelled | Failure | Done

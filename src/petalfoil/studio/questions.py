@@ -15,7 +15,8 @@ from petalfoil.results.tables import TextTable
 from petalfoil.studio.charts import axes_of, chart_of, titled, usual_axes
 from petalfoil.studio.downloads import download_menu
 from petalfoil.studio.protocol import Found
-from petalfoil.studio.session import Session, Shown
+from petalfoil.studio.session import Session
+from petalfoil.studio.state import Shown
 from petalfoil.studio.tasks import found_analysis
 from petalfoil.studio.themes import DARK, LIGHT, Theme
 
@@ -103,7 +104,9 @@ class Question:
             self._axes = names[:1] if "stiffness" in found.arrays else list(usual_axes(names)) if len(names) > 1 else []
             self._choices(names)
             if self._axes or "time" in found.arrays:
-                self._drawn = ui.plotly(chart_of(found, self._axes, self._theme())).classes("chart")
+                kind = "motion-chart" if "frame_pressure" in found.arrays else "line-chart"
+                self._drawn = ui.plotly(chart_of(found, self._axes, self._theme())).classes(f"chart {kind}")
+                self._drawn.props["aria-label"] = f"chart of {found.verb}"
             for warning in (*found.warnings, *found.failures):
                 ui.label(warning).classes("warning")
             for table in found.tables:

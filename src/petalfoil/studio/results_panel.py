@@ -9,8 +9,10 @@ from typing import Any
 from nicegui import ui
 
 from petalfoil.results.summary import cell, in_order, with_bar
+from petalfoil.studio.downloads import quiet_button
 from petalfoil.studio.protocol import Found
-from petalfoil.studio.session import Session, Shown
+from petalfoil.studio.session import Session
+from petalfoil.studio.state import Shown
 
 HIDDEN = {"solution_path", "known_equilibria", "factorizations", "iterations", "wall_time", "force_residual"}
 """How the state was computed: shown where it is asked for."""
@@ -46,6 +48,8 @@ class ResultsPanel:
         self._table.add_slot("body-cell-now", LEVELS)
         self._table.add_slot("body-cell-label", LEVELS)
         self._all = ui.switch("how it was computed", value=False, on_change=self.show).props("dense size=xs")
+        self._bars = quiet_button("Error bars", "straighten", session.ask_bars)
+        self._bars.tooltip("Solve the case on two more grids; of a 2-D case this happens by itself")
         self._warnings = ui.element("div").classes("warnings").props("aria-live=polite")
 
     def show(self, _: object = None) -> None:
@@ -54,6 +58,7 @@ class ResultsPanel:
         if shown is None:
             return
         self._heading.set_text(_heading(shown))
+        self._bars.set_visibility(not shown.is_coarse and not shown.found.bars)
         self._heading.classes(add="coarse") if shown.is_coarse else self._heading.classes(remove="coarse")
         rows = rows_of(shown.found, None if pinned is None else pinned.found)
         wanted = {

@@ -128,33 +128,41 @@ def section_chart(found: Found, theme: Theme) -> Chart:
     return {"data": traces, "layout": layout, "config": theme.config("cross-section")}
 
 
-def _polygon(points: Floats, **look: Any) -> Trace:
+def polygon(points: Floats, **look: Any) -> Trace:
     """A closed shape without an outline of its own."""
-    x, y = np.round(points.T * 1e6).astype(int)  # micrometres: finer than a pixel, and short to send
+    x, y = np.round(points.T, 6)  # micrometres: finer than a pixel, and short to send
     shape = {"type": "scatter", "mode": "lines", "fill": "toself", "hoverinfo": "skip", "showlegend": False}
-    return {**shape, "line": {"width": 0}, **look, "x": (x * 1e-6).tolist(), "y": (y * 1e-6).tolist()}
+    return {**shape, "line": {"width": 0}, **look, "x": x.tolist(), "y": y.tolist()}
+
+
+def ring(bore: float) -> Floats:
+    """Outline of the bushing's ring, (point, 2) [m]."""
+    rim = np.stack([np.cos(CIRCLE), np.sin(CIRCLE)], axis=-1)
+    return np.concatenate([bore * rim, (1.0 + RING) * bore * rim[::-1]])
 
 
 def _solids(state: State, theme: Theme) -> Iterator[Trace]:
     bore = state.stretch.bushing
-    rim = np.stack([np.cos(CIRCLE), np.sin(CIRCLE)], axis=-1)
-    ring = np.concatenate([bore * rim, (1.0 + RING) * bore * rim[::-1]])
-    yield _polygon(ring, fillcolor=theme.bushing, name="bushing")
+    yield polygon(ring(bore), fillcolor=theme.bushing, name="bushing")
     journal = state.stretch.points(state.journal(CIRCLE), CIRCLE)
-    yield _polygon(journal, fillcolor=theme.journal, line={"width": 1, "color": theme.ink}, name="journal")
+    yield polygon(journal, fillcolor=theme.journal, line={"width": 1, "color": theme.ink}, name="journal")
 
 
 def _petals(state: State, theme: Theme) -> Iterator[Trace]:
     if "radius" not in state.found.arrays or "petal_thickness" not in state.found.scalars:
         return
-    half, phi, radius = 0.5 * state.scalar("petal_thickness"), state.array("phi"), state.array("radius")
+    outlines = petal_outlines(state)
     for side in (0, 1):
-        roots = list(enumerate(state.array("root_angle")))[side::2]
-        outlines = [petal_outline(radius[petal], root + phi, half, state.stretch) for petal, root in roots]
-        if outlines:
-            yield _joined(
-                outlines, fillcolor=theme.petals[side], line={"width": 0.6, "color": theme.ink}, name="petals"
-            )
+        if outlines[side::2]:
+            look = {"fillcolor": theme.petals[side], "line": {"width": 0.6, "color": theme.ink}}
+            yield joined(outlines[side::2], name="petals", **look)
+
+
+def petal_outlines(state: State) -> list[Floats]:
+    """Outline of each petal, (point, 2) [m]."""
+    half, phi, radius = 0.5 * state.scalar("petal_thickness"), state.array("phi"), state.array("radius")
+    roots = enumerate(state.array("root_angle"))
+    return [petal_outline(radius[petal], root + phi, half, state.stretch) for petal, root in roots]
 
 
 def _foil(state: State, theme: Theme) -> Iterator[Trace]:
@@ -163,15 +171,15 @@ def _foil(state: State, theme: Theme) -> Iterator[Trace]:
         return
     theta = state.theta.ravel()
     surface = state.stretch.points(state.journal(theta) + state.array("film_thickness").ravel(), theta)
-    yield _polygon(surface, fill="none", line={"width": 2, "color": theme.ink}, name="foil")
+    yield polygon(surface, fill="none", line={"width": 2, "color": theme.ink}, name="foil")
 
 
-def _joined(shapes: list[Floats], **look: Any) -> Trace:
-    """Several shapes as one trace."""
-    trace = _polygon(shapes[0], **look)
+def joined(shapes: list[Floats], **look: Any) -> Trace:
+    """Several shapes as one trace; none as one without points."""
+    trace = polygon(shapes[0] if shapes else np.zeros((0, 2)), **look)
     trace["x"], trace["y"] = [], []
     for number, shape in enumerate(shapes):
-        one = _polygon(np.concatenate([shape, shape[:1]]))
+        one = polygon(np.concatenate([shape, shape[:1]]))
         trace["x"] += ([None] if number else []) + one["x"]
         trace["y"] += ([None] if number else []) + one["y"]
     return trace
@@ -179,12 +187,31 @@ def _joined(shapes: list[Floats], **look: Any) -> Trace:
 
 def _film(state: State) -> Iterator[Trace]:
     """The film, and the excess pressure as a band inside the journal, in the colours of the pressure."""
-    ratio, theta = state.pressure_ratio, state.theta
+    ratio = state.pressure_ratio
     low, high = min(float(ratio.min()), 1.0), max(float(ratio.max()), 1.001)
+    for colour, pieces in sorted(film_shapes(state, (low, high), BAND).items()):
+        yield joined(pieces, fillcolor=VIRIDIS[colour], line={"width": 0.4, "color": VIRIDIS[colour]}, name="film")
+    yield _colour_bar(low, high)
+
+
+def film_shapes(state: State, limits: tuple[float, float], height: float) -> dict[int, list[Floats]]:
+    """Shapes of film and band by the number of their colour.
+
+    Parameters
+    ----------
+    state : State
+        The state.
+    limits : (float, float)
+        Pressure ratios of the first and the last colour.
+    height : float
+        Height of the band at its largest excess pressure over the drawn radius of the journal.
+    """
+    (low, high), ratio, theta = limits, state.pressure_ratio, state.theta
     surface = state.journal(theta)
     points = state.stretch.points
     film = points(surface, theta), points(surface + state.array("film_thickness"), theta)
-    band = _band(state, ratio, theta)
+    most = max(abs(high - 1.0), abs(low - 1.0))
+    band = _band(state, ratio, theta, height / most)
     middles = 0.5 * (ratio[:, 1:] + ratio[:, :-1])
     colours = np.clip(((middles - low) / (high - low) * len(VIRIDIS)).astype(int), 0, len(VIRIDIS) - 1)
     shapes: dict[int, list[Floats]] = {}
@@ -192,9 +219,7 @@ def _film(state: State) -> Iterator[Trace]:
         for inner, outer in (film, band):
             piece = slice(start, stop + 2)
             shapes.setdefault(colour, []).append(np.concatenate([inner[strip, piece], outer[strip, piece][::-1]]))
-    for colour, pieces in sorted(shapes.items()):
-        yield _joined(pieces, fillcolor=VIRIDIS[colour], line={"width": 0.4, "color": VIRIDIS[colour]}, name="film")
-    yield _colour_bar(low, high)
+    return shapes
 
 
 def _runs(colours: npt.NDArray[np.int_]) -> Iterator[tuple[int, int, int, int]]:
@@ -205,12 +230,14 @@ def _runs(colours: npt.NDArray[np.int_]) -> Iterator[tuple[int, int, int, int]]:
             yield strip, int(row[start]), int(start), int(stop) - 1
 
 
-def _band(state: State, ratio: Floats, theta: Floats) -> tuple[Floats, Floats]:
-    """Base line (ambient pressure) and top of the band; suction goes outside the base line."""
+def _band(state: State, ratio: Floats, theta: Floats, height: float) -> tuple[Floats, Floats]:
+    """Base line (ambient pressure) and top of the band; suction goes outside the base line.
+
+    `height` is that of an excess pressure of one ambient pressure over the drawn radius of the journal.
+    """
     excess = ratio - 1.0
     drawn = state.stretch.radius(state.journal(theta))
-    height = BAND * float(state.stretch.radius(np.array(state.scalar("journal_radius"))))
-    height /= max(float(np.abs(excess).max()), 1e-12)
+    height *= float(state.stretch.radius(np.array(state.scalar("journal_radius"))))
     base = drawn - height * max(-float(excess.min()), 0.0)
     direction = np.stack([np.cos(theta), np.sin(theta)], axis=-1)
     return base[..., None] * direction, (base - height * excess)[..., None] * direction

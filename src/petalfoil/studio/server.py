@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 import contextlib
-import ipaddress
-import secrets
 import socket
-import webbrowser
 from collections import OrderedDict
 from collections.abc import AsyncIterator, Callable
-from dataclasses import dataclass
 from typing import Any
 
 import uvicorn
@@ -17,16 +13,13 @@ from fastapi import FastAPI
 from nicegui import app as nicegui_app
 from nicegui import ui
 
-from petalfoil.analysis import known_verbs
-from petalfoil.errors import DefinitionError, UsageError
+from petalfoil.studio.address import Address
 from petalfoil.studio.design import Design
-from petalfoil.studio.engine import Engine, default_size
+from petalfoil.studio.engine import Engine
 from petalfoil.studio.guard import Guard
 from petalfoil.studio.page import Page
 from petalfoil.studio.session import Session
-from petalfoil.studio.tasks import found_analysis
 
-LOOPBACK = "127.0.0.1"
 MOST_SESSIONS = 64
 """Tabs whose state is kept; beyond, the one that was left longest ago is forgotten."""
 CONNECT = 20.0
@@ -43,40 +36,6 @@ LOOK = "[matchMedia('(prefers-color-scheme: dark)').matches, innerWidth]"
 """What the browser is asked for: whether its user prefers a dark page, and the width of its window."""
 KEY = "petalfoil_session"
 """Name under which a tab keeps the key of its session and its own number, which a copy of the tab does not have."""
-
-
-@dataclass(frozen=True)
-class Address:
-    """Where the server is.
-
-    Attributes
-    ----------
-    host : str
-        Address that it listens to.
-    port : int
-        Its port.
-    token : str
-        What the first request must know.
-    """
-
-    host: str
-    port: int
-    token: str
-
-    @property
-    def url(self) -> str:
-        """What is opened in a browser."""
-        host = LOOPBACK if self.host == "0.0.0.0" else self.host
-        return f"http://{host}:{self.port}/?token={self.token}"
-
-    def names(self) -> list[str]:
-        """Names that a browser may know the server by."""
-        if not ipaddress.ip_address(self.host).is_unspecified:
-            return ["localhost", LOOPBACK, self.host] if self.host == LOOPBACK else [self.host]
-        import psutil
-
-        found = [address.address for addresses in psutil.net_if_addrs().values() for address in addresses]
-        return ["localhost", socket.gethostname().lower(), *found]
 
 
 class Sessions:
@@ -122,13 +81,15 @@ class Sessions:
         return left is not None
 
 
-def serve(
-    design: Design, address: Address, listening: socket.socket, told: Callable[[str], None], *, browse: bool
+async def serve(
+    engine: Engine, design: Design, address: Address, listening: socket.socket, told: Callable[[str], None]
 ) -> None:
-    """Serve the page until Ctrl-C.
+    """Serve the page until Ctrl-C, and end the workers.
 
     Parameters
     ----------
+    engine : Engine
+        Workers that have been started.
     design : Design
         The case that a new page begins with.
     address : Address
@@ -137,23 +98,16 @@ def serve(
         Socket that listens there.
     told : callable
         Called with the address when the server answers.
-    browse : bool
-        Whether to open a browser.
     """
-    warm_up(design)
-    engine = Engine(default_size())
-    sessions = Sessions(engine, design)
 
     @contextlib.asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
-        await engine.start()
         told(address.url)
-        if browse:
-            webbrowser.open(address.url)
         yield
         await engine.stop()
 
-    guarded = Guard(_application(lifespan, sessions), address.token, address.port, address.names())
+    application = _application(lifespan, Sessions(engine, design))
+    guarded = Guard(application, address.token, address.port, address.names())
     config = uvicorn.Config(
         guarded,
         log_level="warning",
@@ -163,15 +117,7 @@ def serve(
         ws_max_size=LARGEST_MESSAGE,
         timeout_graceful_shutdown=2,
     )
-    uvicorn.Server(config).run(sockets=[listening])
-
-
-def warm_up(design: Design) -> None:
-    """Load what the first page needs, so that it is as quick as the others; a case may be refused and mended there."""
-    with contextlib.suppress(DefinitionError):
-        design.case()
-    for verb in known_verbs.summaries():
-        found_analysis(verb)
+    await uvicorn.Server(config).serve(sockets=[listening])
 
 
 def _application(lifespan: Any, sessions: Sessions) -> FastAPI:
@@ -215,35 +161,3 @@ async def show(sessions: Sessions) -> None:
     session.listener = page.changed
     client.on_delete(lambda: sessions.leave(session, page))
     session.refresh()
-
-
-def address_of(host: str, port: int, *, to_network: bool) -> tuple[Address, socket.socket]:
-    """Where the server will be, and a socket that listens there; port 0 takes a free one.
-
-    Raises
-    ------
-    UsageError
-        The host is not this machine alone and `to_network` is not set; the port is taken.
-    """
-    try:
-        is_loopback = ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        raise UsageError(
-            f"--host: {host!r} is no IP address; allowed: {LOOPBACK}, or an address of this machine"
-        ) from None
-    if not is_loopback and not to_network:
-        raise UsageError(
-            f"--host: {host} can be reached by other machines, which then compute on this one, unencrypted: anyone on "
-            "the way can read the token. Say --allow-network if that is meant, or forward a port by ssh instead"
-        )
-    listening = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
-    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    try:
-        listening.bind((host, port))
-    except OSError as error:
-        listening.close()
-        raise UsageError(
-            f"--port: {host}:{port} cannot be used: {error.strerror}; --port 0 takes a free one"
-        ) from error
-    listening.listen(128)
-    return Address(host, listening.getsockname()[1], secrets.token_urlsafe(24)), listening

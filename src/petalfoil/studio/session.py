@@ -1,8 +1,6 @@
 """What one page is about: its design, what is computed for it, what was tried; knows no widgets.
 
-While a slider moves, answers follow it: a coarse 2-D one first, then one on the grid that the case asks for. A newer
-change cancels the fine answer under way and lets the coarse one end, which takes a fraction of a second; so pictures
-keep coming however fast the slider moves.
+How answers follow the design is in `live.py`.
 """
 
 from __future__ import annotations
@@ -12,83 +10,23 @@ import secrets
 import time
 from collections import deque
 from collections.abc import Callable, Coroutine, Mapping
-from dataclasses import dataclass, field, replace
-from enum import Enum, auto
+from dataclasses import replace
 from typing import Any
 
-from petalfoil.case import Case, ModelKind
+from petalfoil.case import Case
 from petalfoil.errors import DefinitionError
 from petalfoil.studio.design import Design
-from petalfoil.studio.engine import Engine, Job, Outcome
-from petalfoil.studio.protocol import Cancelled, Done, Failure, Found, Mapped, Work
-from petalfoil.walls import Capability, wall_kind
+from petalfoil.studio.engine import Engine, Job, words_of
+from petalfoil.studio.live import Live, live_verb
+from petalfoil.studio.protocol import Done, Failure, Found, Mapped, Searched, Work
+from petalfoil.studio.state import Aspect, Shown, Status, Tried
 
-FINE_CELLS = 64
-"""Cells per pitch of a 2-D grid above which a coarse answer comes first: below, the answer itself is as quick."""
 MOST_TRIED, MOST_LINES = 40, 200
 """Designs and lines of the log that a session remembers."""
 
 
-MAP = "map"
-"""Name under which the failure of a map stands among those of the analyses."""
-
-
-class Aspect(Enum):
-    """What of a session has changed."""
-
-    DESIGN, PROBLEMS, STATE, STATUS, ANSWERS, TRIED, LOG = (auto() for _ in range(7))
-
-
-@dataclass(frozen=True)
-class Shown:
-    """A result and the case that it belongs to.
-
-    Attributes
-    ----------
-    found : Found
-        The result.
-    toml : str
-        The case as it was typed.
-    arguments : mapping
-        Arguments of the analysis.
-    is_coarse : bool
-        Whether it is a first answer on a coarse 2-D grid.
-    """
-
-    found: Found
-    toml: str
-    arguments: Mapping[str, Any] = field(default_factory=dict)
-    is_coarse: bool = False
-
-
-@dataclass(frozen=True)
-class Tried:
-    """A design that was tried: what changed, and its main results."""
-
-    number: int
-    change: str
-    design: Design
-    scalars: Mapping[str, Any]
-    grid: str
-
-
-@dataclass
-class Status:
-    """What the session is doing.
-
-    Attributes
-    ----------
-    words : str
-        In words.
-    part : float or None
-        Part done (0 to 1); None where nothing runs.
-    failure : str
-        Why there is no answer; empty where there is one.
-    """
-
-    words: str = "starting"
-    part: float | None = None
-    failure: str = ""
+MAP, OPTIMUM = "map", "search"
+"""Names under which the failures of studies stand among those of the analyses."""
 
 
 class Session:
@@ -111,16 +49,15 @@ class Session:
         self.answers: dict[str, Shown] = {}
         self.failures: dict[str, str] = {}
         self.map: Mapped | None = None
+        self.optimum: Searched | None = None
         self.tried: list[Tried] = []
         self.status = Status()
         self.log: deque[str] = deque(maxlen=MOST_LINES)
         self.is_dark = False
         self.listener: Callable[[Aspect], None] | None = None
         self._engine = engine
-        self._is_due = False
-        self._fine: Job | None = None
         self._question: Job | None = None
-        self._live: asyncio.Task[None] | None = None
+        self._live = Live(self, engine)
         self._questions: set[asyncio.Task[None]] = set()
 
     # ------------------------------------------------------------------------------------------ the design
@@ -136,8 +73,8 @@ class Session:
     def open(self, design: Design, words: str) -> None:
         """Go on with another design."""
         self.design = design
-        self._note(words)
-        self._tell(Aspect.DESIGN)
+        self.note(words)
+        self.tell(Aspect.DESIGN)
         self.refresh()
 
     def case(self) -> Case | None:
@@ -146,20 +83,16 @@ class Session:
             case = self.design.case()
         except DefinitionError as error:
             self.problems = _by_key(error)
-            self._tell(Aspect.PROBLEMS)
+            self.tell(Aspect.PROBLEMS)
             return None
         if self.problems:
             self.problems = {}
-            self._tell(Aspect.PROBLEMS)
+            self.tell(Aspect.PROBLEMS)
         return case
 
     def refresh(self) -> None:
         """Answer the design as it is now; a fine answer under way belongs to a former one."""
-        self._is_due = True
-        if self._fine is not None:
-            self._engine.cancel(self._fine)
-        if self._live is None or self._live.done():
-            self._live = asyncio.get_running_loop().create_task(self._follow())
+        self._live.refresh()
 
     def pin(self) -> None:
         """Keep the present state as A, or forget A where it is the present one."""
@@ -168,7 +101,7 @@ class Session:
             self.pinned = None
         elif shown is not None:
             self.pinned = replace(shown, found=replace(shown.found, records=()))
-        self._tell(Aspect.STATE)
+        self.tell(Aspect.STATE)
 
     def go_back(self, number: int) -> None:
         """Open a design that was tried."""
@@ -182,31 +115,46 @@ class Session:
         """Run an analysis of the design; one that still runs is cancelled."""
         if self.case() is None:
             self.failures[verb] = "the case is refused: mend the fields that are marked"
-            self._tell(Aspect.ANSWERS)
+            self.tell(Aspect.ANSWERS)
             return
         self._start(self._answer(verb, work=Work.ANSWER, verb=verb, arguments=dict(arguments)))
 
     def study(self, vary: Mapping[str, str]) -> None:
         """Map the design over one or two parameters; a question that still runs is cancelled."""
+        self._begin_study(MAP, Work.STUDY, vary=dict(vary))
+
+    def search(self, vary: Mapping[str, str], goals: Mapping[str, Any], budget: str) -> None:
+        """Look for the best design; a question that still runs is cancelled."""
+        if not budget.strip().isdigit():
+            self.failures[OPTIMUM] = f"designs: {budget!r} is no number of designs; write a whole number, such as 40"
+            self.tell(Aspect.ANSWERS)
+            return
+        self._begin_study(OPTIMUM, Work.OPTIMUM, vary=dict(vary), goals={**goals, "budget": int(budget)})
+
+    def _begin_study(self, name: str, work: Work, **asked: Any) -> None:
         case = self.case()
         if case is None:
-            self.failures[MAP] = "the case is refused: mend the fields that are marked"
-            self._tell(Aspect.ANSWERS)
+            self.failures[name] = "the case is refused: mend the fields that are marked"
+            self.tell(Aspect.ANSWERS)
             return
-        self._start(self._answer(MAP, work=Work.STUDY, verb=live_verb(case), vary=dict(vary)))
+        self._start(self._answer(name, work=work, verb=live_verb(case), **asked))
 
     def open_place(self, place: Mapping[str, Any]) -> None:
-        """Open the design at a place of the map: values by path."""
+        """Open the design at a place of a map or a search: values by path."""
         design = self.design
         for path, value in place.items():
             design = design.with_value(path, value)
-        self.open(design, "opened from the map")
+        self.open(design, "opened from a study")
+
+    def ask_bars(self) -> None:
+        """Compute the error bars of the present state, which in 3-D takes some times as long as the state did."""
+        self._live.ask_bars()
 
     def cancel(self) -> None:
         """Stop whatever is computed for this session."""
-        self._is_due = False
+        self._live.forget()
         self._engine.leave(self.key)
-        self._say("cancelled", None)
+        self.say("cancelled", None)
 
     async def file(self, work: Work, shown: Shown) -> bytes | str:
         """A file of a result, or why there is none; a result that was slimmed down is computed again."""
@@ -216,57 +164,12 @@ class Session:
             again = self._engine.submit(self.key, Work.ANSWER, is_long=True, arguments=shown.arguments, **asked)
             outcome = await again.outcome
             if not isinstance(outcome, Done) or not isinstance(outcome.result, Found):
-                return _words(outcome)
+                return words_of(outcome)
             records = outcome.result.records
         outcome = await self._engine.submit(self.key, work, records=records, **asked).outcome
-        return outcome.result if isinstance(outcome, Done) and isinstance(outcome.result, bytes) else _words(outcome)
+        return outcome.result if isinstance(outcome, Done) and isinstance(outcome.result, bytes) else words_of(outcome)
 
     # ------------------------------------------------------------------------------------------ inside
-
-    async def _follow(self) -> None:
-        """Answer the newest design until there is no newer one."""
-        while self._is_due:
-            self._is_due = False
-            design = self.design
-            case = self.case()
-            if case is None:
-                self._say("refused", None, failure="the case is refused: see the fields that are marked")
-                continue
-            verb = live_verb(case)
-            if needs_coarse(case) and not await self._answer_coarse(design, verb):
-                continue
-            if not self._is_due:
-                await self._answer_fine(design, verb)
-
-    async def _answer_coarse(self, design: Design, verb: str) -> bool:
-        """Show a coarse answer, if there is one; false where it was cancelled."""
-        self._say("computing", 0.0)
-        job = self._engine.submit(self.key, Work.ANSWER, verb=verb, case_toml=design.to_toml(), coarse=True)
-        outcome = await job.outcome
-        if isinstance(outcome, Done) and isinstance(outcome.result, Found):
-            self.state = Shown(outcome.result, design.to_toml(), is_coarse=True)
-            self._tell(Aspect.STATE)
-        return not isinstance(outcome, Cancelled)
-
-    async def _answer_fine(self, design: Design, verb: str) -> None:
-        case, toml = design.case(), design.to_toml()
-        is_long = case.model.kind is ModelKind.THREE_D
-        self._say("computing", 0.0)
-        self._fine = self._engine.submit(
-            self.key, Work.ANSWER, is_long=is_long, on_progress=self._progress, verb=verb, case_toml=toml
-        )
-        self._tell_queue(self._fine)
-        outcome = await self._fine.outcome
-        self._fine = None
-        if isinstance(outcome, Done) and isinstance(outcome.result, Found):
-            self.state = Shown(outcome.result, toml)
-            self._remember(design, outcome.result)
-            self._tell(Aspect.STATE)
-            self._say(f"converged in {outcome.result.seconds:.2g} s", None)
-        elif isinstance(outcome, Failure):
-            self._say("no answer", None, failure=_words(outcome))
-            self.problems = {key: text for key, text in outcome.problems if key}
-            self._tell(Aspect.PROBLEMS)
 
     def _start(self, answer: Coroutine[Any, Any, None]) -> None:
         """Begin a question; one that still runs is cancelled."""
@@ -280,68 +183,64 @@ class Session:
         toml = self.design.to_toml()
         self.failures.pop(name, None)
         self._question = job = self._engine.submit(
-            self.key, work, is_long=True, on_progress=self._progress, case_toml=toml, **asked
+            self.key, work, is_long=True, on_progress=self.progress, case_toml=toml, **asked
         )
-        self._say(f"{name}: computing", 0.0)
-        self._tell_queue(job)
+        self.say(f"{name}: computing", 0.0)
+        self.tell_queue(job)
         outcome = await job.outcome
         if self._question is job:
             self._question = None
         if isinstance(outcome, Failure):
-            self.failures[name] = _words(outcome)
-            self._say(f"{name}: no answer", None)
-            self._note(f"{name}: {_words(outcome)}")
+            self.failures[name] = words_of(outcome)
+            self.say(f"{name}: no answer", None)
+            self.note(f"{name}: {words_of(outcome)}")
         elif isinstance(outcome, Done) and not isinstance(outcome.result, bytes):
             if isinstance(outcome.result, Mapped):
                 self.map = outcome.result
+            elif isinstance(outcome.result, Searched):
+                self.optimum = outcome.result
             else:
                 self.answers[name] = Shown(outcome.result, toml, asked["arguments"])
-            self._say(f"{name}: done in {outcome.result.seconds:.2g} s", None)
-        self._tell(Aspect.ANSWERS)
+            self.say(f"{name}: done in {outcome.result.seconds:.2g} s", None)
+        self.tell(Aspect.ANSWERS)
 
-    def _remember(self, design: Design, found: Found) -> None:
+    def remember(self, design: Design, found: Found) -> None:
+        """Add a design and its results to those that were tried."""
         if self.tried and self.tried[-1].design.tables == design.tables:
             return
         change = design.changes_from(self.tried[-1].design) if self.tried else "start"
         number = self.tried[-1].number + 1 if self.tried else 1
         self.tried.append(Tried(number, change, design, dict(found.scalars), found.grid))
         del self.tried[:-MOST_TRIED]
-        self._note(f"{number}: {change} ({found.verb}, {found.grid}, {found.seconds:.2g} s)")
-        self._tell(Aspect.TRIED)
+        self.note(f"{number}: {change} ({found.verb}, {found.grid}, {found.seconds:.2g} s)")
+        self.tell(Aspect.TRIED)
 
-    def _tell_queue(self, job: Job) -> None:
+    def tell_queue(self, job: Job) -> None:
+        """Tell how many runs are before one."""
         ahead = self._engine.ahead_of(job)
         if ahead:
-            self._say(f"waiting: {ahead} before this one", 0.0)
+            self.say(f"waiting: {ahead} before this one", 0.0)
 
-    def _progress(self, part: float, text: str) -> None:
-        self._say(text, part)
+    def progress(self, part: float, text: str) -> None:
+        """Tell how far a run is."""
+        self.say(text, part)
 
-    def _say(self, words: str, part: float | None, failure: str = "") -> None:
+    def say(self, words: str, part: float | None, failure: str = "") -> None:
+        """Tell what is under way: in words, the part done, and why there is no answer."""
         if failure and failure != self.status.failure:
-            self._note(failure)
+            self.note(failure)
         self.status = Status(words, part, failure)
-        self._tell(Aspect.STATUS)
+        self.tell(Aspect.STATUS)
 
-    def _note(self, line: str) -> None:
+    def note(self, line: str) -> None:
+        """Add a line to the log."""
         self.log.append(f"{time.strftime('%H:%M:%S')}  {line}")
-        self._tell(Aspect.LOG)
+        self.tell(Aspect.LOG)
 
-    def _tell(self, aspect: Aspect) -> None:
+    def tell(self, aspect: Aspect) -> None:
+        """Tell the page what has changed."""
         if self.listener is not None:
             self.listener(aspect)
-
-
-def live_verb(case: Case) -> str:
-    """The analysis that answers while a slider moves: the position under the case's load, or at its displacement."""
-    return "solve" if case.operation.load is None else "balance"
-
-
-def needs_coarse(case: Case) -> bool:
-    """Whether the case's grid is so fine that a coarse answer comes first."""
-    return case.model.kind is ModelKind.THREE_D or (
-        wall_kind(case).can(Capability.PACK) and case.cells_per_pitch > FINE_CELLS
-    )
 
 
 def _by_key(error: DefinitionError) -> dict[str, str]:
@@ -351,11 +250,3 @@ def _by_key(error: DefinitionError) -> dict[str, str]:
         name = key.partition("[")[0]
         found[name] = f"{found[name]}; {text}" if name in found else text
     return found
-
-
-def _words(outcome: Outcome) -> str:
-    """Why an outcome holds no answer."""
-    if isinstance(outcome, Failure):
-        text = f"{outcome.message}. {outcome.advice}" if outcome.advice else outcome.message
-        return f"a fault of petalfoil, please report it: {text}" if outcome.is_fault else text
-    return "cancelled" if isinstance(outcome, Cancelled) else "no answer"

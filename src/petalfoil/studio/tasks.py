@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import tempfile
 import time
 from collections.abc import Mapping
@@ -18,12 +17,11 @@ from petalfoil.errors import DefinitionError, UsageError
 from petalfoil.memory import grid_of
 from petalfoil.results.layout import Answer, Layout
 from petalfoil.results.record import Record, warnings_of_all
-from petalfoil.results.schema import SCALARS, DataType, Role
 from petalfoil.results.summary import without_rounding
 from petalfoil.results.tables import tables_of
 from petalfoil.studio.arrays import arrays_of
 from petalfoil.studio.design import without_files
-from petalfoil.studio.protocol import Found, Mapped, Task, Work
+from petalfoil.studio.protocol import Found, Mapped, Searched, Task, Work
 from petalfoil.walls import Capability, wall_kind
 
 if TYPE_CHECKING:
@@ -33,13 +31,11 @@ COARSE_CELLS = 32
 """Cells per pitch of the coarse answer: half of the time of the default grid's, forces within some per cent."""
 COARSE_PLAIN_CELLS = 96
 """The same round the circle of a plain bearing."""
-MOST_CASES = 400
-"""Largest map: some minutes of 2-D cases."""
 MOST_UNKNOWNS = 150_000
 """Largest grid that the page runs: a minute or two on one core, and some 2 GB."""
 
 
-def perform(task: Task, progress: Progress) -> Found | Mapped | bytes:
+def perform(task: Task, progress: Progress) -> Found | Mapped | Searched | bytes:
     """Do what a task asks for.
 
     Raises
@@ -50,8 +46,12 @@ def perform(task: Task, progress: Progress) -> Found | Mapped | bytes:
     analysis = found_analysis(task.verb)
     if task.work is Work.ANSWER:
         return answered(task, analysis, progress)
-    if task.work is Work.STUDY:
-        return mapped(task, progress)
+    if task.work in (Work.STUDY, Work.OPTIMUM):
+        from petalfoil.studio import study_tasks
+
+        case = Case(**without_files(task.case_toml))
+        refuse_huge(case)
+        return (study_tasks.mapped if task.work is Work.STUDY else study_tasks.searched)(task, case, progress)
     return file_of(task, analysis)
 
 
@@ -127,44 +127,6 @@ def without_stored(analysis: Analysis, arguments: Mapping[str, Any]) -> dict[str
         if isinstance(analysis.arguments.get(name), StoredResult):
             raise UsageError(f"{name}: the page reads no files of the server")
     return dict(arguments)
-
-
-def mapped(task: Task, progress: Progress) -> Mapped:
-    """Run an analysis over one or two parameters, here and one case after another.
-
-    Raises
-    ------
-    UsageError
-        There are other than one or two parameters, or more than `MOST_CASES` cases.
-    """
-    from petalfoil.studies.run import Execution
-    from petalfoil.studies.sweep import sweep
-    from petalfoil.studies.variation import read_levels
-
-    start = time.perf_counter()
-    case = Case(**without_files(task.case_toml))
-    refuse_huge(case)
-    levels = [read_levels(case, path, text) for path, text in task.vary.items()]
-    cases = math.prod(len(one.values) for one in levels)
-    if not 1 <= len(levels) <= 2 or cases > MOST_CASES:
-        raise UsageError(f"a map has one or two parameters and up to {MOST_CASES} cases; these are {cases}")
-    ds = sweep(case, task.vary, task.verb, execution=Execution(workers=0, progress=progress))
-    shape = tuple(len(one.values) for one in levels)
-    return Mapped(
-        parameters={one.path: tuple(map(float, one.values)) for one in levels},
-        units={one.path: one.parameter.unit for one in levels},
-        results={
-            str(name): array.values for name, array in ds.items() if is_answer(str(name)) and array.shape == shape
-        },
-        missing=int((~ds["converged"].values).sum()),
-        seconds=time.perf_counter() - start,
-    )
-
-
-def is_answer(name: str) -> bool:
-    """Whether a result is a number that an analysis finds."""
-    variable = SCALARS.get(name)
-    return variable is not None and variable.kind is DataType.FLOAT and variable.role is Role.ANSWER
 
 
 # ---------------------------------------------------------------------------------------------- files

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import os
 import sys
 from collections.abc import Callable
@@ -17,6 +18,14 @@ if TYPE_CHECKING:
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 """Variables that limit the threads of a worker to one: parallel work is over tasks."""
+MOST_MEMORY = 4e9
+"""Memory that a worker may take on a large machine [bytes]: the largest grid of the page needs some 2.3 GB."""
+PART_OF_MACHINE = 0.4
+"""The same over the memory of a small machine: two workers leave a fifth to others."""
+SHARED = 12.0
+"""Wall time over processor time of a worker on a machine that others use, up to which it is waited for."""
+WATCH = 0.2
+"""Time between two looks at a worker that is to stop [s]."""
 GRACE = 2.0
 """Time that an idle worker has to end by itself when the server closes [s]."""
 
@@ -53,6 +62,7 @@ class WorkerProcess:
             "-c",
             COMMAND,
             str(reading if posix else -1),
+            str(int(memory_limit())),
             stdin=asyncio.subprocess.PIPE,
             stdout=asyncio.subprocess.PIPE,
             pass_fds=(reading,) if posix else (),
@@ -87,10 +97,30 @@ class WorkerProcess:
         return job
 
     def stop_task(self, patience: float) -> None:
-        """Ask it to stop its task, and kill it where it does not in time."""
+        """Ask it to stop its task, and kill it where it does not within `patience` seconds of its processor time."""
         if self.job is not None and self._watch is None:
             self._send(Cancel(self.job.task.number))
-            self._watch = asyncio.get_running_loop().call_later(patience, self.kill)
+            loop = asyncio.get_running_loop()
+            self._watch = loop.call_later(
+                patience, self._watch_stop, self.processor_time() + patience, loop.time() + SHARED * patience
+            )
+
+    def _watch_stop(self, processor_time: float, time: float) -> None:
+        """Kill the worker if it has had its time to stop; on a busy machine it may not have."""
+        loop = asyncio.get_running_loop()
+        if self.processor_time() >= processor_time or loop.time() >= time:
+            self.kill()
+        else:
+            self._watch = loop.call_later(WATCH, self._watch_stop, processor_time, time)
+
+    def processor_time(self) -> float:
+        """Processor time that it took so far [s]; infinite where it is gone."""
+        import psutil
+
+        try:
+            return float(sum(psutil.Process(self.pid).cpu_times()[:2]))
+        except psutil.NoSuchProcess:
+            return math.inf
 
     def memory(self) -> float:
         """Memory that it takes [bytes]; 0 where it is gone."""
@@ -140,3 +170,10 @@ class WorkerProcess:
         finally:
             os.close(self._lifeline)
         ended(self, code)
+
+
+def memory_limit() -> float:
+    """Memory that a worker may take on this machine [bytes]."""
+    import psutil
+
+    return min(MOST_MEMORY, PART_OF_MACHINE * float(psutil.virtual_memory().total))

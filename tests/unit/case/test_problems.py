@@ -39,3 +39,19 @@ def test_the_problems_of_a_file_are_those_of_its_case(tmp_path: Path) -> None:
 
 def test_an_error_without_a_list_has_one_problem() -> None:
     assert DefinitionError("petals: no overlap", key="petals").problems == (("petals", "no overlap"),)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "told"),
+    [
+        ("petals.leaf_length", "1 in", "'arc_length'"),
+        ("petals.number_of_leaves", 8, "'count'"),
+        ("petals.mount", "cantilever", "'clamped'"),
+        ("petals.chord", "1 in", "2 R asin(chord / (2 R))"),
+        ("petals.preload", "1 N", "Preload follows"),
+    ],
+)
+def test_words_of_drawings_lead_to_keys(key: str, value: object, told: str) -> None:
+    with pytest.raises(DefinitionError) as caught:
+        Case(**put(tables(), key, value))
+    assert told in dict(caught.value.problems)[key]

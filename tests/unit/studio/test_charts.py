@@ -19,7 +19,8 @@ from petalfoil.studio.downloads import csv_of
 from petalfoil.studio.protocol import Found, Mapped, Task, Work
 from petalfoil.studio.results_panel import rows_of
 from petalfoil.studio.section_chart import has_section, section_chart
-from petalfoil.studio.tasks import MOST_CASES, MOST_UNKNOWNS, coarse, found_analysis, perform, stored_answer
+from petalfoil.studio.study_tasks import MOST_CASES
+from petalfoil.studio.tasks import MOST_UNKNOWNS, coarse, found_analysis, perform, stored_answer
 from petalfoil.studio.themes import DARK, LIGHT
 from tests.cases import case, tables
 
