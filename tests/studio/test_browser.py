@@ -328,6 +328,9 @@ def test_capacity_has_a_tab_of_its_own(page: Page) -> None:
     page.get_by_role("tab", name="capacity").click()
     page.set_default_timeout(4.0 * PATIENCE)  # twenty balances and more
     page.get_by_role("button", name="Run capacity").click()
+    page.locator(".question .refusal:visible", has_text="needs a limit").wait_for()
+    page.get_by_label("capacity min film").fill("4 um")
+    page.get_by_role("button", name="Run capacity").click()
     answered(page, "capacity: done")
     page.locator(".question:visible", has_text="load capacity").wait_for()
 

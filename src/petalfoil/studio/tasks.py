@@ -74,13 +74,15 @@ def answered(task: Task, analysis: Analysis, progress: Progress) -> Found:
         pass
     answer = analysis.answer(run)
     last = answer.records[-1]
+    scalars = without_rounding(last)
+    rounded = {name for name, value in scalars.items() if value == 0.0 != last.scalars[name]}
     return Found(
         verb=task.verb,
         tables=tuple(tables_of(answer)),
         warnings=answer.warnings,
         failures=tuple(answer.failures()),
-        scalars=without_rounding(last),
-        bars=dict(last.errors or {}),
+        scalars=scalars,
+        bars={name: bar for name, bar in (last.errors or {}).items() if name not in rounded},
         arrays=arrays_of(answer),
         records=() if task.coarse else answer.records,
         grid=grid_of(case).words,
