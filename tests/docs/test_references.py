@@ -22,7 +22,7 @@ from tests.docs.texts import DOCS, ROOT, SOURCE, labels_in, modules, name_of, pa
 
 FILE = re.compile(r"[\w<>.-]*/[\w<>./-]*|[\w<>-]+\.(?:py|md|toml|csv|json)")
 OF_THE_READER = {"case.toml", "index.html", "report.json", "result.nc", "study.toml", "table.csv", "figures/"}
-OF_THE_READER |= {"fields/", "designs/", "build/docs"}
+OF_THE_READER |= {"fields/", "designs/", "build/docs", "build/fuzz.jsonl"}
 """Files that a reader makes."""
 
 PLACES = (ROOT, SOURCE, ROOT / "examples", DOCS)
