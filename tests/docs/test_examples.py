@@ -36,6 +36,7 @@ SMALL = {
     "unequal_petals": (32, None, 8.15, 27.32e-3, 0.02),
     "rig": (32, None, 0.0, 62.2e-3, 0.06),
     "rig_hot": (32, None, 46.4, 38.17e-3, 0.04),
+    "unequal_bearings": (32, None, 4.708, 27.35e-3, 0.02),
 }
 
 

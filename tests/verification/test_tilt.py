@@ -194,7 +194,6 @@ def test_every_verb_knows_the_tilt() -> None:
     [
         ({"model.kind": "2d"}, 'operation.tilt: needs the length of the bearing; allowed: model.kind = "3d"'),
         ({"model.method": "classic"}, "operation.tilt: is not in the paper"),
-        ({"rotor": {"mass": 1.0, "span": 0.1, "transverse_inertia": 0.01}}, "the shaft tilts by itself"),
         ({"operation.moment": (0.0, 1.0)}, "operation.moment: is given beside operation.tilt"),
         ({"operation.tilt": (1.0, 0.0)}, "operation.tilt"),
         ({"operation.tilt": (0.05, 0.0)}, "operation.eccentricity: the journal displaced by"),

@@ -48,6 +48,8 @@ What they share:
 `derivative_sources.py` where the results of each question have them
 `sensitivity_table.py` the rows of `sensitivity`
 `impedance.py`         small motions of the journal
+`rotor_balance.py`     a rotor in two bearings that do not share its load evenly
+`other_bearing.py`     what results tell of the second of them
 `rotor_on_bearings.py` a rigid rotor on its bearing, or in two of them
 `tilt_coefficients.py` stiffness and damping of a journal that tilts
 `tilted_journal.py`   one equilibrium, its journal free to tilt or held

@@ -14,6 +14,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
 from petalfoil.case.sections import UNIFORM
@@ -65,7 +66,10 @@ def with_stations(case: Case) -> Case:
 
 def coarse_solution(case: Case) -> Solution | None:
     """An equilibrium at the case's operating point; None where none is found at once."""
-    problem, load = build_problem(case), case.operation.load
+    load = case.operation.load
+    if not case.shares_evenly:  # the first bearing under its part of the load
+        case, load = case.supports[0], None if load is None else RotorInBearings.of(case, load).shares()[0]
+    problem = build_problem(case)
     if load is None:
         return by_barriers(problem)
     try:

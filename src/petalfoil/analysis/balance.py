@@ -15,6 +15,7 @@ from petalfoil.analysis.operating_point import (
     under_load,
     with_reported,
 )
+from petalfoil.analysis.other_bearing import bearing_of, of_rotor, rotor_parts
 from petalfoil.analysis.records import effort, position, solution_record
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, running
@@ -47,7 +48,8 @@ def balance(
 
     Results as from solve, at that position. A load that the film does not
     carry alone is an answer too: "carried by" tells what solid contact carries.
-    Under a moment about the bearing's centre the journal tilts as well.
+    Under a moment about the bearing's centre the journal tilts as well. Of a
+    rotor in two bearings (rotor.span) load and moment are those of the rotor.
 
     Example: petalfoil balance case.toml --load "0 N, -50 N" --speed "60000 rpm"
 
@@ -60,7 +62,8 @@ def balance(
     """
     case, wanted = at(case, speed, (0.0, 0.0)), applied_load(case, load)
     if moment is not None:
-        case = case.replace(**{"operation.moment": moment, "operation.tilt": None})
+        askew = case.operation.tilt if case.bearings > 1 else None
+        case = case.replace(**{"operation.moment": moment, "operation.tilt": askew})
     with running(progress, "balance") as run:
         found = with_reported(case, OperatingPoint(*under_load(case, wanted)))
         loaded = AppliedLoad.of(wanted, case.operation.moment)
@@ -69,9 +72,11 @@ def balance(
 
 def balance_record(analysis: str, case: Case, found: Solution, *parts: object) -> Record:
     """The record of a balance, at the position found."""
-    evaluated = Evaluation.of(case, found)
-    own = (position(case, found), ForceResidual(found.force_residual), carrier(evaluated.contact_fraction))
-    return solution_record(analysis, evaluated, *own, *parts)
+    bearing = bearing_of(case, found)
+    evaluated = Evaluation.of(bearing, found)
+    own = (position(bearing, found), ForceResidual(found.force_residual), carrier(evaluated.contact_fraction))
+    record = solution_record(analysis, evaluated, *own, *parts, *rotor_parts(case, found))
+    return record if found.other is None else of_rotor(record, case)
 
 
 def carrier(contact_fraction: float) -> CarriedBy:

@@ -18,6 +18,7 @@ from petalfoil.analysis.fields import all_fields
 from petalfoil.analysis.heat_results import heat_results
 from petalfoil.analysis.load_limit import Capacity, Limits, LoadRay, largest_load
 from petalfoil.analysis.operating_point import at
+from petalfoil.analysis.other_bearing import rotor_parts
 from petalfoil.analysis.records import asked_position, effort, geometry, position, record_of
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
@@ -341,13 +342,14 @@ def carried(case: Case, capacity: Capacity) -> tuple[object, ...]:
     bearing, found = case.bearing, loaded.found
     coefficient = loaded.size / (case.bearings * bearing.length * (2.0 * bearing.journal_radius) ** 2)
     coefficient /= case.operation.speed
-    warm = heat_results(case, found.answer)
+    warm = heat_results(found.case, found.answer)
     return (
         *(() if warm is None else (warm,)),
-        position(case, found.answer),
+        position(found.case, found.answer),
         found.forces(),
         found.film(),
-        wall_kind(case).scalars(all_fields(found)),
+        wall_kind(found.case).scalars(all_fields(found)),
+        *rotor_parts(case, found.answer),
         carrier(found.contact_fraction),
         Carried(
             load_capacity=loaded.size,

@@ -17,6 +17,7 @@ from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.heat_results import heat_results
 from petalfoil.analysis.impedance import Array, cycle_impedance, elastic_and_sliding, impedances
 from petalfoil.analysis.operating_point import OperatingPoint, Vector, at, operating_point
+from petalfoil.analysis.other_bearing import bearing_of, rotor_parts
 from petalfoil.analysis.records import effort, failed_record, geometry, position, record_of
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
@@ -308,8 +309,9 @@ def point(case: Case, asked: Asked, load: Vector | None) -> Record:
     """
     speed = case.operation.speed
     found = operating_point(whole_length(case) if asked.tilt else case, load)
-    answer = free_to_tilt(case, found.answer) if asked.tilt else held(case, found.answer)
-    motion, sliding = elastic_and_sliding(case, answer)
+    bearing = bearing_of(case, found.answer)
+    answer = free_to_tilt(bearing, found.answer) if asked.tilt else held(bearing, found.answer)
+    motion, sliding = elastic_and_sliding(bearing, answer)
     if asked.amplitude is None or sliding is None:
         pairs = impedances(motion, asked.frequencies, speed)
     else:
@@ -324,13 +326,14 @@ def point(case: Case, asked: Asked, load: Vector | None) -> Record:
         ContactModel.of_motion(motion),
         Outcome(residual=found.answer.reported_residual),
         cost,
-        fields=dict(blocks(case, pairs)),
+        fields=dict(blocks(bearing, pairs)),
         coords={"whirl_frequency": asked.frequencies, "row": np.arange(2), "column": np.arange(2)},
     )
 
 
 def state_parts(case: Case, found: OperatingPoint) -> tuple[object, ...]:
     """What is told of the equilibrium that small motions are about."""
-    contact, hot = Contact(Evaluation.of(case, found.answer).contact_fraction), heat_results(case, found.answer)
-    heat = () if hot is None else (hot,)
-    return *geometry(case), position(case, found.answer), contact, found.branch, *found.loaded, *heat
+    bearing = bearing_of(case, found.answer)
+    contact, hot = Contact(Evaluation.of(bearing, found.answer).contact_fraction), heat_results(bearing, found.answer)
+    told = (*(() if hot is None else (hot,)), *rotor_parts(case, found.answer))
+    return *geometry(bearing), position(bearing, found.answer), contact, found.branch, *found.loaded, *told

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from petalfoil.case import Case
+from petalfoil.dynamics.reduced_impedance import JournalMotion
 from petalfoil.equilibrium.element_contacts import with_elements
-from petalfoil.equilibrium.small_motion import Motion
 from petalfoil.equilibrium.solution import Solution
 
 
@@ -25,7 +25,7 @@ class ContactModel:
         return cls(answer.contact_model, answer.nodal_force_difference)
 
     @classmethod
-    def of_motion(cls, motion: Motion) -> ContactModel:
+    def of_motion(cls, motion: JournalMotion) -> ContactModel:
         """Those of stiffness and damping."""
         return cls(motion.contact_model if motion.problem.layout.n_wall else None)
 

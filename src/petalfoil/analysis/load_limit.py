@@ -17,6 +17,8 @@ from petalfoil.analysis.contact_model import reported
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.fields import all_fields
 from petalfoil.analysis.heat_results import with_heat
+from petalfoil.analysis.other_bearing import bearing_of
+from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.case import Case
 from petalfoil.equilibrium.element_tangent import ElementTangent
 from petalfoil.equilibrium.run_context import current_run
@@ -142,6 +144,10 @@ class LoadRay:
     base: CoupledProblem = field(init=False)
 
     def __post_init__(self) -> None:
+        if not self.case.shares_evenly:
+            rotor = self._rotor(0.0)
+            self.base = rotor.supports[int(rotor.turned)].problem
+            return
         self.base = build_problem(self.case.replace(**{"operation.eccentricity": (0.0, 0.0)}))
         if self.known is not None:  # its layout has the factors' elimination orders
             self.base = self.known.problem.at(
@@ -162,18 +168,27 @@ class LoadRay:
 
     def at(self, size: float) -> Loaded | str:
         """The balance under a load [N], or why there is none that a bearing can run with."""
-        load, known = self.load(size), self.known
+        known = self.known
         try:
-            answer = balance_cold(self.base, load) if known is None else self._neighbour(known, load)
-            answer = None if answer is None else with_heat(self.case, answer)
+            if self.case.shares_evenly:
+                load = self.load(size)
+                answer = balance_cold(self.base, load) if known is None else self._neighbour(known, load)
+                answer = None if answer is None else with_heat(self.case, answer)
+            else:
+                answer = self._rotor(size).at(self.case.operation.speed, known)
         except ConvergenceError:
             return NO_BALANCE
         if answer is None:
             return NO_BALANCE
         if answer.contacts is None:  # the interior point had the last word
             return BOTTOMED_OUT
-        self.known = reported(self.case, answer, known)
+        self.known = answer if answer.other is not None else reported(self.case, answer, known)
         return self._judged(size, self.known)
+
+    def _rotor(self, size: float) -> RotorInBearings:
+        """The rotor under a load [N], where its bearings do not share it evenly."""
+        x, y = self.direction
+        return RotorInBearings.of(self.case, (size * x, size * y))
 
     def _neighbour(self, known: Solution, load: Array) -> Solution | None:
         if self.case.heat is not None:
@@ -187,7 +202,7 @@ class LoadRay:
         The tangent of a bearing with a heat network has the temperatures beside the position, and foretells none.
         """
         answer = here.found.answer
-        if answer.contacts is None or answer.load is None or self.case.heat is not None:
+        if answer.contacts is None or answer.load is None or self.case.heat is not None or answer.other is not None:
             return math.nan
         ahead = self._judged(here.size, foretold(answer, PROBE * answer.load))
         return (ahead.margin - here.margin) / PROBE if ahead.limit == here.limit else math.nan
@@ -201,8 +216,11 @@ class LoadRay:
         return -(ahead.margin - here.margin) / PROBE / by_load if ahead.limit == here.limit else math.nan
 
     def _judged(self, size: float, answer: Solution) -> Loaded:
-        found = Evaluation.of(self.case, answer)
+        found = Evaluation.of(bearing_of(self.case, answer), answer)
         margin, limit = self.limits.margin(found)
+        if answer.other is not None:  # the bearing that is nearer to its limit bounds the load
+            other = Evaluation.of(self._rotor(size).untold(answer.other), answer.other)
+            margin, limit = min((margin, limit), self.limits.margin(other))
         return Loaded(size, found, margin, limit)
 
 

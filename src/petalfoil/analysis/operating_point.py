@@ -15,6 +15,7 @@ from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.heat_results import with_heat
 from petalfoil.analysis.neighbours import begun, keep
 from petalfoil.analysis.records import branch
+from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.analysis.thermal_limit import beyond_thermal_limit
 from petalfoil.case import Case, ModelKind
@@ -89,6 +90,8 @@ def operating_point(case: Case, load: Vector | None) -> OperatingPoint:
 
 def with_reported(case: Case, found: OperatingPoint) -> OperatingPoint:
     """The operating point with the equilibrium that results are taken from, its growth rate among them."""
+    if found.answer.other is not None:  # both bearings of a rotor have theirs
+        return found
     answer = reported(case, found.answer)
     if answer.elements is None:
         return replace(found, answer=answer)
@@ -123,6 +126,8 @@ def under_load(case: Case, load: Vector) -> tuple[Solution, Branch]:
     ConvergenceError
         No position was found.
     """
+    if not case.shares_evenly:
+        return on_shaft(case, load)
     problem = build_problem(case)
     found, rate = begun_under_load(problem, load)
     if case.heat is not None:
@@ -157,6 +162,22 @@ def begun_under_load(problem: CoupledProblem, load: Vector) -> tuple[Solution, c
         raise beyond_capacity(problem, load, failure) from failure
     keep(found, alone=not rate.real > 0.0)
     return found, rate
+
+
+def on_shaft(case: Case, load: Vector) -> tuple[Solution, Branch]:
+    """The equilibrium of a rotor whose bearings do not share the load evenly.
+
+    Raises
+    ------
+    ConvergenceError
+        It has none.
+    """
+    try:
+        found = RotorInBearings.of(case, load).at(case.operation.speed)
+    except ThermalRunawayError as failure:
+        raise beyond_thermal_limit(case, load, failure) from failure
+    rates = [leading_eigenvalue(one) for one in (found, found.other) if one is not None]
+    return found, branch(max(rates, key=lambda rate: rate.real), case, 1, found.solution_path)
 
 
 def in_heat(case: Case, found: Solution, load: Vector | None) -> Solution:
@@ -215,7 +236,7 @@ def at_position(case: Case) -> OperatingPoint:
     ConvergenceError
         Neither a cold start nor the continuation from zero speed found one.
     """
-    if case.operation.moment is not None:
+    if case.operation.moment is not None and case.bearings == 1:
         raise UsageError(
             "operation.moment is balanced together with a load: give one, or the slopes operation.tilt in its place"
         )

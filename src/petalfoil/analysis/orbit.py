@@ -77,7 +77,7 @@ def summary(record: Record) -> Iterator[Row]:
     yield Row("time", number(1e3 * float(time[-1] - time[0])), "ms")
     for name, label in (("steps", "steps"), ("factorizations", "factorisations"), ("failed_steps", "failed steps")):
         yield Row(label, str(scalars[name]), "")
-    paths = Path.journals(time, over, 0.5 * float(scalars.get("span", 0.0)))
+    paths = Path.journals(time, over, places_of(record))
     yield Row("largest displacement", number(1e6 * max(float(np.hypot(p.x, p.y).max()) for p in paths)), "µm")
     yield Row("amplitude, last turns", with_bar(record, "amplitude", 1e6), "µm")
     if "tilt_amplitude" in scalars:
@@ -90,6 +90,12 @@ def summary(record: Record) -> Iterator[Row]:
     for name in ("mass_balance_error", "energy_balance_error"):
         yield Row(name.replace("_balance_", "-balance "), number(float(scalars[name])), "")
     yield Row("time spent", number(float(scalars["wall_time"])), "s")
+
+
+def places_of(record: Record) -> tuple[float, ...]:
+    """Where the bearings of the rotor are, from its mass centre [m]."""
+    span, centre = (float(record.scalars.get(name, 0.0)) for name in ("span", "rotor_centre"))
+    return (-0.5 * span - centre, 0.5 * span - centre) if span else (0.0,)
 
 
 def with_bar(record: Record, name: str, factor: float) -> str:

@@ -65,6 +65,7 @@ class Tilt:
     tilt_amplitude: float
     tilt_whirl_ratio: float
     span: float
+    rotor_centre: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,7 +152,8 @@ class Orbit:
             with run.active():
                 warm = temperatures_of(case, request)
                 warmed = case if warm is None else at_temperatures(case, warm)
-                place = first_position(warmed, request)
+                place, slope = first_position(warmed, request)
+                request = replace(request, slope=slope)
                 placed = at(warmed, eccentricity=place)
                 system, time = system_of(placed, schedule, request.load), 0.0
                 start = at_rest(placed, system, request)
@@ -225,7 +227,7 @@ class Orbit:
     def _summary(self, time: Array, over: dict[str, Array]) -> MotionSummary:
         return MotionSummary(
             speed=self.case.operation.speed,
-            **figures_of(time, over, 0.0 if self.case.rotor is None else self.case.rotor.lever),
+            **figures_of(time, over, (0.0,) if self.case.rotor is None else self.case.rotor.places),
             revolutions=float(over["shaft_angle"][-1] - over["shaft_angle"][0]) / TURN,
             rotor_mass=0.0 if self.case.rotor is None else self.case.rotor.mass,
             reference_film_thickness=self.system.problem.layout.scales.length,
@@ -235,7 +237,8 @@ class Orbit:
         """What is told of a shaft that tilts; nothing of another."""
         if self.case.rotor is None or self.case.rotor.span is None:
             return ()
-        return (Tilt(**tilt_figures(time, over), span=self.case.rotor.span),)
+        rotor = self.case.rotor
+        return (Tilt(**tilt_figures(time, over), span=rotor.span or 0.0, rotor_centre=rotor.centre),)
 
     def _warmth(self) -> tuple[Warmth, ...]:
         """What is told of a motion with a heat network; nothing of another."""

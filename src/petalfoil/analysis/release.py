@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.analysis.operating_point import Vector, at, at_position, under_load
+from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.case import Case
 from petalfoil.dynamics.adaptive_steps import MarchOptions
 from petalfoil.dynamics.rotor_motion import RotorMotion, constant_load
@@ -101,14 +102,19 @@ def temperatures_of(case: Case, request: OrbitRequest) -> Temperatures | None:
         No position balances the load, or there is no steady temperature.
     """
     network, speed = HeatNetwork.of(case), request.schedule(case).speed(0.0)
+    if network is not None and not case.shares_evenly:
+        raise UsageError(
+            "a motion keeps one temperature for both bearings, and these carry unequal loads: leave [heat] out, and "
+            "give shaft.temperature and bushing.temperature from what `balance` finds"
+        )
     if network is None or speed == 0.0:
         return None if network is None else network.start
     found, _ = under_load(at(case, speed, (0.0, 0.0)), constant_load(case, request.load))
     return found.problem.temperatures
 
 
-def first_position(case: Case, request: OrbitRequest) -> Vector | None:
-    """Where the journal is released [m]; None where the case says so.
+def first_position(case: Case, request: OrbitRequest) -> tuple[Vector | None, Vector]:
+    """Where the journal is released [m], None where the case says so; and the slopes of a shaft in two bearings [rad].
 
     Raises
     ------
@@ -116,7 +122,9 @@ def first_position(case: Case, request: OrbitRequest) -> Vector | None:
         No position balances the load.
     """
     if request.initial != "balance":
-        return request.initial
+        return request.initial, request.slope
+    if not case.shares_evenly:
+        return on_both(case, request)
     load, speed = constant_load(case, request.load), request.schedule(case).speed(0.0)
     x, y = case.operation.eccentricity
     if np.any(load) or speed > 0.0:  # every place balances a shaft at rest without a load
@@ -126,12 +134,30 @@ def first_position(case: Case, request: OrbitRequest) -> Vector | None:
         x -= case.rotor.unbalance  # a shaft that does not turn feels none
     beyond = np.hypot(x, y) >= case.pack_clearance
     short = LYING * case.pack_clearance / np.hypot(x, y) if beyond else 1.0
-    return float(short * x), float(short * y)
+    return (float(short * x), float(short * y)), request.slope
+
+
+def on_both(case: Case, request: OrbitRequest) -> tuple[Vector, Vector]:
+    """Position and slopes at which a rotor rests whose bearings do not share the load evenly.
+
+    Where the shaft turns, its axis is off the mass centre, which rests, by the unbalance.
+
+    Raises
+    ------
+    ConvergenceError
+        No position balances the load.
+    """
+    load, speed = constant_load(case, request.load), request.schedule(case).speed(0.0)
+    weighs = request.load is None and case.operation.load is None  # a weight acts at the mass centre
+    rotor = RotorInBearings.of(case.replace(**{"rotor.load_place": None}) if weighs else case, load)
+    x, y, slope_x, slope_y = map(float, rotor.position(rotor.at(speed)))
+    unbalance = 0.0 if case.rotor is None or speed == 0.0 else case.rotor.unbalance
+    return (x - unbalance, y), (slope_x, slope_y)
 
 
 def system_of(case: Case, schedule: Schedule, load: Vector | None) -> RotorBearing:
     """The bearing of `case` and its rotor in the units of the problem."""
-    if case.operation.moment is not None:
+    if case.operation.moment is not None and case.bearings == 1:
         raise UsageError(
             "a rotor in one bearing stays parallel to its axis and feels no operation.moment: give the slopes that it "
             "is held at, operation.tilt, or a rotor.span"

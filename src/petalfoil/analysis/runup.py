@@ -20,7 +20,7 @@ from petalfoil.analysis.session import part
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case, warnings_of
 from petalfoil.equilibrium.run_context import Progress, running
-from petalfoil.errors import ConvergenceError
+from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.layout import Series, at_speed
 from petalfoil.results.parts import AppliedLoad, Branch
 from petalfoil.results.record import Record
@@ -111,6 +111,8 @@ def _points(
     way, rate = in_time
     line, before = SpeedLine(at(case, way[0][1], (0.0, 0.0)), load), 0.0
     if done:
+        if rate is not None and line.rotor is not None:
+            raise UsageError("a warm-up of a rotor on unequal bearings does not go on: run it again from the start")
         line.regain([speed for _, speed in way[: len(done)]], done[-1])
         line.temperatures, before = stored_temperatures(done[-1]), way[len(done) - 1][1]
     for number, (leg, speed) in enumerate(way[len(done) :], len(done)):

@@ -140,6 +140,11 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
         The equilibrium was not found, or its contacts do not determine it.
     """
     newton_only(case)
+    if not case.shares_evenly:
+        raise UsageError(
+            "derivatives are those of one bearing, and the bearings of this rotor do not share its load evenly: ask "
+            "for one of them alone under its part of the load, as `balance` tells it, or compare two runs"
+        )
     verb = ask or ("balance" if load is not None or (case.operation.load and eccentricity is None) else "solve")
     there = posed(at(case.replace(**{"model.contacts": contacts}), speed), verb, load, eccentricity)
     paths = default_paths(there, verb) if vary is None else [checked(there, path) for path in vary]

@@ -9,6 +9,7 @@ from petalfoil.analysis.classic_method import is_classic, typical_steps
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.operating_point import OperatingPoint, Vector, at, operating_point, relaxed
+from petalfoil.analysis.other_bearing import bearing_of, of_rotor, rotor_parts
 from petalfoil.analysis.records import asked_position, effort, position, solution_record
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, running
@@ -80,9 +81,11 @@ def point(case: Case, progress: Progress | None = None) -> Record:
             found = relaxed(case, build_problem(case))
         else:
             found = operating_point(case, None)
-        place = position(case, found.answer) if loaded or case.heat is not None else asked_position(case)
-        own = (place, path_told(found), *found.loaded, effort(run.seconds))
-        return solution_record("solve", Evaluation.of(case, found.answer), *own)
+        bearing = bearing_of(case, found.answer)
+        place = position(bearing, found.answer) if loaded or case.heat is not None else asked_position(case)
+        own = (place, path_told(found), *found.loaded, effort(run.seconds), *rotor_parts(case, found.answer))
+        record = solution_record("solve", Evaluation.of(bearing, found.answer), *own)
+        return record if found.answer.other is None else of_rotor(record, case)
 
 
 def path_told(found: OperatingPoint) -> Branch:

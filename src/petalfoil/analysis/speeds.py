@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.analysis.contact_model import reported
-from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.heat_results import network_in_time, warm_up_step, with_heat
+from petalfoil.analysis.other_bearing import worst_contact
 from petalfoil.analysis.resume import is_same
+from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.case import Case
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold, rebalance
@@ -44,6 +45,10 @@ class SpeedLine:
         The last temperatures of a heat network: those before the next step of a warm-up.
     gradually : bool
         Raise the friction power gradually where Newton's method does not lead from the last temperatures to the next.
+    rotor : RotorInBearings or None
+        The rotor, where its bearings do not share the load evenly.
+    others : list
+        Temperatures of both its bearings in a warm-up.
     """
 
     case: Case
@@ -52,8 +57,14 @@ class SpeedLine:
     temperatures: Temperatures | None = None
     gradually: bool = True
     base: CoupledProblem = field(init=False)
+    rotor: RotorInBearings | None = None
+    others: list[Temperatures | None] = field(default_factory=list)
 
     def __post_init__(self) -> None:
+        if not self.case.shares_evenly:
+            self.rotor = RotorInBearings.of(self.case, self.load)
+            self.base = self.rotor.supports[int(self.rotor.turned)].problem
+            return
         self.base = build_problem(self.case.replace(**{"operation.eccentricity": (0.0, 0.0)}))
 
     def at(self, speed: float, after: float | None = None) -> Solution:
@@ -66,6 +77,8 @@ class SpeedLine:
         ConvergenceError
             None was found.
         """
+        if self.rotor is not None:
+            return self._on_shaft(self.rotor, speed, after)
         scales, R_j = self.base.layout.scales, self.case.bearing.journal_radius
         number = scales.bearing_number(self.case.gas.viscosity, speed, R_j)
         problem, load = self.base.at(bearing_number=number), load_of(self.case, self.load, self.base.layout)
@@ -82,6 +95,15 @@ class SpeedLine:
             self.known = warm_up_step(self.case, found, warm, after)
         self.temperatures = self.known.problem.temperatures
         self.known = reported(self.case, self.known, before)
+        return self.known
+
+    def _on_shaft(self, rotor: RotorInBearings, speed: float, after: float | None) -> Solution:
+        """The same of a rotor whose bearings do not share the load evenly."""
+        if after is not None:
+            rotor = rotor.in_time(self.others or [self.temperatures, None], after)
+        self.known = rotor.at(speed, self.known)
+        self.temperatures = self.known.problem.temperatures
+        self.others = [one.problem.temperatures for one in rotor.in_order(self.known)]
         return self.known
 
     def climb(self, speed: float) -> Solution:
@@ -121,5 +143,5 @@ class SpeedLine:
         return is_same(last, {"eccentricity_x": float(x), "eccentricity_y": float(y)})
 
     def contact_fraction(self, speed: float) -> float:
-        """Contact fraction at `speed` [1]."""
-        return Evaluation.of(self.case, self.at(speed)).contact_fraction
+        """Contact fraction at `speed`, of two bearings that of the one which touches more [1]."""
+        return worst_contact(self.case, self.at(speed))

@@ -283,7 +283,9 @@ class Trace:
     def _at_first(self, instant: Instant) -> Array:
         """Displacement of the journal in the (first) bearing [m]."""
         e = instant.e * self._units[0]
-        return e if self.system.problem.layout.wall.n_bearings == 1 else e[:2] - e[2:]
+        if self.system.problem.layout.wall.n_bearings == 1 or self.case.rotor is None:
+            return e
+        return np.asarray(e[:2] + self.case.rotor.places[0] / self.case.rotor.lever * e[2:])
 
     def _deflection(self, instant: Instant) -> Array:
         """Deflections of the wall of the (first) bearing, (n,) [m]."""

@@ -12,6 +12,7 @@ In the order data flows:
 - `petal_table`: the table of the petals.
 - `bump_foil_table`: the tables of a bump foil and of backing springs.
 - `gas`: the table of the gas.
+- `second_bearing`: what differs in the second bearing of a rotor.
 - `rotor`: the table of the rotor.
 - `heat`: the table of the heat network, and the gas as it warms up.
 - `growth`: the tables of shaft and bushing, and how they grow.
@@ -41,7 +42,8 @@ from petalfoil.case.package import Package, package_of
 from petalfoil.case.parameters import Parameter, parameter_of, parameters_of, parameters_of_petals, with_values
 from petalfoil.case.petal_table import LinearAbout, Mount, Petals, PetalTheory
 from petalfoil.case.plausibility import warnings_of
-from petalfoil.case.rotor import Rotor
+from petalfoil.case.rotor import Rotor, Which
+from petalfoil.case.second_bearing import SecondBearing
 from petalfoil.case.sections import Bearing, Contacts, Edges, Method, Model, ModelKind, Operation, Surface
 from petalfoil.case.wall_tables import WallTable, register_table, unregister_table
 
@@ -69,10 +71,12 @@ __all__ = [
     "PetalTheory",
     "Petals",
     "Rotor",
+    "SecondBearing",
     "Shaft",
     "Springs",
     "Surface",
     "WallTable",
+    "Which",
     "arc_radius",
     "chordal_tilt",
     "package_of",

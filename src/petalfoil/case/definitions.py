@@ -206,8 +206,28 @@ class Case(Definition):
 
     @property
     def bearings(self) -> int:
-        """Equal bearings that share the load: 2 where the case has a rotor with a span."""
+        """Bearings that share the load: 2 where the case has a rotor with a span."""
         return 1 if self.rotor is None else self.rotor.bearings
+
+    @property
+    def shares_evenly(self) -> bool:
+        """Whether one bearing tells the state of all: no second one that differs, stands askew or carries otherwise."""
+        operation = self.operation
+        askew = operation.tilt is not None or operation.moment is not None
+        return self.rotor is None or self.bearings == 1 or (self.rotor.is_even and not askew)
+
+    @property
+    def supports(self) -> tuple[Self, ...]:
+        """Each bearing of the rotor by itself, centred and without load, its slopes those at which it stands askew."""
+        bare = {"rotor": None, "operation": self.operation.alone(self.operation.tilt)}
+        second = None if self.rotor is None else self.rotor.second
+        found = (self.replace(**bare),)
+        if self.bearings == 1:
+            return found
+        if second is None:
+            return (*found, *found)
+        tilt = self.operation.tilt if second.tilt is None else second.tilt
+        return (*found, self.replace(**bare | {"operation": self.operation.alone(tilt)} | second.replaced))
 
     @property
     def slip_length(self) -> float:
@@ -273,6 +293,7 @@ class Case(Definition):
                 *self._tilt_problems(),
                 *self._heat_problems(),
                 *self._method_problems(),
+                *self._second_problems(),
             ]
             kind = DefinitionError
         if problems:
@@ -354,30 +375,46 @@ class Case(Definition):
             text = 'the paper has no backing springs; allowed: "newton", or no [backing]'
             yield Problem("model.method", text, "classic", "newton, or no [backing]")
 
+    def _second_problems(self) -> Iterator[Problem]:
+        """Yield what is wrong with the second bearing of the rotor as a bearing by itself."""
+        if self.rotor is None or self.rotor.second is None:
+            return
+        try:
+            second = self.supports[1]
+        except DefinitionError as error:
+            for key, text in error.problems:
+                yield Problem(f"rotor.second.{key}" if key else "rotor.second", text, error.given, error.allowed)
+            return
+        if second.model.kind is not self.model.kind:
+            text = f'is "{second.model.kind}" beside "{self.model.kind}"; allowed: one kind for both bearings'
+            yield Problem("rotor.second.model.kind", text, str(second.model.kind), f'"{self.model.kind}"')
+        if self.model.method is Method.CLASSIC:
+            yield Problem("rotor.second", 'is not in the paper; allowed: model.method = "newton"', None, '"newton"')
+
     def _tilt_problems(self) -> Iterator[Problem]:
-        """Yield why a journal cannot tilt: no length, the paper's method, two bearings, or two ways to say it."""
+        """Yield why a journal cannot tilt: no length, the paper's method, or two ways to say it."""
         operation = self.operation
         key = "operation.tilt" if operation.tilt is not None else "operation.moment"
         if operation.tilt is None and operation.moment is None:
             return
         given = operation.tilt or operation.moment
-        if self.model.kind is ModelKind.TWO_D:
+        if self.model.kind is ModelKind.TWO_D and (operation.tilt is not None or self.bearings == 1):
             yield Problem(key, 'needs the length of the bearing; allowed: model.kind = "3d"', given, '"3d"')
         if self.model.method is Method.CLASSIC:
             yield Problem(key, 'is not in the paper; allowed: model.method = "newton"', given, '"newton"')
-        if self.bearings > 1:
-            text = "says how one journal is held, and with rotor.span the shaft tilts by itself; allowed: one of them"
-            yield Problem(key, text, given, "no rotor.span")
-        if operation.tilt is not None and operation.moment is not None:
+        if operation.tilt is not None and operation.moment is not None and self.bearings == 1:
             text = "is given beside operation.tilt, and one follows from the other; allowed: one of them"
             yield Problem("operation.moment", text, operation.moment, "a tilt or a moment")
 
 
 def _from_folder(data: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Put `folder` in front of the file that holds a measured free shape."""
-    petals = data.get("petals")
+    """Put `folder` in front of the files that hold a measured free shape or the second bearing of the rotor."""
+    petals, rotor = data.get("petals"), data.get("rotor")
     if isinstance(petals, dict) and isinstance(petals.get("free_shape"), str):
-        return {**data, "petals": {**petals, "free_shape": str(folder / petals["free_shape"])}}
+        data = {**data, "petals": {**petals, "free_shape": str(folder / petals["free_shape"])}}
+    second = rotor.get("second") if isinstance(rotor, dict) else None
+    if isinstance(rotor, dict) and isinstance(second, dict) and isinstance(second.get("file"), str):
+        data = {**data, "rotor": {**rotor, "second": {**second, "file": str(folder / second["file"])}}}
     return data
 
 

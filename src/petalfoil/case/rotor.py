@@ -2,20 +2,30 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import Annotated, ClassVar, Self
 
 from pydantic import model_validator
 
 from petalfoil.case.definition import Definition
 from petalfoil.case.number_fields import VALUE_PROBLEM, Quantity, refuse
+from petalfoil.case.second_bearing import SecondBearing
 from petalfoil.case.sections import MAX_SPEED
+
+
+class Which(StrEnum):
+    """One of the two bearings of a rotor."""
+
+    FIRST = "first"
+    SECOND = "second"
 
 
 class Rotor(Definition):
     """A rigid rotor: its mass, unbalance and rotating load, and the distance of its second bearing if it has one.
 
     Without `span` its axis keeps its direction, and `mass` is the part of its mass on this bearing. With `span` it runs
-    in two of these bearings, equally far from its mass centre, and may tilt; `mass` is then its whole mass.
+    in two bearings and may tilt; `mass` is then its whole mass. They are equal unless `second` says how the second one
+    differs, and equally far from the mass centre unless `centre` says where it is.
     """
 
     section: ClassVar[str] = "rotor"
@@ -40,11 +50,40 @@ class Rotor(Definition):
     span: (
         Annotated[
             float,
-            Quantity(unit="m", meaning="distance between two equal bearings", symbol="2 l", above=0.0, at_most=1e3),
+            Quantity(unit="m", meaning="distance between two bearings", symbol="2 l", above=0.0, at_most=1e3),
         ]
         | None
     ) = None
     """Without it there is one bearing, and the axis of the rotor keeps its direction."""
+    centre: Annotated[
+        float,
+        Quantity(
+            unit="m",
+            meaning="mass centre, from the middle of the bearings toward the second",
+            symbol="z_G",
+            at_least=-1e3,
+            at_most=1e3,
+        ),
+    ] = 0.0
+    """Beyond half the span the rotor is overhung."""
+    load_place: (
+        Annotated[
+            float,
+            Quantity(
+                unit="m",
+                meaning="where operation.load acts, from the middle of the bearings toward the second",
+                symbol="z_F",
+                at_least=-1e3,
+                at_most=1e3,
+            ),
+        ]
+        | None
+    ) = None
+    """At the mass centre unless given."""
+    second: SecondBearing | None = None
+    """The second bearing where it differs from the first."""
+    results_of: Which = Which.FIRST
+    """Bearing that results of a rotor on unequal bearings describe; of the other one they tell the most important."""
     transverse_inertia: Annotated[
         float,
         Quantity(unit="kg*m^2", meaning="moment of inertia about a diameter", symbol="I_t", at_least=0.0, at_most=1e9),
@@ -82,8 +121,23 @@ class Rotor(Definition):
 
     @property
     def bearings(self) -> int:
-        """Equal bearings that it runs in."""
+        """Bearings that it runs in."""
         return 2 if self.span else 1
+
+    @property
+    def places(self) -> tuple[float, ...]:
+        """Where its bearings are, from the mass centre along the shaft [m]."""
+        return (0.0,) if self.span is None else (-0.5 * self.span - self.centre, 0.5 * self.span - self.centre)
+
+    @property
+    def load_arm(self) -> float:
+        """Distance of the load from the mass centre [m]."""
+        return 0.0 if self.load_place is None else self.load_place - self.centre
+
+    @property
+    def is_even(self) -> bool:
+        """Whether its bearings are equal and equally far from mass centre and load."""
+        return self.second is None and self.centre == 0.0 and self.load_arm == 0.0
 
     @property
     def inertia_is_estimated(self) -> bool:
@@ -105,6 +159,9 @@ class Rotor(Definition):
         """Refuse inertias without a span, and a polar inertia beyond that of a disk or without the other."""
         if self.span is None and (self.transverse_inertia or self.polar_inertia or self.skew):
             text = "inertias and skew matter only to a rotor in two bearings: give its span, or leave them out"
+            raise refuse(VALUE_PROBLEM, text, "together with span")
+        if self.span is None and (self.centre or self.load_place is not None or self.second is not None):
+            text = "centre, load_place and second are of a rotor in two bearings: give its span, or leave them out"
             raise refuse(VALUE_PROBLEM, text, "together with span")
         if self.polar_inertia and not self.transverse_inertia:
             text = "polar_inertia is given alone: give transverse_inertia too, or neither to have both estimated"

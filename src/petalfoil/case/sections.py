@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from enum import StrEnum
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Self
 
 from pydantic import BeforeValidator, StrictBool
 
@@ -83,7 +83,7 @@ class Operation(Definition):
     """What the journal does: its speed and where it sits, or the load on it (`x`, `y` in the bushing frame).
 
     A load given as one quantity acts along -y, as a weight does. The axis of the journal is parallel to the bushing's,
-    held at the slopes `tilt`, or free to tilt under a `moment` about the bearing's centre.
+    held at the slopes `tilt`, or free to tilt under a `moment` about the bearing's centre or on a rotor with a span.
     """
 
     section: ClassVar[str] = "operation"
@@ -96,9 +96,15 @@ class Operation(Definition):
     load: Annotated[tuple[_Force, _Force], BeforeValidator(as_load)] | None = None
     """Components `[x, y]`, or one value along -y. Give a load or an eccentricity: one follows from the other."""
     tilt: Annotated[tuple[_Slope, _Slope], BeforeValidator(as_pair)] | None = None
-    """Slopes `[x, y]` of the axis at which the journal is held; needs the 3-D model."""
+    """Slopes `[x, y]` of the axis at which the journal is held; needs the 3-D model. With a `rotor.span` the bearing
+    stands askew by them to the line through both bearings, and the slopes of the shaft add to it."""
     moment: Annotated[tuple[_Moment, _Moment], BeforeValidator(as_pair)] | None = None
-    """Components `[x, y]` about the bearing's centre. The journal is then free to tilt; give a load as well."""
+    """Components `[x, y]` about the bearing's centre. The journal is then free to tilt; give a load as well. With a
+    `rotor.span` it acts on the rotor."""
+
+    def alone(self, tilt: tuple[float, float] | None) -> Self:
+        """The same without what is asked of the journal but its speed, at slopes `tilt` [rad]."""
+        return type(self)(speed=self.speed, tilt=tilt)
 
     def farthest(self, length: float) -> float:
         """Largest displacement of the journal's axis over a bearing `length` [m], at one of its ends [m]."""

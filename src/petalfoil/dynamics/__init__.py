@@ -4,6 +4,7 @@
 `film_stability.py`        whether an equilibrium is stable at a fixed journal position
 `leading_mode.py`          how the eigenvalue of that follows a changed equilibrium
 `reduced_impedance.py`     impedance over frequency, from a reduced model
+`joint_motion.py`          small motions of a shaft in two bearings that differ
 `critical_mass.py`         smallest unstable mass of a rigid rotor
 `natural_modes.py`         damped natural motions of a rigid rotor
 `harmonic_balance.py`      friction between petals in a whirl of given amplitude

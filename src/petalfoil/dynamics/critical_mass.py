@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq, linear_sum_assignment
 
-from petalfoil.dynamics.reduced_impedance import Impedance
+from petalfoil.dynamics.reduced_impedance import Impedance, JournalMotion
 from petalfoil.dynamics.rotor_motion import Inertia
-from petalfoil.equilibrium.small_motion import Motion
 
 Complex = NDArray[np.complex128]
 
@@ -40,7 +39,7 @@ class Whirl:
     ratio: float
 
 
-def whirl_impedance(motion: Motion) -> Impedance:
+def whirl_impedance(motion: JournalMotion) -> Impedance:
     """The impedance over the whirl ratios of `SCAN`."""
     return Impedance.over(motion, SCAN.tolist())
 
@@ -78,7 +77,7 @@ class Balance:
         return np.asarray(1.0 / np.where(inverse == 0.0, np.finfo(float).tiny, inverse), dtype=np.complex128)
 
 
-def whirls_at_any_mass(motion: Motion) -> bool:
+def whirls_at_any_mass(motion: JournalMotion) -> bool:
     """Whether a rotor of any mass whirls at half the speed: the film is even all round, and no wall deflects.
 
     In the frame that turns at half the speed the two surfaces of such a film move equally fast in opposite directions:

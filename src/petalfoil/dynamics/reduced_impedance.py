@@ -8,19 +8,59 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.dynamics.rotor_motion import Inertia
 from petalfoil.equilibrium.run_context import current_run
-from petalfoil.equilibrium.small_motion import Motion, Response
-from petalfoil.solvers.reduced_model import ReducedModel, reduce_system
+from petalfoil.solvers.reduced_model import MovedSystem, ReducedModel, reduce_system
+from petalfoil.solvers.sparse_lu import LinearSolver
+from petalfoil.system.coupled import CoupledProblem
 
 Complex = NDArray[np.complex128]
 
 MODEL_ERROR = 1e-8
 """Largest error of a reduced model that is used, over the largest entry of the impedance."""
+
+
+class ForceGradient(Protocol):
+    """Response of the bearing, or of both, at one rate of change."""
+
+    @property
+    def force_gradient(self) -> NDArray[Any]:
+        """Force by displacement, (d, d), over unit of force and length [1]."""
+
+    def slope(self) -> NDArray[Any]:
+        """Its derivative by `s` [1]."""
+
+
+class JournalMotion(Protocol):
+    """Small motions of a journal in its bearing, or of a shaft in two: what an impedance is of."""
+
+    @property
+    def problem(self) -> CoupledProblem:
+        """The (first) bearing, whose units hold."""
+
+    @property
+    def contact_model(self) -> str:
+        """Where the contacts are, for people."""
+
+    @property
+    def film_thickness(self) -> NDArray[np.float64]:
+        """Film over the reference length [1]."""
+
+    @property
+    def loss(self) -> sp.csc_array | None:
+        """What a wall that loses energy adds to the tangent; None of others."""
+
+    def moved_system(self, solver: LinearSolver) -> MovedSystem:
+        """The same for a reduced model; one factorisation for each bearing."""
+
+    def growing(self, s: complex, solver: LinearSolver) -> ForceGradient:
+        """The response to a motion in `exp(s tau)`; one factorisation for each bearing."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +69,7 @@ class Impedance:
 
     Attributes
     ----------
-    motion : Motion
+    motion : JournalMotion
         Small motions about the equilibrium.
     model : ReducedModel
         Their reduced model.
@@ -37,12 +77,12 @@ class Impedance:
         Largest error of the model, over the largest entry of the impedance [1].
     """
 
-    motion: Motion
+    motion: JournalMotion
     model: ReducedModel
     error: float
 
     @classmethod
-    def over(cls, motion: Motion, ratios: Sequence[float]) -> Impedance:
+    def over(cls, motion: JournalMotion, ratios: Sequence[float]) -> Impedance:
         """For whirl `ratios`, checked at the first and the last; one real factorisation and two complex ones."""
         model = reduce_system(motion.moved_system(current_run().probe_solver), [1j * nu for nu in ratios])
         error = max(model_error(motion, model, 1j * nu) for nu in (ratios[0], ratios[-1]))
@@ -81,12 +121,12 @@ class Impedance:
         return np.asarray(-gradient * scales.force / scales.length, dtype=np.complex128)
 
 
-def factorised(motion: Motion, s: complex) -> Response:
+def factorised(motion: JournalMotion, s: complex) -> ForceGradient:
     """The response from the equations themselves; one factorisation."""
     return motion.growing(s, current_run().probe_solver)
 
 
-def model_error(motion: Motion, model: ReducedModel, s: complex) -> float:
+def model_error(motion: JournalMotion, model: ReducedModel, s: complex) -> float:
     """Error of the force gradient at `s` over its largest entry; one factorisation."""
     exact = factorised(motion, s).force_gradient
     return float(np.max(np.abs(model.at(s) - exact)) / np.max(np.abs(exact)))

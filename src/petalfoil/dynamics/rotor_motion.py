@@ -3,8 +3,8 @@
     M e'' = F_film + F_contact + load + rotating load + unbalance      (O1)
 
 A rigid rotor whose mass centre is `u` off the axis: the unbalance is `m u (omega^2 n - alpha t)` with `n` the direction
-of the mass centre and `t` across it, turned with the shaft. In two equal bearings, `l` to both sides of the mass
-centre, the shaft's slopes `a` move too, as `l a`, with the moments over `l`:
+of the mass centre and `t` across it, turned with the shaft. In two bearings, `2 l` apart, the shaft's slopes `a` about
+the mass centre move too, as `l a`, with the moments over `l`:
 
     I_t a_x'' + I_p omega a_y' = M_x + (I_t - I_p) chi omega^2 n_x,  I_t a_y'' - I_p omega a_x' = M_y + ...        (O5)
 """
@@ -132,7 +132,9 @@ class RotorMotion:
         unit, lever = scales.length * clock.rate**2 / scales.force, rotor.lever
         inertia, force, askew = Inertia.of(rotor), np.array(given) / scales.force, 0.0
         if lever:
-            force = np.append(force, [0.0, 0.0])
+            weighs = load is None and case.operation.load is None  # a weight acts at the mass centre
+            moment = moment_on_rotor(case, (0.0, 0.0) if weighs else given)
+            force = np.append(force, np.array(moment) / (lever * scales.force))
             askew = (rotor.transverse_inertia - rotor.polar_inertia) * rotor.skew / (lever * scales.force)
         return cls(
             inertia=unit * inertia.mass,
@@ -165,6 +167,13 @@ class RotorMotion:
     def bearing_number(self, tau: float) -> float:
         """Bearing number at time `tau` [1]."""
         return self.clock.bearing_number * self.schedule.speed(tau / self.clock.rate) / self.clock.rate
+
+
+def moment_on_rotor(case: Case, load: tuple[float, float]) -> tuple[float, float]:
+    """Moment about the mass centre of a load [N] where it acts, with that of the case [N m]."""
+    arm = 0.0 if case.rotor is None else case.rotor.load_arm
+    m_x, m_y = case.operation.moment or (0.0, 0.0)
+    return m_x + arm * load[0], m_y + arm * load[1]
 
 
 NO_ROTOR = "the motion of a rotor needs a case with [rotor]: give its mass there"

@@ -28,6 +28,7 @@ from petalfoil.solvers.contact_equations import (
 )
 from petalfoil.solvers.contact_newton import ActiveContacts, contact_newton
 from petalfoil.solvers.problem import Border
+from petalfoil.solvers.tangent import BorderedTangent
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.heat_network import NODES, HeatNetwork
 from petalfoil.system.heat_rows import BALANCE, HeatRows
@@ -237,6 +238,40 @@ def polished(equations: HeatedEquations, contacts: ActiveContacts, path: str) ->
         b = b + change
         state = replace(state, x=found.x + tangent.units @ change, lam=found.lam, b=b)
     return None
+
+
+def stiffness(found: Solution, network: HeatNetwork | None) -> Array:
+    """Minus the derivative of the forces on the journal by its position, the temperatures following it [1].
+
+    Shape (n_position, n_position). No factorisation: that of the last tangent serves.
+
+    Raises
+    ------
+    ConvergenceError
+        The pack is bottomed out: its stiffness has no bound.
+    """
+    if found.contacts is None:
+        raise ConvergenceError(
+            "the journal is on a bottomed-out pack, whose stiffness has no bound",
+            history=current_run().history,
+            advice="lower the load on this bearing",
+        )
+    problem, last = found.problem, found.contacts.tangent
+    border, resists = problem.border, np.zeros((problem.layout.n_position, problem.layout.n_position))
+    if network is not None:
+        rows = HeatRows(network, problem, found.x, found.lam)
+        equations = HeatedEquations(problem, network, np.zeros(problem.layout.n_position), rows)
+        border, resists = equations.border, equations.border_stiffness
+    linearized = problem.linearize(found.x)
+    forcing = np.column_stack([linearized.slack_derivative(column) for column in border.gap_derivative.T])
+    if border.forcing is not None:
+        forcing = forcing + border.forcing
+    there = BorderedTangent.of(last.tangent, border, forcing, last.constraints, last.exchange)
+    whole, k = resists - there.gradient, problem.layout.n_position
+    if network is None:
+        return np.asarray(whole, dtype=np.float64)
+    # temperatures follow: their rows vanish
+    return np.asarray(whole[:k, :k] - whole[:k, k:] @ np.linalg.solve(whole[k:, k:], whole[k:, :k]), dtype=np.float64)
 
 
 def raised(known: Solution, network: HeatNetwork) -> Solution:

@@ -79,6 +79,10 @@ class Solution:
         Whether it was looked for.
     nodal_force_difference : float or None
         Difference of its force from that with contacts at nodes, over that force; None without it [1].
+    other : Solution or None
+        The state of the other bearing of a rotor whose bearings do not share the load evenly.
+    shaft_residual : float or None
+        Force and moment left over on that rotor, over its load [1].
     """
 
     problem: CoupledProblem
@@ -87,6 +91,8 @@ class Solution:
     solution_path: str
     contacts: ActiveContacts | None = field(default=None, repr=False)
     load: Array | None = None
+    other: Solution | None = field(default=None, repr=False)
+    shaft_residual: float | None = None
     elements: ElementEquilibrium | None = field(default=None, repr=False)
     elements_sought: bool = False
     nodal_force_difference: float | None = None
@@ -154,6 +160,8 @@ class Solution:
     @property
     def force_residual(self) -> float:
         """The unbalanced force over the load; nan without a load [1]."""
+        if self.shaft_residual is not None:
+            return self.shaft_residual
         return float("nan") if self.load is None else float(np.linalg.norm(self.unbalanced)) / load_scale(self.load)
 
 

@@ -61,14 +61,14 @@ class Path:
         return cls(time, *(over[name] for name in named))
 
     @classmethod
-    def journals(cls, time: Array, over: Mapping[str, Array], lever: float) -> tuple[Path, ...]:
-        """The path of each journal; of a shaft that tilts, those `lever` [m] to both sides of the mass centre."""
+    def journals(cls, time: Array, over: Mapping[str, Array], places: tuple[float, ...]) -> tuple[Path, ...]:
+        """The path of each journal; of a shaft that tilts, those at `places` [m] from the mass centre."""
         centre = cls.of(time, over)
-        if not lever:
+        if len(places) == 1:
             return (centre,)
         return tuple(
-            replace(centre, **{name: over[name] + side * lever * over[slope] for name, slope in SLOPES.items()})
-            for side in (-1.0, 1.0)
+            replace(centre, **{name: over[name] + place * over[slope] for name, slope in SLOPES.items()})
+            for place in places
         )
 
     @property
@@ -187,14 +187,14 @@ def settled_amplitude(path: Path) -> float:
     return float(np.max(np.abs(z - z.mean())))
 
 
-def figures_of(time: Array, over: Mapping[str, Array], lever: float = 0.0) -> dict[str, float]:
+def figures_of(time: Array, over: Mapping[str, Array], places: tuple[float, ...] = (0.0,)) -> dict[str, float]:
     """Amplitude [m] and dominant frequency over the speed of a motion, from its histories.
 
-    Of two journals, `lever` [m] to both sides of the mass centre, those of the one that swings more.
+    Of two journals, at `places` [m] from the mass centre, those of the one that swings more.
     """
     if len(time) < 2:
         return {"amplitude": 0.0, "dominant_whirl_ratio": math.nan}
-    path = max(Path.journals(time, over, lever), key=settled_amplitude)
+    path = max(Path.journals(time, over, places), key=settled_amplitude)
     return {"amplitude": settled_amplitude(path), "dominant_whirl_ratio": dominant_whirl_ratio(path)}
 
 

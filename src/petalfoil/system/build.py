@@ -55,18 +55,25 @@ def lever_of(case: Case) -> float:
 
 
 def build_pair(case: Case) -> CoupledProblem:
-    """Two of the bearings of `case` on a shaft that tilts, as its rotor has them; the whole length of each.
+    """Both bearings of `case` on a shaft that tilts, as its rotor has them; the whole length of each.
 
     Raises
     ------
     UsageError
-        Their 2-D films have no ends.
+        Their 2-D films have no ends, or they differ by more than how they stand askew.
     """
     if case.rotor is None or case.rotor.span is None:
         raise ValueError("this rotor runs in one bearing")
+    if case.rotor.second is not None and case.rotor.second.replaced:
+        raise UsageError(
+            "a motion in two bearings is followed where they are equal: leave the tables of rotor.second out, or ask "
+            "`balance` and `stability`, which take unequal ones"
+        )
     whole = case.replace(**{"model.symmetry": False})
     check_memory(whole, bearings=2)
-    wall = paired(build_wall(whole), case.rotor.span)
+    first, second = (build_wall(one.replace(**{"model.symmetry": False})) for one in case.supports)
+    before, behind = case.rotor.places
+    wall = paired((first, second), (before, behind))
     slopes = np.zeros(wall.n_position - len(case.operation.eccentricity))
     problem = discretised(whole, wall, np.append(case.operation.eccentricity, slopes))
     if problem.layout.film_rows.inventory is not None:

@@ -1,7 +1,8 @@
 """Two equal bearings on one shaft that tilts: one wall with twice the unknowns and a position of four coordinates.
 
-The shaft's axis is at `(x, y) + (z - z_0) (a_x, a_y)`. With the lever `l`, half the distance of the bearings, the
-position is `q = (x, y, l a_x, l a_y)`, and a node at `z` along the shaft sees `(x, y) + (z - z_0) / l (l a)`.
+The shaft's axis is at `(x, y) + z (a_x, a_y)`, `z` from the mass centre. With the lever `l`, half the distance of the
+bearings, the position is `q = (x, y, l a_x, l a_y)`, and a node at `z` along the shaft sees `(x, y) + z / l (l a)`.
+Each bearing may stand askew by slopes of its own.
 """
 
 from __future__ import annotations
@@ -23,14 +24,15 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 
-def paired(wall: Wall, span: float) -> Wall:
-    """`wall` twice, its middles `span` [m] apart; the first at `-span / 2`.
+def paired(walls: tuple[Wall, Wall], places: tuple[float, float]) -> Wall:
+    """A wall twice, the middles of both at `places` [m] from the mass centre; they may differ in how they stand askew.
 
     Raises
     ------
     ValueError
         The wall is that of half a length, which cannot tilt.
     """
+    wall, other = walls
     if wall.film.axial.half:
         raise ValueError("half a length cannot tilt")
     order = by_kind(wall.contacts)
@@ -49,8 +51,8 @@ def paired(wall: Wall, span: float) -> Wall:
         ),
         film_unknown=twice_numbered(wall.film_unknown, n),
         load_area=np.concatenate([wall.load_area, wall.load_area]),
-        rest_film=np.concatenate([wall.rest_film, wall.rest_film]),
-        contacts=paired_contacts(wall, span, order),
+        rest_film=np.concatenate([wall.rest_film, other.rest_film]),
+        contacts=paired_contacts(walls, places, order),
         free_motions=twice(wall.free_motions),
         support=twice(wall.support),
         slip=twice(wall.slip),
@@ -79,22 +81,23 @@ def by_kind(contacts: Contacts) -> Index:
     return np.concatenate([part + first for part in kinds for first in (0, m)])
 
 
-def paired_contacts(wall: Wall, span: float, order: Index) -> Contacts:
+def paired_contacts(walls: tuple[Wall, Wall], places: tuple[float, float], order: Index) -> Contacts:
     """Gaps of both bearings, with the part of each that the tilt of the shaft moves."""
+    (wall, other), lever = walls, 0.5 * (places[1] - places[0])
     contacts, film = wall.contacts, wall.film
-    lever, m = 0.5 * span, len(contacts.rest)
+    m = len(contacts.rest)
     along = np.broadcast_to((film.axial.z - 0.5 * film.axial.length) / lever, film.shape).ravel()
     sides = []
-    for place in (-1.0, 1.0):
+    for place in places:
         arm = np.zeros(m)
-        arm[contacts.journal] = place + along
+        arm[contacts.journal] = place / lever + along
         sides.append(np.hstack([contacts.by_e, arm[:, None] * contacts.by_e]))
     sizes = [2 * len(np.arange(m)[rows]) for rows in (contacts.journal, contacts.bushing, contacts.petals)]
     ends = np.concatenate([[0], np.cumsum(sizes)])
     journal, bushing, petals = (slice(int(a), int(b)) for a, b in pairwise(ends))
     return Contacts(
         SparseRows(twice(contacts.G)[order]),
-        np.concatenate([contacts.rest, contacts.rest])[order],
+        np.concatenate([contacts.rest, other.contacts.rest])[order],
         np.vstack(sides)[order],
         np.concatenate([contacts.area, contacts.area])[order],
         journal,

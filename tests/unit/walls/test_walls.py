@@ -17,7 +17,7 @@ PLAIN = case("plain_journal", **{"model.cells_per_pitch": 12, "model.axial_cells
 @pytest.mark.parametrize("bearing", [PETALS, PLAIN])
 def test_a_shaft_in_two_bearings_has_a_position_of_four_coordinates(bearing: Case) -> None:
     wall = build_wall(bearing)
-    pair = paired(wall, 0.3)
+    pair = paired((wall, wall), (-0.15, 0.15))
     assert (wall.n_position, wall.n_bearings) == (2, 1)
     assert (pair.n_position, pair.n_bearings, pair.n_unknown) == (4, 2, 2 * wall.n_unknown)
     assert pair.reference_film == wall.reference_film
@@ -26,7 +26,7 @@ def test_a_shaft_in_two_bearings_has_a_position_of_four_coordinates(bearing: Cas
 @pytest.mark.parametrize("bearing", [PETALS, PLAIN])
 def test_without_tilt_both_bearings_see_the_film_of_one(bearing: Case) -> None:
     wall = build_wall(bearing)
-    pair, e = paired(wall, 0.3), np.array([3e-6, -4e-6])
+    pair, e = paired((wall, wall), (-0.15, 0.15)), np.array([3e-6, -4e-6])
     W = np.linspace(0.0, 1e-5, wall.n_unknown)
     one = wall.film_thickness(W, e)
     both = pair.film_thickness(np.concatenate([W, W]), np.concatenate([e, [0.0, 0.0]]))
