@@ -86,6 +86,6 @@ def test_the_lift_off_speed_of_a_hot_bearing() -> None:
         there = with_values(lift_off.balance.case, {"heat.pack_to_bushing": value + sign * change})
         line = SpeedLine(there, there.operation.load)
         line.known, line.temperatures = lift_off.balance.solution, lift_off.balance.solution.problem.temperatures
-        speeds.append(refined("liftoff_speed", line, speed, 0.01).values["liftoff_speed"])
+        speeds.append(refined("liftoff_speed", line, (speed, 0.01), as_points=False).values["liftoff_speed"])
     assert math.isfinite(found)
     assert found == pytest.approx((speeds[1] - speeds[0]) / (2.0 * change), rel=1e-3)
