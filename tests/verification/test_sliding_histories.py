@@ -8,6 +8,7 @@ import scipy.sparse as sp
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
+from petalfoil.analysis.hysteresis import follow, legs
 from petalfoil.analysis.impedance import cycle_impedance, elastic_and_sliding, impedance, sliding_at
 from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.orbit import orbit
@@ -211,3 +212,16 @@ def test_a_rotor_decays_as_harmonic_balance_says() -> None:
                 assert ratio == pytest.approx(frequency * C[0, 0] / (2.0 * K[0, 0]), rel=within)
                 free = impedance(motion.frictionless, frequency, bearing.operation.speed)[1]
                 assert free[0, 0] < 0.2 * C[0, 0]
+
+
+@pytest.mark.slow
+def test_a_step_costs_one_factorisation_on_every_grid() -> None:
+    """Eight petals moved by 10 um in steps of 5 um: as many factorisations as steps, whatever the number of cells."""
+    for cells in (12, 48):
+        rubbing = case("paper_n8", **{"model.cells_per_pitch": cells, "surface.petal_friction": 0.1})
+        way = legs([rubbing.replace(**{"operation.eccentricity": (0.0, -e)}) for e in (0.0, 10e-6)], False)
+        start, moved = follow(way)
+        assert start.answer is not None
+        assert moved.answer is not None
+        steps = [event for event in moved.run.history if "share" in str(event)]
+        assert moved.run.pack_solver.counter.factorizations == len(steps) <= 4
