@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from petalfoil.analysis.coefficients import coefficients
 from petalfoil.analysis.impedance import elastic_and_sliding
 from petalfoil.analysis.operating_point import operating_point
+from petalfoil.analysis.solve import solve
 from petalfoil.case import PetalTheory
 from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
 from petalfoil.equilibrium.element_response import ElementMotion
@@ -260,3 +261,12 @@ def test_damping_converges(name: str, load: float) -> None:
         found.append(np.array([whirl.fields["damping"][0].diagonal() for whirl in whirls]))
     assert_allclose(found[1], found[0], rtol=1e-2)
     assert_allclose(found[2], found[0], rtol=5e-2)
+
+
+def test_equilibria_are_those_without_friction() -> None:
+    """A turning shaft is balanced without friction forces: tangential displacements among the unknowns change nothing."""
+    smooth = case("paper_n8", **{"model.cells_per_pitch": 12})
+    with_V, without = solve.record(smooth.replace(**{"surface.petal_friction": 0.3})), solve.record(smooth)
+    for name in ("bearing_force", "min_film_thickness", "max_bending_stress"):
+        assert float(with_V.scalars[name]) == pytest.approx(float(without.scalars[name]), rel=1e-7)
+    assert_allclose(with_V.fields["deflection"], without.fields["deflection"], atol=1e-12)

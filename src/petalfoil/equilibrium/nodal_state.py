@@ -97,10 +97,10 @@ def shared_reactions(found: ElementEquilibrium) -> Array:
 def sampled_deflection(found: ElementEquilibrium) -> Array:
     """Deflections at the nodes of the pack, (n_wall,) [1], bending by the loads within each element (S7) included."""
     pack, equations = found.pack, found.equations
-    layout, count = equations.problem.layout, pack.mesh.count
+    layout = equations.problem.layout
     element, t = hermite.located(pack.mesh.phi[1:], pack.elements.phi)
     smooth = (hermite.rows(element, t, pack.elements.element_angle) @ nodal_deflection(found).T).T
-    pressed = (layout.push @ (equations.pressures - 1.0)).reshape(count, -1)
+    pressed = pressing(found)
     bent = pressed @ np.where(element[:, None] == element, clamped_beam(t[:, None], t[None, :]), 0.0)
     for loads in pack.contact_places(found.points):
         same = loads.element[:, None] == element
@@ -108,6 +108,13 @@ def sampled_deflection(found: ElementEquilibrium) -> Array:
         np.add.at(bent, loads.petal, loads.force[:, None] * bend)
     C = np.stack([petal.point_compliance[element] for petal in pack.petals])
     return np.asarray((smooth + C * (layout.scales.force / layout.scales.length) * bent).ravel())
+
+
+def pressing(found: ElementEquilibrium) -> Array:
+    """Forces of the film on the nodes of all petals, roots apart, (petal, node) [1]; none along the petals."""
+    equations, mesh = found.equations, found.pack.mesh
+    forces = equations.problem.layout.push @ (equations.pressures - 1.0)
+    return np.asarray(forces[: mesh.count * (mesh.n_node - 1)].reshape(mesh.count, -1))
 
 
 def nodal_deflection(found: ElementEquilibrium) -> Array:
@@ -135,7 +142,7 @@ def curvatures(found: ElementEquilibrium, at: Loads) -> Array:
     nodal[:, 1::2] *= angle[:, None]
     value, second = (np.einsum("ki,ki->k", hermite.basis(at.place, k), nodal) for k in (0, 2))
     element, t = hermite.located(pack.mesh.phi[1:], pack.elements.phi)
-    pressed = (layout.push @ (equations.pressures - 1.0)).reshape(pack.mesh.count, -1)[at.petal]
+    pressed = pressing(found)[at.petal]
     bend = np.where(at.element[:, None] == element, clamped_beam_bend(at.place[:, None], t[None, :]), 0.0)
     bent = (pressed * bend).sum(axis=1)
     for loads in pack.contact_places(found.points):
