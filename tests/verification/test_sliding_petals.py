@@ -264,7 +264,7 @@ def test_damping_converges(name: str, load: float) -> None:
 
 
 def test_equilibria_are_those_without_friction() -> None:
-    """A turning shaft is balanced without friction forces: tangential displacements among the unknowns change nothing."""
+    """A turning shaft is balanced without friction forces; tangential displacements as unknowns change nothing."""
     smooth = case("paper_n8", **{"model.cells_per_pitch": 12})
     with_V, without = solve.record(smooth.replace(**{"surface.petal_friction": 0.3})), solve.record(smooth)
     for name in ("bearing_force", "min_film_thickness", "max_bending_stress"):
