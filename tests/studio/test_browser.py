@@ -276,6 +276,28 @@ def test_names_for_screen_readers_and_a_narrow_window(page: Page) -> None:
     page.wait_for_function("document.documentElement.scrollWidth <= 400")
 
 
+def test_every_file_of_the_menu_is_what_it_says(page: Page, tmp_path: Path) -> None:
+    begins = {
+        "Table, CSV": b"status",
+        "NetCDF, all data": b"\x89HDF",
+        "Figure, PNG": b"\x89PNG",
+        "Figure, SVG": b"<?xml",
+        "Report, one HTML page": b"<!DOCTYPE html>",
+    }
+    answered(page, "with error bars")
+    for words, head in begins.items():
+        page.locator(".top").get_by_label("Save").click()
+        with page.expect_download() as download:
+            page.locator(".q-menu").get_by_text(words).click()
+        download.value.save_as(tmp_path / "file")
+        assert (tmp_path / "file").read_bytes().startswith(head), words
+    page.locator(".top").get_by_label("Save").click()
+    page.get_by_text("Lines of Python").click()
+    lines = page.get_by_label("lines of Python").input_value()
+    assert "petalfoil.balance(case" in lines
+    compile(lines, "lines", "exec")
+
+
 def test_a_motion_plays_its_section(page: Page, tmp_path: Path) -> None:
     rotor = '\n[rotor]\nmass = "1.5 kg"\nunbalance = "1 um"\n'
     text = downloaded_case(page, tmp_path).replace(**{"model.cells_per_pitch": 16, "operation.load": None}).to_toml()
