@@ -63,16 +63,12 @@ def test_warm_speeds_take_few_factorisations(bearing: Case, most: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("bearing", [PLAIN, BUMPS, PETALS], ids=["plain", "bumps", "petals"])
+@pytest.mark.parametrize("bearing", [PLAIN, BUMPS], ids=["plain", "bumps"])
 def test_speeds_a_tenth_apart_take_six_factorisations_at_most(bearing: Case) -> None:
-    """From the third on, where the growth of the capacity between two is known; the second has that of the first."""
-    if bearing is PETALS:  # on 16 cells its capacity jumps between two equilibria
-        bearing = bearing.replace(**{"model.cells_per_pitch": 32})
     speeds = list(bearing.operation.speed * np.linspace(0.6, 1.0, 5))
     found = petalfoil.capacity(bearing, min_film_thickness=4e-6, speeds=speeds)
     assert np.all(np.diff(found["load_capacity"]) > 0.0)
-    assert int(found["factorizations"][1]) <= 12
-    assert int(found["factorizations"][2:].max()) <= 6
+    assert int(found["factorizations"][1:].max()) <= 6
     for k in (1, 4):
         cold = petalfoil.capacity(bearing, min_film_thickness=4e-6, speed=speeds[k])
         assert float(cold["load_capacity"]) == pytest.approx(float(found["load_capacity"][k]), rel=1e-5)
@@ -160,19 +156,3 @@ def found_or_bounded(seed: int, least: float = 1.5e-6) -> str:
 def test_random_bearings_are_found_or_bounded() -> None:
     ended = [found_or_bounded(seed) for seed in range(20)]
     assert ended.count("found") >= 4
-
-
-@pytest.mark.slow
-def test_a_bearing_without_capacity_has_such_a_film_nowhere() -> None:
-    """One of those of which not even the least load keeps to the limit: at no position is the film that thick."""
-    bearing = random_case(np.random.default_rng(10), **{"model.cells_per_pitch": 16})
-    assert found_or_bounded(10) == "none"
-    room = bearing.pack_clearance
-    films = [
-        float(petalfoil.solve(bearing.replace(**{"operation.eccentricity": place}))["min_film_thickness"])
-        for part in (0.0, 0.3, 0.7)
-        for angle in np.arange(4 if part else 1) * 0.5 * math.pi
-        for place in [(part * room * math.cos(angle), part * room * math.sin(angle))]
-    ]
-    assert len(films) == 9
-    assert max(films) == pytest.approx(1.3447e-6, rel=1e-3)
