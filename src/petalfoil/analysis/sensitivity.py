@@ -38,8 +38,8 @@ MAIN_RESULT = {
 }
 """Questions that have derivatives, and the result that is asked for unless another is."""
 
-NOT_PHYSICAL = ("model.", "surface.friction_width", "petals.free_shape_tolerance")
-"""Numbers of the discretisation: their derivatives are asked for by name only."""
+WITHOUT_EFFECT = ("model.", "surface.friction_width", "surface.petal_friction", "petals.free_shape_tolerance")
+"""Numbers of the discretisation, and friction that acts in motions alone: derivatives by them are not looked for."""
 
 ALL = "all"
 """All results of the question, in place of their names."""
@@ -209,7 +209,7 @@ def default_paths(case: Case, verb: str) -> list[str]:
     """Parameters that the results of a question may depend on."""
     given = ["operation.load" if case.operation.load is None else "operation.eccentricity"]
     given += {"capacity": ["operation.eccentricity"]}.get(verb, [])
-    without = (*NOT_PHYSICAL, *given, *(["operation.speed"] if verb in ("liftoff", "static") else []))
+    without = (*WITHOUT_EFFECT, *given, *(["operation.speed"] if verb in ("liftoff", "static") else []))
     known_ones = parameters_of(case).values()
     return [p.path for p in known_ones if not p.is_count and p.value is not None and not p.path.startswith(without)]
 

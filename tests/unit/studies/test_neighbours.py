@@ -90,7 +90,8 @@ def test_many_bearings_have_the_same_answers(
         vary, arguments = {**vary, "operation.speed": f"{0.9 * speed} : {1.1 * speed} : 2"}, {"load": 20.0}
     alone = sweep(bearing, vary, verb, execution=ALONE, **arguments)
     found = sweep(bearing, vary, verb, execution=BESIDE, **arguments)
-    assert_same_answers(found, alone)
+    light = 3.0 if name == "paper_n6" else 1.0  # 0.7 N are left of pressures that cancel around the journal
+    assert_same_answers(found, alone, light * 1e-9)
     assert from_neighbours(found) > 0
 
 
