@@ -154,10 +154,15 @@ EVERY: dict[str, tuple[str, Callable[[], Told], Callable[[], Told]]] = {
         lambda: of(scalars={"solution_path": "the pack is bottomed out between journal and bushing"}),
         lambda: of(scalars={"solution_path": "balanced with the load"}),
     ),
-    "of_answer contact_slopes": (
-        "contact_slopes",
-        lambda: of(scalars={"contact_slopes": "contacts at nodes, isolated ones moved between them"}),
-        lambda: of(scalars={"contact_slopes": "contact points on petals with continuous slopes"}),
+    "of_answer contact_model": (
+        "contact_model",
+        lambda: of(scalars={"contact_model": "contacts at nodes"}),
+        lambda: of(scalars={"contact_model": "contact points on petals with continuous slopes"}),
+    ),
+    "of_answer nodal_force_difference": (
+        "nodal_force_difference",
+        lambda: of(scalars={"nodal_force_difference": 0.11}),
+        lambda: of(scalars={"nodal_force_difference": 0.09}),
     ),
     "warnings_of_errors": (
         "min_film_thickness",
