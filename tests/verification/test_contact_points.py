@@ -17,7 +17,8 @@ from petalfoil.case import Case
 from petalfoil.equilibrium.asperity_contacts import AsperityContacts, with_asperities
 from petalfoil.equilibrium.element_contacts import near_nodes, start_at
 from petalfoil.equilibrium.element_response import ElementMotion
-from petalfoil.equilibrium.point_contacts import PointContacts, with_points
+from petalfoil.equilibrium.element_tangent import NoPointsError
+from petalfoil.equilibrium.point_contacts import PointContacts, followed, with_points
 from petalfoil.equilibrium.run_context import running
 from petalfoil.equilibrium.small_motion import AT_ASPERITIES, AT_NODES, AT_POINTS
 from petalfoil.equilibrium.solution import Solution
@@ -46,6 +47,23 @@ def contacts_of(name: str) -> PointContacts:
     found = near_nodes(answer_of(name))
     assert isinstance(found, PointContacts)
     return found
+
+
+def test_points_followed_to_another_speed_are_those_found_there() -> None:
+    """Unknowns and position together in few factorisations; the force carries the load."""
+    with running() as run:
+        found, load = contacts_of("turbocharger"), answer_of("turbocharger").load
+        assert load is not None
+        faster = found.equations.problem.at(bearing_number=1.3 * found.equations.problem.bearing_number)
+        before = run.film.factorizations
+        there = followed(found, faster, load)
+        assert run.film.factorizations - before <= 4
+        anew = found.at(there.equations.problem)
+    assert_allclose(there.equations.force, -load, atol=1e-7 * np.linalg.norm(load))
+    assert_allclose(there.equations.state.P, anew.equations.state.P, rtol=1e-7)
+    assert np.linalg.norm(there.equations.problem.displacement - found.equations.problem.displacement) > 1e-3
+    with running(), pytest.raises(NoPointsError):
+        followed(found, faster, 40.0 * load)
 
 
 def shifted(equations: PointEquations, step: Array) -> PointEquations:

@@ -12,7 +12,7 @@ from petalfoil.equilibrium.element_contacts import near_nodes
 from petalfoil.equilibrium.element_response import ElementMotion
 from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.equilibrium.run_context import current_run
-from petalfoil.equilibrium.small_motion import Motion
+from petalfoil.equilibrium.small_motion import ElementEquilibrium, Motion
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 from petalfoil.system.friction import friction_at_points, friction_of
@@ -48,13 +48,9 @@ def elastic_and_sliding(case: Case, answer: Solution) -> tuple[Motion, SlidingCo
     ConvergenceError
         The pack is bottomed out: the journal cannot move without bending what has no clearance to bend.
     """
-    found, friction = near_nodes(answer), friction_of(case, answer.problem.layout)
+    found = near_nodes(answer)
     if found is not None:
-        if friction is None:
-            return ElementMotion(found), None
-        whole = PointLayout(found.pack, answer.problem.layout)
-        on_elements = SlidingContacts.at(friction_at_points(friction, whole, found.points), found.points.reaction)
-        return ElementMotion(found, on_elements.friction), on_elements
+        return on_elements(case, found)
     sliding = sliding_at(case, answer)
     motion = SmallMotion.about(answer, None if sliding is None else sliding.sticking(len(answer.x)))
     if not motion.contacts.constraints.determinate:
@@ -64,6 +60,17 @@ def elastic_and_sliding(case: Case, answer: Solution) -> tuple[Motion, SlidingCo
             advice="lower the load, or ask `balance` what part of it solid contact carries",
         )
     return motion, sliding
+
+
+def on_elements(case: Case, found: ElementEquilibrium) -> tuple[Motion, SlidingContacts | None]:
+    """Small motions about an equilibrium of petals with continuous slopes, and its contacts that would slide."""
+    layout = found.equations.problem.layout
+    friction = friction_of(case, layout)
+    if friction is None:
+        return ElementMotion(found), None
+    whole = PointLayout(found.pack, layout)
+    sliding = SlidingContacts.at(friction_at_points(friction, whole, found.points), found.points.reaction)
+    return ElementMotion(found, sliding.friction), sliding
 
 
 def impedances(motion: Motion, frequencies: Array, speed: float) -> list[tuple[Array, Array]]:

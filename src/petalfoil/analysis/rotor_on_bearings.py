@@ -12,17 +12,22 @@ from functools import cached_property
 
 import numpy as np
 
-from petalfoil.analysis.impedance import elastic
+from petalfoil.analysis.impedance import elastic, on_elements
 from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.analysis.tilted_journal import free_to_tilt, held
 from petalfoil.case import Case, ModelKind
 from petalfoil.dynamics.critical_mass import Whirl, neutral_whirl, whirl_impedance
 from petalfoil.dynamics.joint_motion import JointMotion
 from petalfoil.dynamics.natural_modes import Mode, natural_modes
-from petalfoil.dynamics.reduced_impedance import Impedance
+from petalfoil.dynamics.reduced_impedance import Impedance, JournalMotion
 from petalfoil.dynamics.rotor_motion import Inertia
+from petalfoil.equilibrium.element_response import ElementMotion
+from petalfoil.equilibrium.element_tangent import NoPointsError
+from petalfoil.equilibrium.point_contacts import PointContacts, followed
+from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import UsageError
+from petalfoil.system.loaded import load_of
 
 
 @dataclass(frozen=True)
@@ -60,6 +65,31 @@ class RotorOnBearings:
         if self.case.bearings == 1:
             return whirl_impedance(elastic(self.case, held(self.case, answer)))
         return whirl_impedance(self._joint(answer))
+
+    def followed(self, last: JournalMotion, speed: float, load: tuple[float, float]) -> Impedance | None:
+        """The impedance under `load` (x, y) [N] at another speed [rad/s], contacts and position followed from `last`.
+
+        None for contacts at nodes, for two bearings, with a heat network, and where the equilibrium is lost.
+        """
+        if not isinstance(last, ElementMotion) or self.case.bearings > 1:
+            return None
+        problem = last.problem
+        wanted = load_of(self.case, load, problem.layout)
+        if (
+            problem.temperatures is not None
+            or last.contacts.gradient is None
+            or len(wanted) != len(problem.displacement)
+        ):
+            return None
+        scales, R_j = problem.layout.scales, self.case.bearing.journal_radius
+        there = problem.at(bearing_number=scales.bearing_number(self.case.gas.viscosity, speed, R_j))
+        near = last.contacts
+        try:
+            found = followed(near, there, wanted) if isinstance(near, PointContacts) else near.at(there, wanted)
+            return whirl_impedance(on_elements(self.case, found)[0])
+        except NoPointsError as failure:
+            current_run().note("followed", outcome=str(failure))
+            return None
 
     def _joint(self, answer: Solution) -> JointMotion:
         """Small motions of both bearings; where they share the load evenly, those of one are those of the other.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,6 +45,8 @@ class SpeedLine:
         The last temperatures of a heat network: those before the next step of a warm-up.
     gradually : bool
         Raise the friction power gradually where Newton's method does not lead from the last temperatures to the next.
+    seeks : bool
+        Look for contacts on petals with continuous slopes; else all balances keep contacts at nodes.
     rotor : RotorInBearings or None
         The rotor, where its bearings do not share the load evenly.
     others : list
@@ -56,6 +58,7 @@ class SpeedLine:
     known: Solution | None = None
     temperatures: Temperatures | None = None
     gradually: bool = True
+    seeks: bool = True
     base: CoupledProblem = field(init=False)
     rotor: RotorInBearings | None = None
     others: list[Temperatures | None] = field(default_factory=list)
@@ -94,7 +97,9 @@ class SpeedLine:
         else:
             self.known = warm_up_step(self.case, found, warm, after)
         self.temperatures = self.known.problem.temperatures
-        self.known = reported(self.case, self.known, before)
+        self.known = (
+            reported(self.case, self.known, before) if self.seeks else replace(self.known, elements_sought=True)
+        )
         return self.known
 
     def _on_shaft(self, rotor: RotorInBearings, speed: float, after: float | None) -> Solution:

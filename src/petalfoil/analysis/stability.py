@@ -191,7 +191,7 @@ def point(case: Case, load: Vector | None, mass: float | None, progress: Progres
         impedance = rotor.impedance(found.answer)
         whirl = rotor.whirl(impedance, speed)
         modes = None if math.isnan(rotor.mass) else rotor.modes(impedance, speed)
-        threshold, ended = threshold_speed(rotor, load, whirl)
+        threshold, ended = threshold_speed(rotor, load, (impedance.motion, whirl))
         contacts = ContactModel.of_motion(impedance.motion)
         parts = (Rotor(rotor.mass, threshold), *whirl_parts(case, found, whirl, ended), contacts, effort(run.seconds))
         fields, coords = ({}, {}) if modes is None else mode_fields(modes, speed, tilts=case.bearings > 1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import brentq
@@ -13,7 +14,9 @@ from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
 from petalfoil.dynamics.critical_mass import Whirl
+from petalfoil.dynamics.reduced_impedance import JournalMotion
 from petalfoil.dynamics.rotor_motion import GRAVITY
+from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.errors import ConvergenceError
 
@@ -50,16 +53,17 @@ NEVER = 50.0
 """Margin of a bearing on which a rotor of any mass is stable; with the other sign, of one on which any whirls."""
 
 
-def threshold_speed(rotor: RotorOnBearings, load: Vector | None, whirl: Whirl) -> Threshold:
-    """Speed at which the rotor becomes unstable, within the range, from its neutral whirl at the case's speed.
+def threshold_speed(rotor: RotorOnBearings, load: Vector | None, start: tuple[JournalMotion, Whirl]) -> Threshold:
+    """Speed at which the rotor becomes unstable, within the range, from small motions and whirl at the case's speed.
 
     Upward from a stable bearing, downward from an unstable one. A speed without an equilibrium ends the search.
     """
+    motion, whirl = start
     if whirl.mass == 0.0:
         return math.nan, ""  # it whirls at any speed
     if math.isnan(rotor.mass):
         return math.nan, "no threshold speed: give a mass or a load"
-    margin_at = margins(rotor, load)
+    margin_at = margins(rotor, load, motion)
     known, here = rotor.case.operation.speed, margin(whirl, rotor.mass)
     factor = FACTOR if here > 0.0 else 1.0 / FACTOR
     first, last = sorted((known, known * RANGE if here > 0.0 else known / RANGE))
@@ -88,12 +92,14 @@ def neutral_speed(
     """
     seen = dict([known, ahead])
 
-    def remembered(speed: float) -> float:
+    def remembered(logarithm: float) -> float:
+        speed = ends.get(logarithm) or math.exp(logarithm)
         if speed not in seen:
             seen[speed] = margin_at(speed)
         return seen[speed]
 
-    speed = float(brentq(remembered, min(known[0], ahead[0]), max(known[0], ahead[0]), rtol=PRECISION))
+    ends = {math.log(speed): speed for speed in seen}
+    speed = math.exp(brentq(remembered, *sorted(ends), xtol=PRECISION))
     jumps = all(min(abs(m) for m in seen.values() if (m > 0.0) == side) > JUMP for side in (True, False))
     return speed, "at the threshold speed the critical mass jumps past the rotor's" if jumps else ""
 
@@ -103,8 +109,8 @@ JUMP = 0.1
 changes it by some thousandths."""
 
 
-def margins(rotor: RotorOnBearings, load: Vector | None) -> Callable[[float], float]:
-    """The margin over speed [rad/s], under the load or at the case's position."""
+def margins(rotor: RotorOnBearings, load: Vector | None, start: JournalMotion) -> Callable[[float], float]:
+    """The margin over speed [rad/s], under the load or at the case's position, from the small motions at its speed."""
     case = rotor.case
     if load is None and case.operation.load is None:
 
@@ -113,13 +119,35 @@ def margins(rotor: RotorOnBearings, load: Vector | None) -> Callable[[float], fl
             return margin(rotor.whirl(rotor.impedance(answer), speed), rotor.mass)
 
         return in_place
-    line = SpeedLine(case, applied_load(case, load))
+    return MarginUnderLoad(rotor, SpeedLine(case, applied_load(case, load)), start)
 
-    def under_load(speed: float) -> float:
-        answer = line.at(speed)
-        return margin(rotor.whirl(rotor.impedance(answer), speed), rotor.mass)
 
-    return under_load
+@dataclass
+class MarginUnderLoad:
+    """The margin over speed under a load, each equilibrium from the last one, with contacts of one kind.
+
+    Attributes
+    ----------
+    rotor : RotorOnBearings
+        Rotor and bearing.
+    line : SpeedLine
+        Balances with contacts at nodes, for speeds at which contact points are not followed.
+    last : JournalMotion
+        Small motions about the last equilibrium.
+    """
+
+    rotor: RotorOnBearings
+    line: SpeedLine
+    last: JournalMotion
+
+    def __call__(self, speed: float) -> float:
+        """The margin at `speed` [rad/s]."""
+        impedance = self.rotor.followed(self.last, speed, self.line.load)
+        if impedance is None:
+            self.line.seeks = not isinstance(self.last, SmallMotion)
+            impedance = self.rotor.impedance(self.line.at(speed))
+        self.last = impedance.motion
+        return margin(self.rotor.whirl(impedance, speed), self.rotor.mass)
 
 
 def in_rpm(speed: float) -> str:

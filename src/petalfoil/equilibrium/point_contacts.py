@@ -48,6 +48,12 @@ FARTHEST_MOVE = 0.5
 CHORD = 0.2
 """Residual after a step over that before it, up to which the factor at hand serves another step, at half the cost."""
 
+FOLLOWED_STEPS = 10
+"""Most Newton steps from an equilibrium to the next one under the same load: four to six over a third of the speed."""
+
+SETTLING = 1e-4
+"""Residual below which such a step keeps the factor of the one before: it leaves a thousandth of it, or less."""
+
 POLISHED = 1e-3
 """Residual over that of a solution below which another step changes no printed digit."""
 
@@ -166,6 +172,34 @@ def newton(equations: PointEquations, most: int, load: Array | None) -> tuple[Po
     raise NoPointsError(f"contacts or the residual, {largest:.1e}, still change after {STEPS} steps")
 
 
+def followed(near: PointContacts, problem: CoupledProblem, load: Array) -> PointContacts:
+    """The equilibrium of a neighbouring problem under a load, from that `near`, in a few whole steps.
+
+    The residual may grow on the way: for points that travel it does so in the first step, and halving that step would
+    lead there in ten short ones.
+
+    Raises
+    ------
+    NoPointsError
+        None was found: other contacts, or a jump.
+    """
+    equations, tangent = replace(near.equations, problem=problem), None
+    for _ in range(FOLLOWED_STEPS):
+        _, largest = norm(equations, load)
+        if tangent is not None and largest <= RESIDUAL_TOLERANCE:
+            points = revised(equations)
+            if points is None:
+                return PointContacts(equations, float(np.max(np.abs(equations.scaled))), tangent.gradient)
+            equations, tangent = replace(equations, state=replace(equations.state, points=points)), None
+        if diverged(equations.state):
+            break
+        if tangent is None or largest > SETTLING or tangent.n != equations.n:
+            tangent = ElementTangent.at(equations, load, current_run().film_solver)
+        step = tangent.correction(equations.newton_residual, unbalanced(equations, load))
+        equations = stepped(equations, step, load, whole_step=True)
+    raise NoPointsError(f"not followed in {FOLLOWED_STEPS} steps")
+
+
 def norm(equations: PointEquations, load: Array | None) -> tuple[float, float]:
     """Root of the squares of all scaled residuals, and the largest of them; the unbalanced force among them."""
     left = np.concatenate([equations.scaled, scaled_force(equations, load)])
@@ -178,8 +212,13 @@ def diverged(state: PointState) -> bool:
     return not far <= FARTHEST_STATE
 
 
-def stepped(equations: PointEquations, change: tuple[Array, Array], load: Array | None) -> PointEquations:
-    """The equations after the longest part of `change` (of unknowns and position) that lessens the residual."""
+def stepped(
+    equations: PointEquations, change: tuple[Array, Array], load: Array | None, *, whole_step: bool = False
+) -> PointEquations:
+    """The equations after the longest part of `change` (of unknowns and position) that lessens the residual.
+
+    A `whole_step` is only shortened where pressures or the film would vanish, or the journal goes too far.
+    """
     (before, _), (dX, move), whole = norm(equations, load), change, equations.whole
     dw, dP = dX[: whole.n_wall], dX[whole.n_wall : whole.n_wall + whole.n_film]
     closing = whole.film_by_w @ dw + whole.film_by_e @ move
@@ -195,7 +234,7 @@ def stepped(equations: PointEquations, change: tuple[Array, Array], load: Array 
         problem = equations.problem.at(displacement=equations.problem.displacement + length * move)
         ahead = replace(equations, problem=problem, state=changed(equations, length * dX))
         other_contacts = ahead.n != equations.n
-        if other_contacts or length <= SHORTEST or norm(ahead, load)[0] < before:
+        if whole_step or other_contacts or length <= SHORTEST or norm(ahead, load)[0] < before:
             return ahead
         length = max(0.5 * length, SHORTEST)
 
