@@ -10,6 +10,7 @@ import pytest
 import xarray as xr
 from numpy.testing import assert_allclose
 
+from petalfoil.analysis.derivatives import GROWTH
 from petalfoil.analysis.neighbours import FROM_NEIGHBOUR, TRIALS, Memory, apart
 from petalfoil.errors import UsageError
 from petalfoil.results.schema import SCALARS, DataType, Role
@@ -19,10 +20,10 @@ from petalfoil.studies.summary import headline
 from petalfoil.studies.sweep import sweep
 from tests.cases import case
 
-PAPER = case("paper_n8", **{"model.cells_per_pitch": 12})
+PAPER = case("paper_n8", **{"model.cells_per_pitch": 8, "model.contacts": "nodes"})
 ALONE = Execution(workers=0)
 BESIDE = Execution(workers=0, neighbours=True)
-VARY = {"petals.thickness": "0.18 mm : 0.184 mm : 2", "gas.viscosity": "18 uPa s : 19 uPa s : 3"}
+VARY = {"gas.viscosity": "18 uPa s : 19 uPa s : 4"}
 
 
 @pytest.fixture(autouse=True)
@@ -50,7 +51,8 @@ def assert_same_answers(found: xr.Dataset, alone: xr.Dataset, tolerance: float =
                 size = max(size, float(np.nanmax(alone["bearing_force"].values)))
             if variable.units == "rad":
                 size = 1.0
-            assert_allclose(found[name].values, alone[name].values, rtol=tolerance, atol=tolerance * size, err_msg=name)
+            near = tolerance * (10.0 if name in GROWTH else 1.0)  # an eigenvalue ends its iteration at that
+            assert_allclose(found[name].values, alone[name].values, rtol=near, atol=near * size, err_msg=name)
             compared += 1
     assert compared > 2
 
@@ -59,7 +61,7 @@ def test_a_balance_from_a_neighbour_is_that_of_the_case_itself(tmp_path: Path) -
     alone = sweep(PAPER, VARY, "balance", load=20.0, execution=ALONE)
     found = sweep(PAPER, VARY, "balance", load=20.0, out=tmp_path, execution=BESIDE)
     assert from_neighbours(alone) == 0
-    assert from_neighbours(found) >= 4
+    assert from_neighbours(found) == 3
     assert f"{from_neighbours(found)} from a neighbour" in headline(found)
     assert_same_answers(found, alone)
     assert found["factorizations"].values.sum() < 0.6 * alone["factorizations"].values.sum()
