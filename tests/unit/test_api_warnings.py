@@ -18,7 +18,8 @@ def test_contact_is_told_at_the_speed_of_the_case_and_not_on_the_way_there() -> 
     loaded = case("paper_n8", **{"model.cells_per_pitch": 16})
     records = list(runup.records(loaded, 50.0, to=0.1 * loaded.operation.speed, points=3))
     assert max(float(record.scalars["contact_fraction"]) for record in records) > 0.5
-    assert [record.warnings for record in records] == [()] * len(records)
+    told_of_contact = [any(text.startswith("contact_fraction") for text in record.warnings) for record in records]
+    assert not any(told_of_contact)
     record = petalfoil.balance(loaded, 50.0, speed=loaded.operation.speed)
     told = record.attrs.get("warnings", "")
     assert ("contact_fraction: " in told) is (float(record["contact_fraction"]) > 1e-3)

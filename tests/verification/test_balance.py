@@ -104,7 +104,7 @@ def run_random(count: int) -> tuple[list[Drawn], int]:
     """Balances of random bearings; and how many have no answer at their own position."""
     rng, found, without = np.random.default_rng(SEED), [], 0
     while len(found) + without < count:
-        drawn = random_case(rng)
+        drawn = random_case(rng, **{"model.contacts": "nodes"})
         try:
             with running() as run:
                 answer = solve_cold(build_problem(drawn))
@@ -148,7 +148,7 @@ def test_three_hundred_random_bearings() -> None:
 
 @pytest.mark.parametrize("load", [200.0, 250.0, 400.0, 3000.0])
 def test_an_overload_is_answered_with_the_share_of_the_contacts(load: float) -> None:
-    bearing = case("paper_n8", **COARSE)
+    bearing = case("paper_n8", **COARSE, **{"model.contacts": "nodes"})
     record = balance.record(bearing, (0.0, -load))
     share = number(record, "contact_fraction")
     assert share > 0.1
