@@ -180,3 +180,22 @@ def test_every_verb_answers(verb: str, kind: str) -> None:
     result = VERBS[verb](backed(**{"model.kind": kind}))
     if verb != "check":
         assert np.all(result["converged"])
+
+
+ROTOR = {"mass": 6.0, "span": 0.2, "transverse_inertia": 0.02, "polar_inertia": 0.002}
+BESIDE: dict[str, Callable[[], xr.Dataset]] = {
+    "two bearings": lambda: petalfoil.stability(backed(rotor=ROTOR, **{"model.kind": "3d"}), load="60 N"),
+    "a tilted journal": lambda: petalfoil.solve(backed(**{"model.kind": "3d", "operation.tilt": (1e-4, 0.0)})),
+    "friction": lambda: petalfoil.static(backed(**{"surface.petal_friction": 0.1}), "0 um : 50 um : 2"),
+    "unequal petals": lambda: petalfoil.solve(backed(**{"petals.thickness": (*[0.176e-3] * 7, 0.18e-3)})),
+    "clamped petals": lambda: petalfoil.solve(backed(**{"petals.mount": "clamped"})),
+    "continuous edges": lambda: petalfoil.balance(backed(**{"model.edges": "continuous"}), "60 N"),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", BESIDE)
+def test_springs_go_with_the_other_tables(name: str) -> None:
+    result = BESIDE[name]()
+    assert np.all(result["converged"])
+    assert float(np.max(result["residual"])) <= 1e-8
