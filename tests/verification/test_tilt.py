@@ -148,6 +148,18 @@ def test_symmetry_gives_no_moment() -> None:
     assert whole["factorizations"] == half["factorizations"]
 
 
+def test_a_tilt_costs_three_factorisations_at_most() -> None:
+    """More than half the length of the aligned journal, at a position and under a load."""
+    aligned, tilted = petals(), petals(**{"operation.tilt": (5e-4, -2e-4)})
+    held = [int(solve.record(of).scalars["factorizations"]) for of in (aligned, tilted)]
+    assert held[1] <= held[0] + 3
+    centred = {"operation.eccentricity": (0.0, 0.0)}
+    loaded = [
+        int(balance.record(of.replace(**centred), (0.0, -10.0)).scalars["factorizations"]) for of in (aligned, tilted)
+    ]
+    assert loaded[1] <= loaded[0] + 3
+
+
 def test_the_moment_that_holds_a_tilt_balances_it() -> None:
     held = balance.record(TILTED).scalars
     moment = (-float(held["moment_x"]), -float(held["moment_y"]))
