@@ -150,7 +150,7 @@ def on_both(case: Case, request: OrbitRequest) -> tuple[Vector, Vector]:
     load, speed = constant_load(case, request.load), request.schedule(case).speed(0.0)
     weighs = request.load is None and case.operation.load is None  # a weight acts at the mass centre
     rotor = RotorInBearings.of(case.replace(**{"rotor.load_place": None}) if weighs else case, load)
-    x, y, slope_x, slope_y = map(float, rotor.position(rotor.at(speed)))
+    x, y, slope_x, slope_y = map(float, rotor.position_at_nodes(rotor.at(speed)))
     unbalance = 0.0 if case.rotor is None or speed == 0.0 else case.rotor.unbalance
     return (x - unbalance, y), (slope_x, slope_y)
 

@@ -26,7 +26,7 @@ from petalfoil.equilibrium.continuation import follow, restart
 from petalfoil.equilibrium.heated import ThermalRunawayError, heated, stiffness
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.equilibrium.under_load import FORCE_TOLERANCE, balance_cold
+from petalfoil.equilibrium.under_load import FORCE_TOLERANCE, balance_cold, from_neighbour
 from petalfoil.errors import ConvergenceError
 from petalfoil.system.build import build_problem, build_tilting, lever_of
 from petalfoil.system.coupled import CoupledProblem
@@ -132,11 +132,7 @@ class Support:
                 found = None if found is None else self._followed(found, here)
             if found is not None:
                 return found
-        raise ConvergenceError(
-            "a bearing of the rotor finds no equilibrium where the shaft moves to",
-            history=current_run().history,
-            advice="lower the load, or ask for each bearing alone under its part of it",
-        )
+        raise no_way()
 
     def _followed(self, known: Solution, here: CoupledProblem) -> Solution | None:
         found = follow(known, here) or restart(known, here)
@@ -149,6 +145,21 @@ class Support:
     def warm(self, found: Solution) -> Solution:
         """The equilibrium at its position with the temperatures of its network."""
         return found if self.network is None else heated(replace(found, load=None), self.network)
+
+    def carrying(self, known: Solution, speed: float, load: Vector) -> Solution:
+        """The equilibrium under a load [N] at a speed [rad/s], from a neighbour.
+
+        Raises
+        ------
+        ConvergenceError
+            None was found from there.
+        """
+        scales, case = known.problem.layout.scales, self.case
+        number = scales.bearing_number(case.gas.viscosity, speed, case.bearing.journal_radius)
+        found = from_neighbour(known, known.problem.at(bearing_number=number), np.array(load) / scales.force)
+        if found is None:
+            raise no_way()
+        return replace(found if self.network is None else heated(found, self.network), load=None)
 
     def at_speed(self, known: Solution, speed: float) -> Solution:
         """The equilibrium at another speed [rad/s], the shaft where it was."""
@@ -222,12 +233,15 @@ class RotorInBearings:
         if known is None or known.other is None:
             pair = self.alone(speed)
         else:
-            both = zip(self.supports, self.in_order(known), strict=True)
-            pair = [support.at_speed(one, speed) for support, one in both]
+            both = list(zip(self.supports, self.in_order(known), self.shares(), strict=True))
+            if any(support.tilts for support in self.supports):
+                pair = [support.at_speed(one, speed) for support, one, _ in both]
+            else:  # without moments of their own statics says what each bearing carries
+                pair = [support.carrying(one, speed, share) for support, one, share in both]
         pair = self.balanced(pair)
         residual = self.residual(pair)
-        both = zip(self.supports, pair, strict=True)
-        pair = [reported(support.case, replace(one, load=-one.unbalanced)) for support, one in both]
+        states = zip(self.supports, pair, strict=True)
+        pair = [reported(support.case, replace(one, load=-one.unbalanced)) for support, one in states]
         residual = max(residual, self.residual(pair))
         told, other = reversed(pair) if self.turned else pair
         path = "balanced with the load on the shaft of both bearings"
@@ -312,6 +326,10 @@ class RotorInBearings:
         """Position of the mass centre and slopes of the shaft, (4,) [m, rad]."""
         return self._through(self.in_order(found))
 
+    def position_at_nodes(self, found: Solution) -> Array:
+        """The same with contacts at nodes, where a motion has them."""
+        return self._through([replace(one, elements=None) for one in self.in_order(found)])
+
     def residual(self, pair: list[Solution]) -> float:
         """Force and moment left over on the shaft, over the load [1]."""
         return float(np.linalg.norm(self.left(pair) / self.unit(pair)))
@@ -367,3 +385,12 @@ class RotorInBearings:
         """Largest move of a journal by a change of `q`, in reference films."""
         moves = (support.by_shaft @ change / support.problem.layout.scales.length for support in self.supports)
         return max(float(np.linalg.norm(move)) for move in moves)
+
+
+def no_way() -> ConvergenceError:
+    """The error of a bearing that does not follow the shaft."""
+    return ConvergenceError(
+        "a bearing of the rotor finds no equilibrium where the shaft moves to",
+        history=current_run().history,
+        advice="lower the load, or ask for each bearing alone under its part of it",
+    )

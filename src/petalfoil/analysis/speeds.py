@@ -106,7 +106,12 @@ class SpeedLine:
         """The same of a rotor whose bearings do not share the load evenly."""
         if after is not None:
             rotor = rotor.in_time(self.others or [self.temperatures, None], after)
-        self.known = rotor.at(speed, self.known)
+        try:
+            self.known = rotor.at(speed, self.known)
+        except ConvergenceError:
+            if self.known is None:
+                raise
+            self.known = rotor.at(speed)
         self.temperatures = self.known.problem.temperatures
         self.others = [one.problem.temperatures for one in rotor.in_order(self.known)]
         return self.known
