@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import socket
 from collections import OrderedDict
@@ -47,10 +48,17 @@ class Sessions:
         Who computes.
     design : Design
         What a new session begins with.
+
+    Attributes
+    ----------
+    building : Lock
+        Held while a page is built. Pages that open at once are built one after the other: between two parts of one of
+        them the others are kept alive, and a busy machine would otherwise let all of them time out.
     """
 
     def __init__(self, engine: Engine, design: Design) -> None:
         self._engine, self._design = engine, design
+        self.building = asyncio.Lock()
         self._sessions: OrderedDict[str, Session] = OrderedDict()
 
     def open(self, key: str | None, *, is_copy: bool = False) -> Session | None:
@@ -157,7 +165,8 @@ async def show(sessions: Sessions) -> None:
         tab[KEY] = (session.key, client.tab_id)
         session.is_dark = bool(is_dark)
     page = Page(session, is_wide=width > WIDE)
-    await page.build()
+    async with sessions.building:
+        await page.build()
     session.listener = page.changed
     client.on_delete(lambda: sessions.leave(session, page))
     session.refresh()
