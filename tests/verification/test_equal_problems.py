@@ -57,8 +57,8 @@ def gas_of(case: Case, **changes: float) -> Gas:
 
 @cache
 def drawn(number: int) -> tuple[Case, Record | None]:
-    """A random bearing with ambient edges and its answer."""
-    changes = {"model.edges": Edges.AMBIENT, "model.cells_per_pitch": 16}
+    """A random bearing with ambient edges and its answer, contacts at nodes: asperities have a height of their own."""
+    changes = {"model.edges": Edges.AMBIENT, "model.cells_per_pitch": 16, "model.contacts": "nodes"}
     case = wide_case(np.random.default_rng([number, SEED]), **changes)
     return case, solved(case)
 
