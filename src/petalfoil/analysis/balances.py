@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from petalfoil.equilibrium.small_motion import ElementEquilibrium
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.physics.reynolds import Flux
+from petalfoil.system.unknowns import DEFLECTION
 
 Array = NDArray[np.float64]
 Fluxes = tuple[Flux, Flux]
@@ -32,12 +33,13 @@ def reaction_balance(answer: Solution) -> float:
     """Largest error of a petal's loads against its support, in motions that bend nothing (S4), over the loads [1]."""
     if answer.elements is not None:
         return balance_on_elements(answer.elements)
-    layout = answer.problem.layout
-    w, P = answer.deflection, answer.x[answer.problem.positive]
+    layout, lines = answer.problem.layout, answer.lines
+    x, lam, rest = (answer.x, answer.lam, answer.state.low_order) if lines is None else (lines.x, lines.lam, 0.0)
+    w, P = x[layout.unknowns[DEFLECTION]], x[answer.problem.positive]
     wall, unit = layout.wall, layout.scales.length / layout.scales.force
-    loads = layout.push @ (P - 1.0) + wall.contacts.G.T @ answer.lam
-    parts = layout.push @ np.abs(P - 1.0) + abs(wall.contacts.G.T) @ answer.lam
-    error = wall.free_motions.T @ loads + unit * (wall.support @ w + wall.support @ answer.state.low_order)
+    loads = layout.push @ (P - 1.0) + wall.contacts.G.T @ lam
+    parts = layout.push @ np.abs(P - 1.0) + abs(wall.contacts.G.T) @ np.abs(lam)
+    error = wall.free_motions.T @ loads + unit * (wall.support @ w + wall.support @ (rest + np.zeros_like(w)))
     return largest(error, abs(wall.free_motions.T) @ parts)
 
 

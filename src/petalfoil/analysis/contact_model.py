@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from petalfoil.case import Case
 from petalfoil.dynamics.reduced_impedance import JournalMotion
 from petalfoil.equilibrium.element_contacts import with_elements
+from petalfoil.equilibrium.line_sets import with_lines
 from petalfoil.equilibrium.solution import Solution
 
 
@@ -31,8 +32,11 @@ class ContactModel:
 
 
 def reported(case: Case, answer: Solution, known: Solution | None = None) -> Solution:
-    """The answer with the equilibrium of petals with continuous slopes that results are taken from, if there is one.
+    """The answer with the equilibrium that results are taken from: with contacts between nodes, if there is one.
 
-    The classic method and heat networks keep contacts at nodes. `known` is a neighbour with its own.
+    In 2-D it has petals with continuous slopes, in 3-D contact lines. The classic method and heat networks keep
+    contacts at nodes. `known` is a neighbour with its own.
     """
+    if case.has_contact_lines and case.heat is None:
+        return with_lines(answer)
     return with_elements(answer, known) if case.has_contact_points and case.heat is None else answer

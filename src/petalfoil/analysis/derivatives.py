@@ -111,12 +111,12 @@ class DerivativesOf:
     @cached_property
     def at_nodes(self) -> Solution:
         """The equilibrium with contacts at nodes."""
-        return replace(self.solution, elements=None)
+        return replace(self.solution, elements=None, lines=None)
 
     @property
     def told(self) -> Solution:
-        """The equilibrium that results are taken from."""
-        return self.solution if self.as_points else self.at_nodes
+        """The equilibrium that results are taken from; in 3-D that with contacts at nodes."""
+        return replace(self.solution, lines=None) if self.as_points else self.at_nodes
 
     @cached_property
     def values(self) -> Results:

@@ -105,7 +105,8 @@ class Evaluation:
         operation, answer = self.case.operation, self.answer
         if operation.tilt is None and operation.moment is None:
             return None, None
-        x, y = answer.problem.journal_moment(answer.x, answer.lam) * answer.problem.layout.scales.force
+        state = answer.lines or answer
+        x, y = state.problem.journal_moment(state.x, state.lam) * answer.problem.layout.scales.force
         return float(x), float(y)
 
     def film(self) -> Film:

@@ -52,6 +52,8 @@ def elastic_and_sliding(case: Case, answer: Solution) -> tuple[Motion, SlidingCo
     if found is not None:
         return on_elements(case, found)
     sliding = sliding_at(case, answer)
+    if sliding is None and answer.lines is not None:
+        return answer.lines.motion, None
     motion = SmallMotion.about(answer, None if sliding is None else sliding.sticking(len(answer.x)))
     if not motion.contacts.constraints.determinate:
         raise ConvergenceError(

@@ -68,7 +68,7 @@ def refined(name: str, line: SpeedLine, where: tuple[float, float], as_points: b
     """
     speed, limit = where
     for _ in range(NEWTON_STEPS):
-        found = line.at(speed)
+        found = replace(line.at(speed), lines=None)  # in 3-D derivatives are those of contacts at nodes
         exact = as_points and found.elements is not None
         balance = derivatives_of(at(line.case, speed), found, fraction_of, as_points=exact)
         by_speed, fraction = balance.by(SPEED), balance.values[FRACTION]

@@ -228,6 +228,8 @@ def foretold(answer: Solution, more: Array, faster: float = 0.0) -> Solution:
     """The balance under `more` load (n_position,) than that of `answer`, and a part `faster`, by its tangent alone."""
     if answer.elements is not None:
         return replace(answer, elements=foretold_on_elements(answer.elements, more, faster))
+    if answer.lines is not None:
+        return replace(answer, lines=answer.lines.foretold(more, faster))
     if answer.contacts is None:
         raise ValueError("an equilibrium of the interior point alone has no tangent")
     tangent, problem = answer.contacts.tangent, answer.problem

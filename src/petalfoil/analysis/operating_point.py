@@ -93,7 +93,7 @@ def with_reported(case: Case, found: OperatingPoint) -> OperatingPoint:
     if found.answer.other is not None:  # both bearings of a rotor have theirs
         return found
     answer = reported(case, found.answer)
-    if answer.elements is None:
+    if answer.elements is None:  # in 3-D the growth rate stays that of contacts at nodes
         return replace(found, answer=answer)
     known = found.branch
     rate = branch(leading_eigenvalue(answer), case, known.known_equilibria or 1, known.solution_path, known.jump)

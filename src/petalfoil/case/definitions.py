@@ -273,6 +273,14 @@ class Case(Definition):
         return on_bushing and newton_2d and model.contacts is Contacts.POINTS
 
     @property
+    def has_contact_lines(self) -> bool:
+        """Whether contact lines may cross axial stations between nodes: of petals without backing springs in 3-D."""
+        model = self.model
+        newton_3d = model.kind is ModelKind.THREE_D and model.method is Method.NEWTON
+        unbacked = self.petals is not None and self.backing is None
+        return newton_3d and model.contacts is Contacts.POINTS and unbacked
+
+    @property
     def adapts_stations(self) -> bool:
         """Whether the stations are to be placed where a solution on a coarse grid bends most."""
         model = self.model

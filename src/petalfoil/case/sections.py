@@ -160,7 +160,8 @@ class Model(Definition):
     """Cubic elements of petals whose contacts are points; of no effect in 3-D, or with contacts at nodes. Stiffness on
     16 and 32 of them differs from that on 48 by up to 0.6 and 0.04 %; many make stretches of contact hard to find."""
     contacts: Contacts = Contacts.POINTS
-    """In 2-D at points that travel between nodes, on petals with continuous slopes, or at nodes of the film's grid."""
+    """At points that travel between nodes, in 2-D on petals with continuous slopes, in 3-D where they are isolated; or
+    at nodes of the film's grid."""
     axial_cells: Annotated[int, Count(meaning="cells over the whole length", at_least=2, at_most=512)] | None = None
     """24 unless given, of a plain bearing 32; of no effect in 2-D."""
     axial_grading: (

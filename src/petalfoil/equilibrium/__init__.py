@@ -1,6 +1,6 @@
 """Equilibria of film, wall and contacts, and small motions about them: the solvers applied to the system.
 
-=========================  ====================================================================
+=========================  =====================================================================================
 `run_context.py`           counts, history, clock, progress and solvers of a run
 `solution.py`              an equilibrium, its operating state, how it was reached
 `pack_at_rest.py`          the foil pack alone, at zero speed
@@ -22,7 +22,9 @@
 `asperity_contacts.py`     equilibria with contact pressures over low asperities
 `element_contacts.py`      which of the two is near an equilibrium with contacts at nodes
 `element_rates.py`         how such an equilibrium follows a parameter of its case
+`line_contacts.py`         3-D equilibria whose contact lines cross stations between nodes: equations, Newton's step
+`line_sets.py`             which these contacts are: from active nodes, and corrected by signs
 `nodal_state.py`           film, deflections and reactions at nodes, wherever contacts are
 `element_response.py`      the response about these
-=========================  ====================================================================
+=========================  =====================================================================================
 """

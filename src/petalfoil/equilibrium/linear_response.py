@@ -49,12 +49,15 @@ class SmallMotion:
         Contacts that carry load.
     sticking : (n, n) sparse or None
         What friction between petals that stick adds to the tangent (E11).
+    contact_model : str
+        Where its contacts are, for people.
     """
 
     problem: CoupledProblem
     linearized: Linearization
     contacts: TravellingContacts
     sticking: sp.csc_array | None = None
+    contact_model: str = AT_NODES
 
     @classmethod
     def about(cls, solution: Solution, sticking: sp.csc_array | None = None) -> SmallMotion:
@@ -67,11 +70,6 @@ class SmallMotion:
         """The derivative of the discrete equations: contacts stay at their nodes."""
         problem = solution.problem
         return cls(problem, problem.linearize(solution.x), TravellingContacts.at_nodes(solution), sticking)
-
-    @property
-    def contact_model(self) -> str:
-        """Where its contacts are, for people."""
-        return AT_NODES
 
     @property
     def film_thickness(self) -> Array:

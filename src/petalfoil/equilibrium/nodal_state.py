@@ -12,13 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.small_motion import ElementEquilibrium
+from petalfoil.equilibrium.small_motion import ElementEquilibrium, LineEquilibrium
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.mesh import hermite
 from petalfoil.physics.gap_curves import Facing
 from petalfoil.physics.petal_elements import clamped_beam, clamped_beam_bend
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.film_rows import FilmState
+from petalfoil.system.unknowns import DEFLECTION
 from petalfoil.walls import PlacedContacts
 from petalfoil.walls.element_pack import Loads
 
@@ -55,7 +56,9 @@ class NodalState:
 
     @classmethod
     def of(cls, solution: Solution) -> NodalState:
-        """The state that results are taken from: that with continuous slopes, where the solution has it."""
+        """The state that results are taken from: that with contacts between nodes, where the solution has it."""
+        if solution.lines is not None:
+            return cls.of_lines(solution.lines)
         return cls.at_nodes(solution) if solution.elements is None else cls.of_elements(solution.elements)
 
     @classmethod
@@ -65,6 +68,14 @@ class NodalState:
         film = problem.layout.film_rows.at(problem.pressure(x), problem.film(x), problem.film_number)
         deflection = solution.deflection + solution.state.low_order
         return cls(problem, film, deflection, solution.lam, problem.film_force(x), problem.contact_force(solution.lam))
+
+    @classmethod
+    def of_lines(cls, found: LineEquilibrium) -> NodalState:
+        """The state of an equilibrium whose contact lines cross the stations between nodes."""
+        problem, x = found.problem, found.x
+        film = problem.layout.film_rows.at(problem.pressure(x), problem.film(x), problem.film_number)
+        deflection = x[problem.layout.unknowns[DEFLECTION]]
+        return cls(problem, film, deflection, found.shared, problem.film_force(x), problem.contact_force(found.lam))
 
     @classmethod
     def of_elements(cls, found: ElementEquilibrium) -> NodalState:

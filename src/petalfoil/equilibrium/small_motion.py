@@ -29,6 +29,7 @@ AT_ASPERITIES = "contact pressures over asperities of 5 nm, petals with continuo
 AT_NODES = "contacts at nodes, isolated ones moved between them"
 """Where the contacts of a linear response are."""
 
+ON_LINES = "contact lines that cross axial stations between nodes"
 HELD_AT_NODES = "contacts at nodes"
 """Where those of an equilibrium are that has no elements."""
 
@@ -131,6 +132,41 @@ class ElementEquilibrium(Protocol):
 
     def moved(self, problem: CoupledProblem, change: Array) -> ElementEquilibrium:
         """The state after a small `change` (n,) of the unknowns, under the equations of `problem`, unsolved."""
+
+
+class LineEquilibrium(Protocol):
+    """An equilibrium in 3-D whose contact lines cross the axial stations between nodes."""
+
+    @property
+    def problem(self) -> CoupledProblem:
+        """Speed and position."""
+
+    @property
+    def x(self) -> Array:
+        """Unknowns, (n,) [1]."""
+
+    @property
+    def lam(self) -> Array:
+        """Reactions at the nodes that do the same work, (m,) [1]."""
+
+    @property
+    def shared(self) -> Array:
+        """Reactions shared by the nodes beside each point, none of them below zero, (m,) [1]."""
+
+    @property
+    def force(self) -> Array:
+        """Force of film and contacts on the journal over the unit of force, (n_position,) [1]."""
+
+    @property
+    def residual(self) -> float:
+        """Largest scaled residual."""
+
+    @property
+    def motion(self) -> Motion:
+        """Small motions about it."""
+
+    def foretold(self, more: Array, faster: float = 0.0) -> LineEquilibrium:
+        """The state under `more` load (n_position,) and a part `faster`, by the tangent alone; one factorisation."""
 
 
 class Response(Protocol):

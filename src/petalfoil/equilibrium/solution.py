@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
-from petalfoil.equilibrium.small_motion import HELD_AT_NODES, ElementEquilibrium
+from petalfoil.equilibrium.small_motion import HELD_AT_NODES, ON_LINES, ElementEquilibrium, LineEquilibrium
 from petalfoil.solvers.contact_newton import ActiveContacts
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, Linearized, PrimalDualPoint, scaled_residual
 from petalfoil.system.coupled import CoupledProblem
@@ -77,6 +77,8 @@ class Solution:
         those of it. None where there is none, or none was looked for.
     elements_sought : bool
         Whether it was looked for.
+    lines : LineEquilibrium or None
+        The same in 3-D: the equilibrium whose contact lines cross the stations between nodes.
     nodal_force_difference : float or None
         Difference of its force from that with contacts at nodes, over that force; None without it [1].
     other : Solution or None
@@ -96,22 +98,28 @@ class Solution:
     elements: ElementEquilibrium | None = field(default=None, repr=False)
     elements_sought: bool = False
     nodal_force_difference: float | None = None
+    lines: LineEquilibrium | None = field(default=None, repr=False)
 
     @property
     def position(self) -> Array:
         """Displacement of the journal over the reference length, (n_position,) [1]: that of results."""
+        if self.lines is not None:
+            return self.lines.problem.displacement
         problem = self.problem if self.elements is None else self.elements.equations.problem
         return problem.displacement
 
     @property
     def contact_model(self) -> str:
         """Where the contacts of results are, for people."""
+        if self.lines is not None:
+            return ON_LINES
         return HELD_AT_NODES if self.elements is None else self.elements.contact_model
 
     @property
     def reported_residual(self) -> float:
         """Largest scaled residual of the equilibrium that results are taken from."""
-        return self.residual if self.elements is None else self.elements.residual
+        smooth = self.elements or self.lines
+        return self.residual if smooth is None else smooth.residual
 
     @property
     def x(self) -> Array:
@@ -153,6 +161,8 @@ class Solution:
         """Force of film, contacts and load on the journal over the unit of force, (n_position,) [1]."""
         if self.elements is not None:
             force = self.elements.equations.force
+        elif self.lines is not None:
+            force = self.lines.force
         else:
             force = self.problem.journal_force(self.x, self.lam)
         return force if self.load is None else force + self.load

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
@@ -28,6 +29,26 @@ from petalfoil.solvers.point_constraints import PointConstraints, constrain_poin
 from petalfoil.system.coupled import Linearization
 
 Array = NDArray[np.float64]
+
+
+class PlacedPoints(Protocol):
+    """Contacts at nodes and at points, as the linear response reads them."""
+
+    @property
+    def at_nodes(self) -> NDArray[np.bool_]:
+        """Contacts at nodes, (m,)."""
+
+    @property
+    def value(self) -> sp.csr_array:
+        """Gap at the points, from the gaps at the nodes, (k, m) [1]."""
+
+    @property
+    def slope(self) -> sp.csr_array:
+        """Slope of the gap at the points, likewise, (k, m) [1/rad]."""
+
+    @property
+    def travel_stiffness(self) -> Array:
+        """`lam / p''` of (E12), in units of reaction over gap, (k,) [rad^2]."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +117,7 @@ def placed_points(solution: Solution, linearized: Linearization) -> ContactPoint
     return points.placed(turning_compliance(problem.G, matrix, points, problem.elimination_key))
 
 
-def travelling_contacts(G: sp.csr_array, by_e: Array, points: ContactPoints) -> TravellingContacts:
+def travelling_contacts(G: sp.csr_array, by_e: Array, points: PlacedPoints) -> TravellingContacts:
     """Contacts at nodes and points of gaps whose derivatives are `G` (m, n) and `by_e` (m, d)."""
     return TravellingContacts(
         constraints_of(G, points),
@@ -107,7 +128,7 @@ def travelling_contacts(G: sp.csr_array, by_e: Array, points: ContactPoints) -> 
     )
 
 
-def constraints_of(G: sp.csr_array, points: ContactPoints) -> PointConstraints:
+def constraints_of(G: sp.csr_array, points: PlacedPoints) -> PointConstraints:
     """Gaps at nodes and points kept closed."""
     return constrain_points(constrain(G, points.at_nodes), sp.csr_array(points.value @ G))
 

@@ -8,6 +8,7 @@
 `petal_elements.py`    bending of a petal by cubic elements, 2-D
 `contact.py`           gaps of the solid contacts (18)-(22), linear in the deflections
 `contact_points.py`    contact at isolated points between nodes (K5)-(K9)
+`line_points.py`       contact points of 3-D contact lines, between nodes (K15)-(K17)
 `gap_curves.py`        gaps between petals with continuous slopes, and contact points anywhere on them
 `asperity_contact.py`  contact pressures that decay with the gap
 `dry_friction.py`      Coulomb friction between petals and on the bushing (D1)-(D3)

@@ -1,0 +1,241 @@
+"""Equilibria in 3-D whose contact lines cross the axial stations between nodes.
+
+From an equilibrium with contacts at nodes. Isolated contacts become points on the arc of each station, at places of
+their own; contacts in longer runs and at edges stay at their nodes. With `n`, `n'` the derivatives of gap and slope at
+a point by the unknowns,
+
+    wall, film   F(x) - G^T lam - n^T lam_c = 0                                                        (C11)
+    points       p = 0 ,  p' = 0           at each                                                     (C12)
+    nodes        g = 0                     at those that carry load
+
+Newton's method on unknowns, reactions and places has the tangent of the linear response (E12): that response is the
+exact derivative of these equilibria. Under a load the journal's position is bordered.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from petalfoil.equilibrium.linear_response import LinearResponse, SmallMotion
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.small_motion import ON_LINES
+from petalfoil.equilibrium.travelling_contacts import TravellingContacts, travelling_contacts
+from petalfoil.physics.line_points import LinePoints
+from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, positive_step, scaled_residual
+from petalfoil.system.coupled import CoupledProblem, Linearization
+from petalfoil.system.loaded import load_scale
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+TRUST = 0.5
+"""Farthest that a point travels in a step, in cells."""
+
+LEAST_CURVATURE = 1e-3
+"""Least `p''` in a step, over the median of all points: where the gap hardly curves a point would travel far."""
+
+CARRIED = 1e-9
+"""Largest unbalanced force over the load."""
+
+
+@dataclass(frozen=True)
+class LineContacts:
+    """A state with contact points between nodes.
+
+    Attributes
+    ----------
+    problem : CoupledProblem
+        Speed and position.
+    x : (n,) array
+        Unknowns.
+    points : LinePoints
+        Contact points.
+    reaction : (k,) array
+        Their reactions.
+    held : (m,) bool array
+        Contacts at nodes that carry load.
+    held_reaction : (j,) array
+        Their reactions.
+    load : (n_position,) array or None
+        Load over the unit of force; None at a fixed position.
+    """
+
+    problem: CoupledProblem
+    x: Array
+    points: LinePoints
+    reaction: Array
+    held: Mask
+    held_reaction: Array
+    load: Array | None
+
+    @cached_property
+    def linearized(self) -> Linearization:
+        """Film and wall at the state."""
+        return self.problem.linearize(self.x)
+
+    @cached_property
+    def gaps(self) -> Array:
+        """Gaps at all nodes, (m,)."""
+        return self.problem.gaps(self.x)
+
+    @cached_property
+    def curvature(self) -> Array:
+        """`p''` at the points, (k,)."""
+        out: Array = self.points.curvature @ self.gaps
+        return out
+
+    @property
+    def doubled(self) -> Mask:
+        """Points at which the gap does not curve upward, (k,)."""
+        return np.asarray(self.curvature <= 0.0)
+
+    @cached_property
+    def slopes(self) -> Array:
+        """`p'` at the points, (k,)."""
+        out: Array = self.points.slope @ self.gaps
+        return out
+
+    @cached_property
+    def closed(self) -> Array:
+        """Gaps that are to vanish: at held nodes, then at points, (j + k,)."""
+        return np.concatenate([self.gaps[self.held], self.points.value @ self.gaps])
+
+    @cached_property
+    def lam(self) -> Array:
+        """Reactions at the nodes that do the same work, (m,)."""
+        lam: Array = self.points.value.T @ self.reaction
+        lam[self.held] += self.held_reaction
+        return lam
+
+    @cached_property
+    def shared(self) -> Array:
+        """Reactions shared by the nodes beside each point, none of them below zero, (m,)."""
+        lam: Array = self.points.shares.T @ self.reaction
+        lam[self.held] += self.held_reaction
+        return lam
+
+    @cached_property
+    def rows(self) -> Array:
+        """Residual of (C11), (n,)."""
+        out: Array = self.linearized.residual - self.problem.G.T @ self.lam
+        return out
+
+    @cached_property
+    def force(self) -> Array:
+        """Force of film and contacts on the journal over the unit of force, (n_position,)."""
+        return self.problem.journal_force(self.x, self.lam)
+
+    @property
+    def unbalanced(self) -> Array:
+        """Force on the journal that is left under the load, (n_position,); zeros at a fixed position."""
+        return np.zeros_like(self.force) if self.load is None else self.force + self.load
+
+    @cached_property
+    def residual(self) -> float:
+        """Largest scaled residual of (C11), (C12) and the held gaps; a slope counts over a cell."""
+        rows = scaled_residual(self.linearized, self.problem.G.T @ self.lam)
+        lengths = np.concatenate([self.closed, self.slopes * self.points.cell_length])
+        return max(rows, float(np.max(np.abs(lengths), initial=0.0)))
+
+    @property
+    def balanced(self) -> bool:
+        """Whether residual and force are within their tolerances."""
+        left = 0.0 if self.load is None else float(np.linalg.norm(self.unbalanced)) / load_scale(self.load)
+        return self.residual <= RESIDUAL_TOLERANCE and left <= CARRIED
+
+    # ------------------------------------------------------------------------- as the linear response reads contacts
+
+    @property
+    def at_nodes(self) -> Mask:
+        """Contacts at nodes, (m,)."""
+        return self.held
+
+    @property
+    def value(self) -> sp.csr_array:
+        """Weights of the gaps in the gap at the points, (k, m)."""
+        return self.points.value
+
+    @property
+    def slope(self) -> sp.csr_array:
+        """Weights of the gaps in its slope, (k, m)."""
+        return self.points.slope
+
+    @cached_property
+    def bending(self) -> Array:
+        """What divides slopes in a step: `p''`, its size where the gap curves downward, no less than a floor; (k,)."""
+        size = np.abs(self.curvature)
+        return np.maximum(size, LEAST_CURVATURE * float(np.median(size)) if len(size) else 0.0)
+
+    @cached_property
+    def travel_stiffness(self) -> Array:
+        """`lam / p''` of the points (E12), (k,)."""
+        return np.asarray(np.maximum(self.reaction, 0.0) / self.bending)
+
+    @cached_property
+    def contacts(self) -> TravellingContacts:
+        """Contacts of the linear response: its tangent is the exact derivative of this state."""
+        return travelling_contacts(self.problem.G, self.problem.layout.wall.contacts.by_e, self)
+
+    @cached_property
+    def motion(self) -> SmallMotion:
+        """Small motions about the state."""
+        return SmallMotion(self.problem, self.linearized, self.contacts, contact_model=ON_LINES)
+
+    def foretold(self, more: Array, faster: float = 0.0) -> LineContacts:
+        """The state under `more` load (n_position,) and a part `faster`, by the tangent alone; one factorisation.
+
+        Raises
+        ------
+        ValueError
+            It is at a fixed position.
+        """
+        if self.load is None:
+            raise ValueError("a state at a fixed position carries no load")
+        problem = self.problem.at(bearing_number=self.problem.bearing_number * (1.0 + faster))
+        there = replace(self, problem=problem, load=self.load + more)
+        return stepped(there, self.motion.growing(0.0, current_run().probe_solver))
+
+
+class NoLinesError(ArithmeticError):
+    """No equilibrium with contact points between nodes was found; it says why."""
+
+
+def stepped(state: LineContacts, response: LinearResponse) -> LineContacts:
+    """The state after a Newton step with a tangent of its own or of a state nearby.
+
+    Raises
+    ------
+    NoLinesError
+        The film has closed, or the step is no number.
+    """
+    tangent, contacts = response.tangent, response.motion.contacts
+    travel = contacts.travel_stiffness * state.slopes
+    rows, closed = state.rows + contacts.slope_by_x.T @ travel, state.closed
+    move = np.zeros(len(state.force))
+    if state.load is not None:
+        dx, dlam = tangent.respond(rows, closed)
+        left = state.unbalanced + tangent.border.rows(dx, dlam) - contacts.slope_by_e.T @ travel
+        move = np.linalg.solve(-response.force_gradient, left)
+    dx, dlam = tangent.respond(rows + tangent.forcing @ move, closed + contacts.gap_by_e @ move)
+    turned = state.slopes + contacts.slope_by_x @ dx + contacts.slope_by_e @ move
+    travelled = -turned / state.bending
+    trust = TRUST * state.points.cell_length
+    length = positive_step(state.problem, state.x, dx)
+    x = state.x + length * dx
+    problem = state.problem.at(displacement=state.problem.displacement + length * move)
+    if not np.all(np.isfinite(x)) or not problem.admits(x):
+        raise NoLinesError("the film closes in a Newton step")
+    j = len(state.held_reaction)
+    return replace(
+        state,
+        problem=problem,
+        x=x,
+        points=state.points.moved(np.clip(length * travelled, -trust, trust)),
+        reaction=state.reaction + length * dlam[j:],
+        held_reaction=state.held_reaction + length * dlam[:j],
+    )

@@ -1,0 +1,165 @@
+"""Contact lines between nodes, found from an equilibrium with contacts at nodes, and corrected by signs.
+
+Newton's method of `line_contacts.py` takes two or three tangents: a step with the tangent at hand costs a solve. Then
+signs are looked at. A reaction that pulls leaves, a gap that has closed elsewhere gains a point, and a point at which
+the gap does not curve upward becomes contacts at the two nodes beside it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError, stepped
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.equilibrium.travelling_contacts import placed_points
+from petalfoil.physics.line_points import LinePoints
+from petalfoil.solvers.constraints import constrain
+from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
+from petalfoil.solvers.sparse_lu import SingularMatrixError
+
+Array = NDArray[np.float64]
+
+STEPS = 10
+"""Most tangents with one set of contacts; three or four serve in the median."""
+
+PATIENCE = 2
+"""Tangents after which a point at which the gap still does not curve upward is two contacts."""
+
+CHORDS = 4
+"""Most steps with one tangent: a step costs a solve, a fiftieth of another factorisation."""
+
+GAIN = 0.1
+"""Factor that a further step with one tangent must take off the residual."""
+
+REVISIONS = 6
+"""Most sets of contacts."""
+
+PENETRATION = 1e-4
+"""A gap this far below zero gains a contact, in units of the reference film (1 nm)."""
+
+
+def with_lines(solution: Solution) -> Solution:
+    """The solution with the equilibrium whose contact lines cross the stations between nodes, if there is one."""
+    if solution.elements_sought:
+        return solution
+    return replace(solution, lines=between_nodes(solution), elements_sought=True)
+
+
+def between_nodes(solution: Solution) -> LineContacts | None:
+    """The equilibrium with contact points near one with contacts at nodes; None where there is none nearby.
+
+    None too where the contacts do not determine the pack (bottomed out) or the wall has fields of its own. The run log
+    says so.
+    """
+    problem, run = solution.problem, current_run()
+    if problem.layout.fields or not problem.layout.wall.contacts.lines or not np.any(solution.active):
+        return None
+    if not constrain(problem.G, solution.active).determinate:
+        return None
+    try:
+        found = settled(start_at(solution))
+    except NoLinesError as failure:
+        run.note("contact lines", outcome=str(failure))
+        return None
+    run.note("contact lines", residual=found.residual, points=len(found.reaction), nodes=int(found.held.sum()))
+    return found
+
+
+def start_at(solution: Solution) -> LineContacts:
+    """The state of an equilibrium with contacts at nodes, its isolated ones at the points where they are (K8)."""
+    problem = solution.problem
+    placed = placed_points(solution, problem.linearize(solution.x))
+    contacts = problem.layout.wall.contacts
+    groups = list(enumerate(placed.groups))
+    none = np.zeros(0, dtype=np.intp)
+    points = LinePoints(
+        contacts.lines,
+        len(contacts.rest),
+        np.concatenate([none, *(np.full(len(group.line), kind) for kind, group in groups)]),
+        np.concatenate([none, *(group.line for _, group in groups)]),
+        np.concatenate([np.zeros(0), *(group.position for _, group in groups)]),
+    )
+    reaction = np.concatenate([np.zeros(0), *(group.reaction for _, group in groups)])
+    held = placed.at_nodes
+    return LineContacts(problem, solution.x, points, reaction, held, solution.lam[held], solution.load)
+
+
+def settled(state: LineContacts) -> LineContacts:
+    """Newton's method, and other contacts as long as signs ask for them.
+
+    Raises
+    ------
+    NoLinesError
+        Newton's method does not converge, or contacts keep changing.
+    """
+    for _ in range(REVISIONS):
+        state = newton(state)
+        other = revised(state) if state.balanced else parted(state)
+        if other is None:
+            return state
+        state = other
+    raise NoLinesError(f"contacts still change after {REVISIONS} sets of them")
+
+
+def newton(state: LineContacts) -> LineContacts:
+    """Newton's method with the contacts as they are; it stops early where a point is two contacts (`doubled`).
+
+    Raises
+    ------
+    NoLinesError
+        It does not converge.
+    """
+    for count in range(STEPS):
+        if state.balanced or (count >= PATIENCE and np.any(state.doubled)):
+            return state
+        if not state.contacts.constraints.determinate:
+            raise NoLinesError("contacts repeat each other")
+        try:
+            response = state.motion.growing(0.0, current_run().film_solver)
+        except SingularMatrixError:
+            raise NoLinesError("the contacts do not determine the petals") from None
+        ahead = stepped(state, response)
+        for _ in range(CHORDS):
+            if ahead.balanced:
+                return ahead
+            state, further = ahead, stepped(ahead, response)
+            if not further.residual <= GAIN * state.residual:
+                break
+            ahead = further
+    raise NoLinesError(f"the residual is {state.residual:.1e} after {STEPS} tangents")
+
+
+def parted(state: LineContacts) -> LineContacts:
+    """With the nodes beside each point at which the gap does not curve upward in its place."""
+    held = state.held.copy()
+    held[state.points.beside[state.doubled].ravel()] = True
+    shared = state.points.shares.T @ np.where(state.doubled, state.reaction, 0.0)
+    shared[state.held] += state.held_reaction
+    points, reaction = state.points.kept(~state.doubled), state.reaction[~state.doubled]
+    return replace(state, points=points, reaction=reaction, held=held, held_reaction=shared[held])
+
+
+def revised(state: LineContacts) -> LineContacts | None:
+    """Other contacts, where the signs ask for them; None where they are right.
+
+    Reactions that pull leave. A point at which the gap does not curve upward is two contacts within a cell, at the
+    nodes beside it. Nodes whose gaps are below zero gain a point, unless there is one beside them.
+    """
+    if np.any(state.doubled):
+        return parted(state)
+    bears = state.held_reaction > -RESIDUAL_TOLERANCE * state.problem.weight[state.held]
+    pushes = state.reaction > -RESIDUAL_TOLERANCE
+    covered = state.held.copy()
+    covered[state.points.beside.ravel()] = True
+    fresh = np.flatnonzero((state.gaps < -PENETRATION) & ~covered)
+    if bears.all() and pushes.all() and not len(fresh):
+        return None
+    held = state.held.copy()
+    held[np.flatnonzero(held)] = bears
+    points = state.points.kept(pushes).with_nodes(fresh)
+    reaction = np.concatenate([state.reaction[pushes], np.zeros(len(fresh))])
+    return replace(state, points=points, reaction=reaction, held=held, held_reaction=state.held_reaction[bears])

@@ -1,0 +1,137 @@
+"""3-D equilibria whose contact lines cross the stations between nodes: conditions, tangent, convergence."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import petalfoil
+from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.case import Case
+from petalfoil.equilibrium.cold_start import solve_cold
+from petalfoil.equilibrium.line_contacts import LineContacts
+from petalfoil.equilibrium.line_sets import between_nodes, parted, revised, settled, with_lines
+from petalfoil.equilibrium.run_context import current_run, running
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.equilibrium.under_load import balance_cold
+from petalfoil.system.build import build_problem
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def bearing(**changes: object) -> Case:
+    grid = {"model.cells_per_pitch": 24, "model.axial_cells": 8, "model.axial_density": "uniform"}
+    there = {"operation.eccentricity": ["0 um", "-200 um"]}
+    return Case.load(EXAMPLES / "paper_n8_spatial.toml").replace(**(grid | there | changes))
+
+
+@pytest.fixture(scope="module")
+def nodal() -> Solution:
+    with running():
+        return solve_cold(build_problem(bearing()))
+
+
+@pytest.fixture(scope="module")
+def lines(nodal: Solution) -> LineContacts:
+    with running():
+        found = between_nodes(nodal)
+    assert found is not None
+    return found
+
+
+def test_gaps_and_their_slopes_vanish_where_reactions_push(lines: LineContacts) -> None:
+    assert len(lines.reaction) > 20
+    assert lines.residual < 1e-8
+    assert_allclose(lines.closed, 0.0, atol=1e-9)
+    assert_allclose(lines.slopes * lines.points.cell_length, 0.0, atol=1e-8)
+    assert lines.reaction.min() > 0.0
+    assert lines.held_reaction.min() >= -1e-8
+    assert lines.curvature.min() > 0.0
+    assert lines.gaps.min() > -1e-4  # 1 nm
+
+
+def test_shared_reactions_keep_the_sum_of_forces(lines: LineContacts) -> None:
+    assert lines.shared.min() >= -1e-8
+    assert_allclose(lines.shared.sum(), lines.lam.sum(), rtol=1e-12)
+
+
+def test_the_linear_response_is_the_derivative_of_these_equilibria(lines: LineContacts) -> None:
+    step, forces = 1e-3, {}
+    with running() as run:
+        gradient = lines.motion.growing(0.0, run.film_solver).force_gradient
+        for axis in range(2):
+            for side in (-1, 1):
+                there = lines.problem.displacement.copy()
+                there[axis] += side * step
+                forces[axis, side] = settled(replace(lines, problem=lines.problem.at(displacement=there))).force
+    differences = np.stack([(forces[k, 1] - forces[k, -1]) / (2.0 * step) for k in range(2)], axis=1)
+    assert_allclose(gradient, differences, atol=1e-5 * np.abs(differences).max())
+
+
+def test_a_load_is_carried_and_a_little_more_is_foretold() -> None:
+    with running():
+        problem = build_problem(bearing(**{"operation.eccentricity": ["0 um", "0 um"]}))
+        load = np.array([0.0, -10.0]) / problem.layout.scales.force
+        found = between_nodes(balance_cold(problem, load))
+        assert found is not None
+        assert_allclose(found.force, -load, atol=1e-8 * np.abs(load).max())
+        ahead = found.foretold(1e-3 * load)
+        assert_allclose(ahead.force, -1.001 * load, atol=1e-6 * np.abs(load).max())
+
+
+def test_a_bent_down_point_becomes_the_nodes_beside_it(lines: LineContacts) -> None:
+    assert revised(lines) is None
+    turned = replace(lines, reaction=lines.reaction)
+    turned.__dict__["curvature"] = np.where(np.arange(len(lines.reaction)) == 3, -1.0, lines.curvature)
+    split = parted(turned)
+    assert len(split.reaction) == len(lines.reaction) - 1
+    assert split.held[lines.points.beside[3]].all()
+    assert_allclose(split.shared.sum(), lines.shared.sum(), rtol=1e-12)
+
+
+def test_a_reaction_that_pulls_leaves_and_an_overlap_gains_a_point(lines: LineContacts) -> None:
+    pulling = replace(lines, reaction=np.where(np.arange(len(lines.reaction)) == 0, -1.0, lines.reaction))
+    fewer = revised(pulling)
+    assert fewer is not None
+    assert len(fewer.reaction) == len(lines.reaction) - 1
+    away = np.ones(len(lines.gaps), dtype=bool)
+    away[lines.points.beside.ravel()] = away[lines.held] = False
+    deep = replace(lines)
+    deep.__dict__["gaps"] = np.where(np.arange(len(away)) == np.flatnonzero(away)[0], -1.0, lines.gaps)
+    more = revised(deep)
+    assert more is not None
+    assert len(more.reaction) == len(lines.reaction) + 1
+
+
+def test_a_bottomed_out_pack_keeps_its_nodes(nodal: Solution) -> None:
+    with running():
+        held = replace(nodal.contacts.state, active=np.ones_like(nodal.active))  # type: ignore[union-attr]
+        everything = replace(nodal, contacts=replace(nodal.contacts, state=held))
+        assert between_nodes(everything) is None
+        assert with_lines(replace(nodal, elements_sought=True)).lines is None
+        assert current_run().film.factorizations == 0
+
+
+def test_results_are_those_of_the_lines(nodal: Solution, lines: LineContacts) -> None:
+    with running():
+        told = Evaluation.of(bearing(), with_lines(nodal))
+    scales = nodal.problem.layout.scales
+    assert told.forces().bearing_force == pytest.approx(np.linalg.norm(lines.force) * scales.force, rel=1e-9)
+    assert told.balances().residual < 1e-8
+    assert told.balances().reaction_balance_error < 1e-10
+    assert told.balances().mass_balance_error < 1e-10
+
+
+@pytest.mark.slow
+def test_contact_fraction_of_the_rig_converges() -> None:
+    rig = Case.load(EXAMPLES / "rig.toml").replace(**{"model.kind": "3d", "model.axial_cells": 16})
+    rig = rig.replace(**{"operation.speed": "8800 rpm", "operation.load": "46.4 N"})
+
+    def fraction(cells: int) -> float:
+        record = petalfoil.balance.record(rig.replace(**{"model.cells_per_pitch": cells}))
+        return float(record.scalars["contact_fraction"])
+
+    coarse, middle, fine = (fraction(cells) for cells in (64, 96, 144))
+    assert abs(middle - fine) < abs(coarse - middle) < 0.06 * fine
