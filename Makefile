@@ -10,6 +10,9 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
+# Compiled modules are kept, those that pytest rewrites too: without them every process compiles the package anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 .DEFAULT_GOAL := help
 .PHONY: help setup docs package ross demo test test-all test-studio test-classic test-long fuzz fuzz-verbs check lint types layers format bench constraints clean
 

@@ -113,13 +113,14 @@ class LinearSolver:
         if not np.all(np.isfinite(matrix.data)):
             raise SingularMatrixError("matrix with entries that are not finite")
         scaled, row, col = equilibrate(without_zeros(matrix))
-        places = None if order is None else order.known()
+        places = None if order is None else order.known(scaled.nnz)
         try:
             factor = Factor(symmetric_lu(scaled, places), row, col, places)
             if trusted(scaled, factor):
                 if order is not None and scaled.shape[0]:  # active contacts may hold all unknowns
                     fill = factor.lu.nnz / scaled.shape[0]
-                    order.learn(postorder(scaled, np.argsort(factor.lu.perm_c)) if places is None else None, fill)
+                    found = postorder(scaled, np.argsort(factor.lu.perm_c)) if places is None else None
+                    order.learn(found, fill, scaled.nnz)
                 return factor
         except RuntimeError:  # SuperLU met a zero pivot: without the diagonal it may still do
             pass

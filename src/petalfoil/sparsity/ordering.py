@@ -22,14 +22,19 @@ GROWN = 1.15
 """Growth of the factors past which an order is given up: a new one costs half of a factorisation."""
 
 
+FULLER = 1.02
+"""Growth of the entries of a matrix past which an order found before is not taken: the first matrix of an interior
+point lacks entries that all later ones have, and its order lets their factors grow by a third in 3-D."""
+
+
 class Order(Protocol):
     """Where a factorisation finds its order, and leaves what it has learnt."""
 
-    def known(self) -> Index | None:
-        """Unknowns in the order of elimination; None if it must be found."""
+    def known(self, entries: int = 0) -> Index | None:
+        """Unknowns in the order of elimination of a matrix with so many entries; None if it must be found."""
 
-    def learn(self, order: Index | None, fill: float) -> None:
-        """A factorisation had `fill` entries an unknown, in `order` if it had to find one."""
+    def learn(self, order: Index | None, fill: float, entries: int = 0) -> None:
+        """A factorisation of so many entries had `fill` factors an unknown, in `order` if it had to find one."""
 
 
 def postorder(matrix: sp.csc_array, order: Index) -> Index:
@@ -96,18 +101,20 @@ class Elimination:
 
     whole: Learnt = field(default_factory=Learnt)
     tied: Learnt = field(default_factory=Learnt)
+    entries: int = 0
 
-    def known(self) -> Index | None:
-        """Unknowns in the order of elimination."""
-        rank = self.whole.rank
+    def known(self, entries: int = 0) -> Index | None:
+        """Unknowns in the order of elimination; None for a matrix with more entries than the one it was found for."""
+        rank = self.whole.rank if entries <= FULLER * self.entries else None
         return None if rank is None else np.argsort(rank, kind="stable")
 
-    def learn(self, order: Index | None, fill: float) -> None:
+    def learn(self, order: Index | None, fill: float, entries: int = 0) -> None:
         """Keep what a factorisation of all unknowns has found."""
         if order is None:
             self.whole.judge(fill)
         else:
             self.whole.keep(places(order))
+            self.entries = entries
 
 
 @dataclass(frozen=True)
@@ -118,7 +125,7 @@ class TiedOrder:
     group: Index
     count: int
 
-    def known(self) -> Index | None:
+    def known(self, entries: int = 0) -> Index | None:
         """Groups in the order of elimination: each comes when the last of its unknowns would."""
         rank = self.learnt.rank
         if rank is None:
@@ -128,7 +135,7 @@ class TiedOrder:
         np.maximum.at(last, self.group[inside], rank[inside])
         return np.argsort(last, kind="stable")
 
-    def learn(self, order: Index | None, fill: float) -> None:
+    def learn(self, order: Index | None, fill: float, entries: int = 0) -> None:
         """Keep what a factorisation of the groups has found, for each of their unknowns."""
         if order is None:
             self.learnt.judge(fill)

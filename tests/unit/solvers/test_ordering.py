@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from petalfoil.solvers.sparse_lu import LinearSolver, symmetric_lu, without_zeros
 from petalfoil.sparsity import Elimination, TiedOrder, postorder
-from petalfoil.sparsity.ordering import GROWN, parents
+from petalfoil.sparsity.ordering import FULLER, GROWN, parents
 
 
 def grid(n: int, seed: int = 0) -> sp.csc_array:
@@ -76,6 +76,16 @@ def test_an_order_is_given_up_where_factors_have_grown() -> None:
     assert kept.known() is not None
     kept.learn(None, 1.01 * GROWN * 12.0)
     assert kept.known() is None
+
+
+def test_an_order_does_not_serve_a_matrix_with_more_entries() -> None:
+    """The first matrix of an interior point lacks entries of the later ones."""
+    kept = Elimination()
+    kept.learn(np.arange(5), 10.0, 100)
+    assert kept.known(int(0.99 * FULLER * 100)) is not None
+    assert kept.known(int(1.1 * FULLER * 100)) is None
+    kept.learn(np.arange(5), 12.0, 120)
+    assert kept.known(120) is not None
 
 
 def test_orders_pass_from_one_contact_set_to_the_next() -> None:
