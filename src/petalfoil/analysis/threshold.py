@@ -92,14 +92,12 @@ def neutral_speed(
     """
     seen = dict([known, ahead])
 
-    def remembered(logarithm: float) -> float:
-        speed = ends.get(logarithm) or math.exp(logarithm)
+    def remembered(speed: float) -> float:
         if speed not in seen:
             seen[speed] = margin_at(speed)
         return seen[speed]
 
-    ends = {math.log(speed): speed for speed in seen}
-    speed = math.exp(brentq(remembered, *sorted(ends), xtol=PRECISION))
+    speed = float(brentq(remembered, min(known[0], ahead[0]), max(known[0], ahead[0]), rtol=PRECISION))
     jumps = all(min(abs(m) for m in seen.values() if (m > 0.0) == side) > JUMP for side in (True, False))
     return speed, "at the threshold speed the critical mass jumps past the rotor's" if jumps else ""
 
