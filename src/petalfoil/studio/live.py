@@ -140,6 +140,8 @@ class Live:
         elif isinstance(outcome, Failure):
             self._session.say(f"{before.words}, no error bars", None)
             self._session.note(f"error bars: {words_of(outcome)}")
+        elif self._session.status.part is not None:  # given up, by a change or because the page was left
+            self._session.say(before.words, None)
 
 
 def live_verb(case: Case) -> str:

@@ -169,4 +169,4 @@ async def show(sessions: Sessions) -> None:
         await page.build()
     session.listener = page.changed
     client.on_delete(lambda: sessions.leave(session, page))
-    session.refresh()
+    session.go_on()

@@ -94,6 +94,11 @@ class Session:
         """Answer the design as it is now; a fine answer under way belongs to a former one."""
         self._live.refresh()
 
+    def go_on(self) -> None:
+        """Answer the design unless it is answered: a page that is loaded again shows what it had."""
+        if self.state is None or self.state.is_coarse or self.state.toml != self.design.to_toml():
+            self.refresh()
+
     def pin(self) -> None:
         """Keep the present state as A, or forget A where it is the present one."""
         shown, same = self.state, self.pinned is not None and self.state is not None
