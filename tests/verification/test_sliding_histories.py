@@ -152,8 +152,8 @@ def test_little_friction_loses_its_limit_times_the_slip_and_changes_little() -> 
     _, few, lost = loop("rig", 2e-4, np.array([0.0, 4e-6]), **{"model.cells_per_pitch": 12})
     _, _, half = loop("rig", 1e-4, np.array([0.0, 4e-6]), **{"model.cells_per_pitch": 12})
     assert lost == pytest.approx(2.0 * half, rel=2e-2)
-    smooth = case("rig", **{"model.cells_per_pitch": 12})
-    (none,) = static.records(smooth, (4e-6,))
+    turning = {"surface.petal_friction": 1e-6, "petals.theory": "inextensible"}  # hardly any, contacts at nodes too
+    (none,) = static.records(case("rig", **{"model.cells_per_pitch": 12, **turning}), (4e-6,))
     assert few[0] == pytest.approx(float(none.scalars["force_y"]), rel=1e-3)
 
 
