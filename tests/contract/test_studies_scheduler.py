@@ -81,6 +81,7 @@ def test_workers_with_another_version_are_refused(scheduler: str, monkeypatch: p
 def test_a_scheduler_that_is_not_there_is_refused(
     address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    dask = pytest.importorskip("dask")
     pytest.importorskip("distributed")
     monkeypatch.setattr(engine, "PATIENCE", 0.3)
     with socket.socket() as listener:
@@ -89,3 +90,4 @@ def test_a_scheduler_that_is_not_there_is_refused(
     with pytest.raises(UsageError, match="--scheduler: there is no scheduler at "):
         sweep(PLAIN, VARY, out=tmp_path / "study", execution=Execution(scheduler=address.format(free=free)))
     assert not (tmp_path / "study").exists()
+    assert dask.config.get("scheduler", None) is None, "what is written afterwards would look for it"

@@ -107,7 +107,7 @@ class OnCluster:
         first = list(islice(waiting, AHEAD * self.workers))
         for verb in {task.question.verb for task in first}:
             self.client.run(_load, verb)
-        completed = as_completed()
+        completed = as_completed(loop=self.client.loop)
         before, own = self._times(), time.process_time()
         try:
             for task in first:
@@ -227,7 +227,7 @@ def _local(workers: int, memory: float | None) -> Iterator[Engine]:
             memory_limit=limit,
             silence_logs=50,
         ) as cluster,
-        Client(cluster) as client,
+        Client(cluster, set_as_default=False) as client,
     ):
         client.wait_for_workers(workers, timeout=START)
         yield OnCluster(client, workers)
@@ -238,7 +238,8 @@ def _remote(address: str) -> Iterator[Engine]:
     from distributed import Client
 
     try:
-        client = Client(address, timeout=PATIENCE)
+        # As default it would stay what every file is written through, even where there is no scheduler.
+        client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise UsageError(f"--scheduler: there is no scheduler at {address}: {error}") from error
     with client:
