@@ -20,7 +20,7 @@ from petalfoil.equilibrium.element_response import ElementMotion
 from petalfoil.equilibrium.element_tangent import NoPointsError
 from petalfoil.equilibrium.point_contacts import PointContacts, followed, with_points
 from petalfoil.equilibrium.run_context import running
-from petalfoil.equilibrium.small_motion import AT_ASPERITIES, AT_NODES, AT_POINTS
+from petalfoil.equilibrium.small_motion import AT_ASPERITIES, AT_POINTS, ON_LINES
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.system.asperity_equations import AsperityEquations
 from petalfoil.system.point_equations import PointEquations, PointState
@@ -165,7 +165,7 @@ def test_a_result_says_where_its_contacts_are() -> None:
     coarse = {"model.cells_per_pitch": 32, "operation.load": (0.0, -20.0)}
     assert coefficients.record(case("paper_n8", **coarse)).scalars["contact_model"] == AT_POINTS
     spatial = {"model.kind": "3d", "model.cells_per_pitch": 16, "model.axial_cells": 4, "operation.load": (0.0, -20.0)}
-    assert coefficients.record(case("paper_n8", **spatial)).scalars["contact_model"] == AT_NODES
+    assert coefficients.record(case("paper_n8", **spatial)).scalars["contact_model"] == ON_LINES
     assert "contact_model" not in coefficients.record(case("plain_journal")).scalars
 
 

@@ -234,16 +234,20 @@ def test_the_examples_give_none_that_is_not_meant(name: str) -> None:
 
 def test_fourteen_gigapascals_are_warned_of() -> None:
     one = Case.load(FAULTS / "stress_14GPa.toml")
-    stress, contact = warnings_of(one, scalars_of(petalfoil.solve(one)))
+    answer = scalars_of(petalfoil.solve(one))
+    assert answer["min_film_thickness"] == pytest.approx(one.surface.contact_film_thickness, rel=1e-9)
+    stress, contact, nodes = warnings_of(one, answer)
     assert stress.startswith("max_bending_stress: 14.")
     assert contact.startswith("contact_fraction: at operating speed solid contact carries 99 %")
+    assert nodes.startswith("contact_model: no equilibrium with contact points was found")
 
 
 def test_a_foil_pack_that_has_bottomed_out_is_warned_of() -> None:
     one = case(PETALS, **{"model.cells_per_pitch": 16})
-    contact, solid = warnings_of(one, scalars_of(petalfoil.balance(one, load=(0.0, -500.0))))
+    contact, solid, nodes = warnings_of(one, scalars_of(petalfoil.balance(one, load=(0.0, -500.0))))
     assert contact.startswith("contact_fraction: ")
     assert solid.startswith("solution_path: the foil pack has bottomed out")
+    assert nodes.startswith("contact_model: no equilibrium with contact points was found")
     assert warnings_of(one, scalars_of(petalfoil.balance(one, load=(0.0, -10.0)))) == []
 
 
