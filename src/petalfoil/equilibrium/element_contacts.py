@@ -31,8 +31,8 @@ FORCE_APART = 0.5
 themselves miss their limit on fine grids by that much: random pack 34 has 2.9, 5.2, 5.7, 5.9 kN on 64 to 512 cells."""
 
 DEEPEST = 5e-3
-"""Farthest that the film may be thinner than where surfaces touch, in units of the reference film: ten mean heights of the
-asperities (50 nm). Random packs have at most 25 nm; one whose petals are bent to 14 GPa was 0.9 um through the journal."""
+"""Farthest that the film may be thinner than where surfaces touch, in units of the reference film: ten mean heights of
+the asperities (50 nm). Random packs have at most 25 nm; petals bent to 14 GPa were 0.9 um through the journal."""
 
 LEAST_FORCE = 1.0
 """Force that differences are compared with where there is hardly any, over the unit of force."""
@@ -103,8 +103,9 @@ def start_at(whole: PointLayout, solution: Solution) -> PointState:
 
 
 def agreeing(found: ElementEquilibrium, solution: Solution) -> ElementEquilibrium:
-    """`found`, if it is the same equilibrium as the solution: its force does not differ by more than `FORCE_APART`, and no
-    petal lies in the journal by more than `DEEPEST`.
+    """`found`, if it is the same equilibrium as the solution and no petal lies in the journal.
+
+    Its force does not differ by more than `FORCE_APART`, its film is not thinner by more than `DEEPEST` than a contact.
 
     Raises
     ------
