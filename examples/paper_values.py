@@ -135,13 +135,14 @@ def table(
 
 
 def text(value: Extrapolation, factor: float) -> str:
-    """Value ± bar with two digits of the bar, bold where it is trusted."""
+    """Value ± bar with two digits of the bar, at most six decimals, bold where it is trusted."""
     limit, error = value.limit * factor, value.error * factor
     if abs(limit) <= error:
         return "0"
     digits = 0
     while digits < 6 and error * 10**digits < 9.5:
         digits += 1
+    error = max(error, 10.0**-digits)
     shown = f"{limit:.{digits}f} ± {error:.{digits}f}"
     return f"**{shown}**" if value.trusted else shown
 

@@ -101,7 +101,7 @@ def test_the_demo_writes_tables_figures_and_data(
     monkeypatch.setattr(demo, "THREE_D", space)
     demo.main(tmp_path)
     printed = capsys.readouterr()
-    assert "24.86 ± " in printed.out  # 8 petals at 280 µm on 64 cells per pitch
+    assert "24.92 ± " in printed.out  # 8 petals at 280 µm on 64 cells per pitch
     assert "8 petals in 3-D: done" in printed.err
     written = {path.name for path in tmp_path.iterdir()}
     assert {f"curve_{task.name}.nc" for task in (*small, space)} <= written

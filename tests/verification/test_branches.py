@@ -95,7 +95,7 @@ def test_solve_reports_the_stable_branch_and_that_there_are_more() -> None:
 def test_a_curve_reports_its_jump() -> None:
     """The branch of case 4 ends between 154.5 and 155 um: its leading eigenvalue goes to zero there, and the next point
     lies on another branch, with five times the torque though the push on the journal changes by 3 % only."""
-    package = drawn(4).replace(**{"model.cells_per_pitch": 48})
+    package = drawn(4).replace(**{"model.cells_per_pitch": 48, "model.contacts": "nodes"})
     way = 1e-6 * np.concatenate([np.linspace(0.0, 140.0, 8), [145.0], np.arange(150.5, 156.0, 0.5)])
     records = list(curve.records(package, way))
     jumps = [number for number, record in enumerate(records) if record.scalars["jump"]]
