@@ -23,8 +23,8 @@ SMALL = 1e-11
 CLEAR = 2.5
 """Steps of the difference quotient that must fit before the nearest contact opens or closes."""
 
-WITHOUT_EFFECT = ("model", "rotor", "surface.friction_width", "petals.free_shape_tolerance")
-"""Parameters of the numerical model and of the rotor, on which an equilibrium does not depend."""
+WITHOUT_EFFECT = ("model", "rotor", "surface.friction_width", "surface.petal_friction", "petals.free_shape_tolerance")
+"""Parameters of the numerical model, the rotor and histories, on which an equilibrium does not depend."""
 
 
 def solved_again(derivatives: DerivativesOf, there: Equations) -> Solution:

@@ -47,13 +47,14 @@ def test_turning_by_one_pitch_turns_the_answer(kind: str, edges: str) -> None:
 
 @pytest.mark.slow
 def test_turning_package_and_displacement_turns_the_force() -> None:
+    """To what a residual of 1e-8 leaves of the force."""
     e, angle = np.array([0.0, -150e-6]), 0.377
     here = solve.record(PAPER, eccentricity=(0.0, -150e-6))
     there = solve.record(
         PAPER.replace(**{"petals.first_root": angle}),
         eccentricity=tuple(float(v) for v in turned(e, angle)),  # type: ignore[arg-type]
     )
-    assert_allclose(force(there), turned(force(here), angle), rtol=0, atol=1e-10 * np.abs(force(here)).max())
+    assert_allclose(force(there), turned(force(here), angle), rtol=0, atol=1e-9 * np.abs(force(here)).max())
 
 
 def film_alone(bearing: Case, H: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
@@ -82,7 +83,7 @@ def test_stiff_petals_are_the_rigid_stepped_bearing() -> None:
     for thin in (1.0, 0.1, 0.01):
         changes = {"gas.ambient_pressure": 1e5 * thin, "gas.viscosity": 1.85e-5 * thin}
         changes |= {"petals.youngs_modulus": 1e13, "operation.speed": 2000.0, "operation.eccentricity": (0.0, -50e-6)}
-        stiff = PAPER.replace(**changes)
+        stiff = PAPER.replace(**changes, **{"model.contacts": "nodes"})  # the shape that is taken is that of nodes
         record = solve.record(stiff)
         rest = next(static.records(stiff, (50e-6,)))
         shape = rest.fields["radius"][:, -stiff.cells_per_pitch - 1 :]
