@@ -243,11 +243,12 @@ def test_the_lift_off_speed_is_inverse_to_the_viscosity_and_follows_its_thicknes
     by_viscosity = lift_off.by("gas.viscosity").above["liftoff_speed"] * of.gas.viscosity / speed
     assert_allclose(by_viscosity, -1.0, rtol=1e-8)  # the film knows their product alone
     found = lift_off.by("petals.thickness")
-    change = min(0.2 * min(found.reach), 1e-8)
+    change = min(0.2 * min(found.reach), 5e-8)
     speeds = [
         again(lift_off.balance, {"petals.thickness": of.petals.thickness + sign * change}, speed) for sign in (-1, 1)
     ]
-    assert_allclose(found.above["liftoff_speed"], (speeds[1] - speeds[0]) / (2.0 * change), rtol=1e-5)
+    # with contact points differences of equilibria agree to some 1e-5 (V9)
+    assert_allclose(found.above["liftoff_speed"], (speeds[1] - speeds[0]) / (2.0 * change), rtol=3e-5)
 
 
 def again(balance: DerivativesOf, values: dict[str, float], near: float, limit: float = 0.01) -> float:

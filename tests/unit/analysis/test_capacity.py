@@ -152,7 +152,7 @@ def found_or_bounded(seed: int, least: float = 1.5e-6) -> str:
     return str(record.scalars["status"])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_random_bearings_are_found_or_bounded() -> None:
     ended = [found_or_bounded(seed) for seed in range(20)]
     assert ended.count("found") >= 4
