@@ -24,7 +24,7 @@ def solved(bearing: Case, **options: bool) -> Record | None:
         return None
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_nineteen_of_twenty_bars_hold_on_random_bearings() -> None:
     held: list[bool] = []
     seeds = iter(range(SEEDS))
