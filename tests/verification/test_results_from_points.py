@@ -161,13 +161,17 @@ CHANGES_WITHIN_TOLERANCE = "random 1"
 """Two sets of contacts fulfil the tolerances there, 0.03 N apart: differences over 0.01 um jump."""
 
 
+def duration(name: str) -> pytest.MarkDecorator:
+    """Random packs are stiff: on twice as many cells they take minutes."""
+    return pytest.mark.long if name.startswith("random") else pytest.mark.slow
+
+
 def on(bearing: Case, finer: int) -> Case:
     """The bearing on its grid or a finer one."""
     return bearing.replace(**{"model.cells_per_pitch": finer * bearing.cells_per_pitch})
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", TEN)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=duration(name)) for name in TEN])
 def test_coefficients_and_frequencies_on_the_default_grid(name: str) -> None:
     """Between the default grid and twice as many cells: K and C within 1 % of the largest, frequencies within 0.5 %."""
     K, C, frequencies = [], [], []
@@ -183,8 +187,9 @@ def test_coefficients_and_frequencies_on_the_default_grid(name: str) -> None:
     assert_allclose(frequencies[0], frequencies[1], rtol=5e-3)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in TEN if name != CHANGES_WITHIN_TOLERANCE])
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=duration(name)) for name in TEN if name != CHANGES_WITHIN_TOLERANCE]
+)
 def test_stiffness_is_the_slope_of_printed_forces(name: str) -> None:
     """Central differences over 0.01 um and 1 um, and the chord of 1 um between both, on the default grid."""
     bearing = TEN[name]
