@@ -149,7 +149,7 @@ def test_forced_orbits_of_petals_give_back_stiffness_and_damping(ratio: float) -
 
     An orbit holds its contacts at nodes: its slopes are those of the discrete equations, not of contact points.
     """
-    loaded, start = under(petals(), 3.0, 3.0 * WEIGHT)
+    loaded, start = under(petals(**{"model.contacts": "nodes"}), 3.0, 3.0 * WEIGHT)
     omega = loaded.operation.speed
     free = [
         float(f) for f in np.asarray(stability.record(loaded, mass=3.0).fields["natural_frequency"]) if f < 0.2 * omega
@@ -294,7 +294,7 @@ def test_speed_may_rise_from_rest() -> None:
 @pytest.mark.slow
 def test_a_released_rotor_on_petals_ends_where_its_load_balances() -> None:
     """Petals hardly damp: steps too long to follow the swing, which an L-stable scheme takes out, lead there."""
-    loaded, (x, y) = under(petals(), 1e-3, 20.0)
+    loaded, (x, y) = under(petals(**{"model.contacts": "nodes"}), 1e-3, 20.0)
     course = OrbitRequest(revolutions=40.0, initial=(x + 2e-6, y + 5e-6), tolerance=1e3, longest=3.0)
     record = follow(loaded, course)
     end = np.asarray(record.fields["x"])[-1], np.asarray(record.fields["y"])[-1]
