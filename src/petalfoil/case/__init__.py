@@ -22,6 +22,7 @@ In the order data flows:
 - `shape_file`: its rows from a CSV file.
 - `package`: geometry that follows, and whether the foil pack can be assembled.
 - `toml`: files and texts.
+- `whole_case`: why a case cannot be solved that no single key shows.
 - `definitions`: `Case`, which puts all of it together.
 - `keys`: every key with unit, range, default and meaning, and what a case says to it.
 - `parameters`: numbers of a case that may vary, by dotted path.

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Self
 
@@ -14,24 +13,21 @@ from petalfoil.case import toml
 from petalfoil.case.bump_foil_table import Backing, BumpFoil
 from petalfoil.case.definition import Definition
 from petalfoil.case.gas import Gas
-from petalfoil.case.growth import REFERENCE_TEMPERATURE, Bushing, Growth, Shaft, growth_problems
-from petalfoil.case.heat import Heat, heat_problems
+from petalfoil.case.growth import Bushing, Growth, Shaft
+from petalfoil.case.heat import Heat
 from petalfoil.case.package import (
     Package,
-    bearing_problems,
     package_of,
-    package_problems,
     packages_of,
     solid_height,
 )
 from petalfoil.case.petal_table import Petals, PetalTheory
-from petalfoil.case.problems import Problem, refusal
 from petalfoil.case.rotor import Rotor
 from petalfoil.case.sections import ADAPTED, Bearing, Contacts, Method, Model, ModelKind, Operation, Surface
 from petalfoil.case.wall_tables import WallTable, with_table
-from petalfoil.errors import DefinitionError, PackageError
+from petalfoil.case.whole_case import refuse_unsolvable
+from petalfoil.errors import DefinitionError
 from petalfoil.text import for_terminal
-from petalfoil.units import format_quantity
 
 # Grids whose error in the bearing force stays under 1 %: measured on the paper's foil packs (six to ten petals,
 # displaced by 0 to 280 um: at most 0.3 % in 2-D and in 3-D) and on plain bearings (L/D 1/2 to 2).
@@ -293,126 +289,8 @@ class Case(Definition):
     @model_validator(mode="after")
     def _can_be_solved(self) -> Self:
         """Refuse what no single field shows: geometry that cannot be assembled, a grid that cannot be halved."""
-        problems = list(self._geometry_problems())
-        kind: type[DefinitionError] = PackageError
-        if not problems:
-            problems = [
-                *self._grid_problems(),
-                *self._tilt_problems(),
-                *self._heat_problems(),
-                *self._method_problems(),
-                *self._second_problems(),
-            ]
-            kind = DefinitionError
-        if problems:
-            raise refusal(kind, problems)
+        refuse_unsolvable(self)
         return self
-
-    def _geometry_problems(self) -> Iterator[Problem]:
-        if len(self.walls) > 1:
-            names = " and ".join(f"[{wall.section}]" for wall in self.walls)
-            yield Problem("", f"{names} both describe the wall; allowed: one of them", names, "one of them")
-        found = [problem for wall in self.walls for problem in wall.problems()]
-        found += self._backing_problems()
-        found += growth_problems(self.bearing, self.shaft)
-        if not found:
-            found = list(bearing_problems(self.bearing, self.surface, self.operation, self.travel))
-        if not found and self.petals is not None:
-            found = list(package_problems(self.bearing, self.petals, self.surface, self.operation))
-        yield from found or self._problems_as_grown()
-
-    def _backing_problems(self) -> list[Problem]:
-        """Why springs cannot stand behind petals: there are none, or the stiffness is not known."""
-        if self.backing is None:
-            return []
-        if self.petals is None:
-            text = "backing springs stand behind petals, and there are none; allowed: with [petals], or [bump_foil]"
-            return [Problem("backing", text, None, "with [petals]")]
-        return list(self.backing.problems_under(self.petals.pitch * self.bearing.bushing_radius))
-
-    def _problems_as_grown(self) -> Iterator[Problem]:
-        """Yield what fits at rest at 20 °C, but not as shaft and bushing have grown."""
-        closing, grown = self.growth.closing(self.operation.speed), self.grown_bearing
-        if closing == 0.0:
-            return
-        found = list(bearing_problems(grown, self.surface, self.operation, self.travel))
-        if not found and self.petals is not None:
-            found = list(package_problems(grown, self.petals, self.surface, self.operation))
-        for problem in found:
-            text = (
-                f"shaft and bushing as grown at {format_quantity(self.operation.speed, 'rad/s')} take "
-                f"{format_quantity(closing, 'm')} of the radial clearance (see `shaft` and `bushing`): "
-                f"{problem.text}"
-            )
-            yield replace(problem, text=text)
-
-    def _grid_problems(self) -> Iterator[Problem]:
-        cells, density = self.axial_cells, self.model.axial_density
-        if density is not None and self.model.axial_grading is not None:
-            text = "is given beside model.axial_grading, and both place the stations; allowed: one of them"
-            yield Problem("model.axial_density", text, density, "one of both")
-        if density == ADAPTED and self.petals is None:
-            text = 'stations are adapted to petals only; allowed: "uniform", a list, or model.axial_grading'
-            yield Problem("model.axial_density", text, density, "uniform, a list, or model.axial_grading")
-        if self.model.kind is ModelKind.THREE_D and self.symmetric and cells % 2:
-            text = (
-                f"{cells} cells cannot be halved at the plane of symmetry; allowed: an even number, or symmetry = false"
-            )
-            yield Problem("model.axial_cells", text, cells, "an even number")
-
-    def _heat_problems(self) -> Iterator[Problem]:
-        if self.heat is None:
-            return
-        self.heat.of_gas(self.gas)  # refuses a gas whose heat conductivity is not known
-        warm = {"shaft.temperature": self.shaft, "bushing.temperature": self.bushing}
-        given = {key: part is not None and part.temperature != REFERENCE_TEMPERATURE for key, part in warm.items()}
-        others = {"model.slip": self.model.slip, "classic": self.model.method is Method.CLASSIC}
-        yield from heat_problems(self.heat, given | others)
-
-    def _method_problems(self) -> Iterator[Problem]:
-        if self.petal_theory is PetalTheory.SHELL and self.model.kind is ModelKind.THREE_D:
-            text = 'petals that stretch are modelled in 2-D alone; allowed: "inextensible", or model.kind = "2d"'
-            yield Problem("petals.theory", text, "shell", "inextensible")
-        if self.petal_theory is PetalTheory.SHELL and self.backing is not None:
-            text = 'petals that stretch are modelled on a rigid bushing alone; allowed: "inextensible", or no [backing]'
-            yield Problem("petals.theory", text, "shell", "inextensible, or no [backing]")
-        if self.model.method is Method.CLASSIC and self.petals is not None and len(set(self.petals.each)) > 1:
-            text = 'the paper\'s method is for equal petals; allowed: "newton", or one value for all petals'
-            yield Problem("model.method", text, "classic", "newton, or equal petals")
-        if self.model.method is Method.CLASSIC and self.backing is not None:
-            text = 'the paper has no backing springs; allowed: "newton", or no [backing]'
-            yield Problem("model.method", text, "classic", "newton, or no [backing]")
-
-    def _second_problems(self) -> Iterator[Problem]:
-        """Yield what is wrong with the second bearing of the rotor as a bearing by itself."""
-        if self.rotor is None or self.rotor.second is None:
-            return
-        try:
-            second = self.supports[1]
-        except DefinitionError as error:
-            for key, text in error.problems:
-                yield Problem(f"rotor.second.{key}" if key else "rotor.second", text, error.given, error.allowed)
-            return
-        if second.model.kind is not self.model.kind:
-            text = f'is "{second.model.kind}" beside "{self.model.kind}"; allowed: one kind for both bearings'
-            yield Problem("rotor.second.model.kind", text, str(second.model.kind), f'"{self.model.kind}"')
-        if self.model.method is Method.CLASSIC:
-            yield Problem("rotor.second", 'is not in the paper; allowed: model.method = "newton"', None, '"newton"')
-
-    def _tilt_problems(self) -> Iterator[Problem]:
-        """Yield why a journal cannot tilt: no length, the paper's method, or two ways to say it."""
-        operation = self.operation
-        key = "operation.tilt" if operation.tilt is not None else "operation.moment"
-        if operation.tilt is None and operation.moment is None:
-            return
-        given = operation.tilt or operation.moment
-        if self.model.kind is ModelKind.TWO_D and (operation.tilt is not None or self.bearings == 1):
-            yield Problem(key, 'needs the length of the bearing; allowed: model.kind = "3d"', given, '"3d"')
-        if self.model.method is Method.CLASSIC:
-            yield Problem(key, 'is not in the paper; allowed: model.method = "newton"', given, '"newton"')
-        if operation.tilt is not None and operation.moment is not None and self.bearings == 1:
-            text = "is given beside operation.tilt, and one follows from the other; allowed: one of them"
-            yield Problem("operation.moment", text, operation.moment, "a tilt or a moment")
 
 
 def _from_folder(data: dict[str, Any], folder: Path) -> dict[str, Any]:
