@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from petalfoil.case import Case
-from petalfoil.dynamics.reduced_impedance import JournalMotion
 from petalfoil.equilibrium.element_contacts import with_elements
 from petalfoil.equilibrium.line_sets import with_lines
+from petalfoil.equilibrium.small_motion import JournalMotion
 from petalfoil.equilibrium.solution import Solution
 
 

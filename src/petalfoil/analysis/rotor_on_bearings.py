@@ -19,12 +19,13 @@ from petalfoil.case import Case, ModelKind
 from petalfoil.dynamics.critical_mass import Whirl, neutral_whirl, whirl_impedance
 from petalfoil.dynamics.joint_motion import JointMotion
 from petalfoil.dynamics.natural_modes import Mode, natural_modes
-from petalfoil.dynamics.reduced_impedance import Impedance, JournalMotion
+from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.dynamics.rotor_motion import Inertia
 from petalfoil.equilibrium.element_response import ElementMotion
 from petalfoil.equilibrium.element_tangent import NoPointsError
 from petalfoil.equilibrium.point_contacts import PointContacts, followed
 from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.small_motion import JournalMotion
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import UsageError
 from petalfoil.system.loaded import load_of

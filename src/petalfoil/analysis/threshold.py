@@ -14,10 +14,10 @@ from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
 from petalfoil.dynamics.critical_mass import Whirl
-from petalfoil.dynamics.reduced_impedance import JournalMotion
 from petalfoil.dynamics.rotor_motion import GRAVITY
 from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.small_motion import JournalMotion
 from petalfoil.errors import ConvergenceError
 
 RANGE, FACTOR = 16.0, 1.3

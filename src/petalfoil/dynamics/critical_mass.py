@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq, linear_sum_assignment
 
-from petalfoil.dynamics.reduced_impedance import Impedance, JournalMotion
+from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.dynamics.rotor_motion import Inertia
+from petalfoil.equilibrium.small_motion import JournalMotion
 
 Complex = NDArray[np.complex128]
 

@@ -8,59 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.dynamics.rotor_motion import Inertia
 from petalfoil.equilibrium.run_context import current_run
-from petalfoil.solvers.reduced_model import MovedSystem, ReducedModel, reduce_system
-from petalfoil.solvers.sparse_lu import LinearSolver
-from petalfoil.system.coupled import CoupledProblem
+from petalfoil.equilibrium.small_motion import ForceGradient, JournalMotion
+from petalfoil.solvers.reduced_model import ReducedModel, reduce_system
 
 Complex = NDArray[np.complex128]
 
 MODEL_ERROR = 1e-8
 """Largest error of a reduced model that is used, over the largest entry of the impedance."""
-
-
-class ForceGradient(Protocol):
-    """Response of the bearing, or of both, at one rate of change."""
-
-    @property
-    def force_gradient(self) -> NDArray[Any]:
-        """Force by displacement, (d, d), over unit of force and length [1]."""
-
-    def slope(self) -> NDArray[Any]:
-        """Its derivative by `s` [1]."""
-
-
-class JournalMotion(Protocol):
-    """Small motions of a journal in its bearing, or of a shaft in two: what an impedance is of."""
-
-    @property
-    def problem(self) -> CoupledProblem:
-        """The (first) bearing, whose units hold."""
-
-    @property
-    def contact_model(self) -> str:
-        """Where the contacts are, for people."""
-
-    @property
-    def film_thickness(self) -> NDArray[np.float64]:
-        """Film over the reference length [1]."""
-
-    @property
-    def loss(self) -> sp.csc_array | None:
-        """What a wall that loses energy adds to the tangent; None of others."""
-
-    def moved_system(self, solver: LinearSolver) -> MovedSystem:
-        """The same for a reduced model; one factorisation for each bearing."""
-
-    def growing(self, s: complex, solver: LinearSolver) -> ForceGradient:
-        """The response to a motion in `exp(s tau)`; one factorisation for each bearing."""
 
 
 @dataclass(frozen=True)

@@ -169,16 +169,23 @@ class LineEquilibrium(Protocol):
         """The state under `more` load (n_position,) and a part `faster`, by the tangent alone; one factorisation."""
 
 
-class Response(Protocol):
+class ForceGradient(Protocol):
+    """Response of the bearing, or of both bearings of a shaft, at one rate of change."""
+
+    @property
+    def force_gradient(self) -> Values:
+        """`dF/de` of film and contacts on the journal, (n_position, n_position), over unit of force and length [1]."""
+
+    def slope(self) -> Values:
+        """Derivative of `dF/de` by `s` [1]."""
+
+
+class Response(ForceGradient, Protocol):
     """Response to the journal's displacement at one state and frequency."""
 
     @property
     def units(self) -> Values:
         """Change of the unknowns, deflections first, by a unit of each coordinate of the journal, (n, n_position)."""
-
-    @property
-    def force_gradient(self) -> Values:
-        """`dF/de` of film and contacts on the journal, (n_position, n_position), over unit of force and length [1]."""
 
     def moved(self, forces: Values) -> Values:
         """Change of the unknowns by forces on them, the journal held in place; (n, k) each."""
@@ -186,20 +193,17 @@ class Response(Protocol):
     def forced(self, force: Values) -> tuple[Values, Values]:
         """Change of the unknowns (n,) and force on the journal held in place (n_position,), by forces (n,) on them."""
 
-    def slope(self) -> Values:
-        """Derivative of `dF/de` by `s` [1]."""
 
-
-class Motion(Protocol):
-    """The system about one equilibrium, whatever the frequency."""
+class JournalMotion(Protocol):
+    """Small motions of a journal in its bearing, or of a shaft in two: what an impedance is of."""
 
     @property
     def problem(self) -> CoupledProblem:
-        """Speed and position."""
+        """Speed and position, those of the first of two bearings, whose units hold."""
 
     @property
     def contact_model(self) -> str:
-        """Where its contacts are, for people."""
+        """Where the contacts are, for people."""
 
     @property
     def film_thickness(self) -> Array:
@@ -207,14 +211,21 @@ class Motion(Protocol):
 
     @property
     def loss(self) -> sp.csc_array | None:
-        """What a wall that loses energy adds to the tangent, times `i`, (n, n)."""
+        """What a wall that loses energy adds to the tangent, times `i`, (n, n); None of others."""
+
+    def moved_system(self, solver: LinearSolver) -> MovedSystem:
+        """The same for a reduced model; one factorisation for each bearing."""
+
+    def growing(self, s: complex, solver: LinearSolver) -> ForceGradient:
+        """The response to a motion in `exp(s tau)`; one factorisation for each bearing."""
+
+
+class Motion(JournalMotion, Protocol):
+    """The system about one equilibrium, whatever the frequency."""
 
     @property
     def frictionless(self) -> Self:
         """The same, petals sliding freely on each other."""
-
-    def moved_system(self, solver: LinearSolver) -> MovedSystem:
-        """The same for a reduced model; one factorisation."""
 
     def respond(self, nu: float, solver: LinearSolver) -> Response:
         """The response at whirl ratio `nu`; one factorisation."""
