@@ -19,7 +19,7 @@ pytestmark = [
 ]
 playwright = pytest.importorskip("playwright.sync_api")
 Browser = playwright.Browser
-Page = playwright.Page
+Page, Locator = playwright.Page, playwright.Locator
 
 PATIENCE = 60_000.0
 """Time for an answer on a machine that others use [ms]."""
@@ -226,12 +226,8 @@ def test_a_question_is_answered_from_its_declaration(page: Page) -> None:
     page.locator(".question .refusal:visible", has_text="eccentricities").wait_for()
 
 
-def test_a_point_of_a_map_opens_its_case(page: Page) -> None:
-    page.get_by_role("tab", name="Map").click()
-    page.get_by_label("values over").fill("160 um, 190 um")
-    page.get_by_role("button", name="Run map").click()
-    answered(page, "map: done")
-    point = page.locator(".past .scatterlayer .point").last
+def click_on(page: Page, point: Locator) -> None:
+    """Click on a point of a drawing, which takes clicks once the mouse has rested on it."""
     point.wait_for()
     point.scroll_into_view_if_needed()
     page.wait_for_timeout(500)
@@ -241,6 +237,14 @@ def test_a_point_of_a_map_opens_its_case(page: Page) -> None:
     page.wait_for_timeout(300)
     page.mouse.down()
     page.mouse.up()
+
+
+def test_a_point_of_a_map_opens_its_case(page: Page) -> None:
+    page.get_by_role("tab", name="Map").click()
+    page.get_by_label("values over").fill("160 um, 190 um")
+    page.get_by_role("button", name="Run map").click()
+    answered(page, "map: done")
+    click_on(page, page.locator(".past .scatterlayer .point").last)
     page.wait_for_function("document.querySelector('[aria-label^=\"petals.thickness \"]').value === '190 µm'")
 
 
@@ -330,16 +334,7 @@ def test_a_design_of_a_front_opens_its_case(page: Page) -> None:
     page.get_by_label("designs", exact=True).fill("12")
     page.get_by_role("button", name="Run search").click()
     answered(page, "search: done")
-    point = page.locator(".past .scatterlayer .point:visible").last
-    point.wait_for()
-    point.scroll_into_view_if_needed()
-    page.wait_for_timeout(500)
-    box = point.bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
-    page.wait_for_timeout(300)
-    page.mouse.down()
-    page.mouse.up()
+    click_on(page, page.locator(".past .scatterlayer .point:visible").last)
     page.wait_for_function("document.querySelector('[aria-label^=\"petals.thickness \"]').value !== '175 um'")
 
 

@@ -26,6 +26,7 @@ The page:
 - ``case_panel``    the case: fields and sliders
 - ``results_panel`` results beside those of the pinned design
 - ``questions``     the analyses as tabs
+- ``study_panel``   what panels of a study share
 - ``map_panel``     a result over one or two parameters
 - ``optimum_panel`` the best design, and the front of two objectives
 - ``parameter_choice`` a parameter of the case and its values, for both
