@@ -69,10 +69,10 @@ def test_the_figure_has_a_panel_for_each_result(under_load: xr.Dataset) -> None:
 @pytest.mark.slow
 def test_a_result_that_is_zero_by_symmetry_has_no_relative_effect() -> None:
     centred = SMALL.replace(**{"operation.eccentricity": (0.0, 0.0)})
-    with pytest.warns(UserWarning, match="without effect: .*gas.viscosity"):
-        ds = petalfoil.sensitivity(centred, of="force_y")
+    with pytest.warns(UserWarning, match="without effect: .*petals.thickness"):
+        ds = petalfoil.sensitivity(centred, of="force_y", contacts="nodes")  # contact points leave 2e-5 N of noise
     assert "operation.eccentricity.y" in ds["parameter"].values
-    assert "gas.viscosity" not in ds["parameter"].values
+    assert "petals.thickness" not in ds["parameter"].values
     assert np.all(np.isnan(ds["relative_effect"].values))
 
 
