@@ -18,7 +18,7 @@ In the order data flows:
 - ``dynamic_coefficients`` stiffness and damping over whirl frequency (`coefficients`)
 - ``stability_maps`` stability of a rigid rotor (`stability`)
 - ``campbell_diagram`` its natural modes over speed (`campbell`)
-- ``tornado``      how far a small change of each parameter moves a result (`tornado`)
+- ``parameter_effects`` how far a small change of each parameter moves a result (`tornado`)
 - ``histories``    a motion over time (`orbit_histories`), its energy balance (`orbit_energy`)
 - ``spectra``      spectrum of the whirl (`orbit_spectrum`), over speed or time (`orbit_waterfall`)
 - ``journal_orbit`` path of the journal's centre (`orbit_path`), a motion in one figure (`orbit`)
@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from petalfoil.plot.histories import orbit_energy, orbit_histories
     from petalfoil.plot.journal_orbit import orbit, orbit_path
     from petalfoil.plot.load_capacity import capacity
+    from petalfoil.plot.parameter_effects import tornado
     from petalfoil.plot.section import cross_section, operating_point
     from petalfoil.plot.spectra import orbit_spectrum, orbit_waterfall
     from petalfoil.plot.speed_sweeps import liftoff, runup
@@ -66,7 +67,6 @@ if TYPE_CHECKING:
     from petalfoil.plot.study_sobol import sobol
     from petalfoil.plot.study_sweeps import parallel_coordinates, scatter_matrix, sweep
     from petalfoil.plot.study_tolerance import tolerance
-    from petalfoil.plot.tornado import tornado
 
 _MODULES = {
     "animation": ("animate",),
@@ -91,7 +91,7 @@ _MODULES = {
     "study_optimum": ("optimum",),
     "study_sobol": ("sobol",),
     "study_sweeps": ("parallel_coordinates", "scatter_matrix", "sweep"),
-    "tornado": ("tornado",),
+    "parameter_effects": ("tornado",),
 }
 _HOME = {name: module for module, names in _MODULES.items() for name in names}
 

@@ -29,7 +29,7 @@ FIGURES: dict[str, Draw | str] = {
     "sobol": "study_sobol:sobol",
     "sweep": "study_sweeps:sweep",
     "tolerance": "study_tolerance:tolerance",
-    "sensitivity": "tornado:tornado",
+    "sensitivity": "parameter_effects:tornado",
 }
 """Function that draws the result of an analysis, or where it stands: module of this package, colon, function."""
 

@@ -1,5 +1,7 @@
+import pkgutil
 from collections.abc import Callable
 from importlib import import_module
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -7,6 +9,7 @@ import xarray as xr
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 
+import petalfoil
 from petalfoil import plot
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.plot import figure_registry
@@ -117,3 +120,9 @@ def test_a_grid_without_a_figure_is_filled_contours() -> None:
 def test_a_result_without_quantities_is_refused() -> None:
     with pytest.raises(UsageError, match="no quantity"):
         plot.summary(xr.Dataset({"status": ((), "converged"), "converged": ((), np.True_)}))
+
+
+@pytest.mark.parametrize("package", [petalfoil, plot])
+def test_no_function_is_hidden_by_a_module_of_its_name(package: ModuleType) -> None:
+    modules = {info.name for info in pkgutil.iter_modules(package.__path__)}
+    assert not modules & set(package.__all__)  # an import of the module would put it in the function's place
