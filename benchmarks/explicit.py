@@ -61,17 +61,17 @@ def costs(orbit: Orbit, engine: Engine, steps: int) -> tuple[float, float]:
     """Time of a film step and of a descent step in calls of `steps` steps, after a first call [s]."""
     start, inner = orbit.start, kernels(engine)
     problem = placed(orbit, start)
-    package = PackDescent(problem, NUMBERS, engine)
+    pack = PackDescent(problem, NUMBERS, engine)
     w, unknowns = np.split(start.x, [problem.layout.n_wall])
     P, cells, load = (
         problem.pressure(start.x).reshape(-1).copy(),
         cells_at(problem, w, unknowns),
-        package.load(unknowns),
+        pack.load(unknowns),
     )
-    shell, held, w = package.shell, package.columns, w.copy()
+    shell, held, w = pack.shell, pack.columns, w.copy()
     march, descent = (
         MarchSettings(NUMBERS.time_step_fraction, 1.0, ENDLESS, 32),
-        DescentSettings(package.step, False, ENDLESS, 20),
+        DescentSettings(pack.step, False, ENDLESS, 20),
     )
     inner.march(P, cells, march)  # compiles the loops
     inner.descend(w, load, shell, held, descent)
@@ -79,11 +79,11 @@ def costs(orbit: Orbit, engine: Engine, steps: int) -> tuple[float, float]:
     best = in_turn(
         {
             "film": lambda: inner.march(P, cells, march._replace(max_steps=steps)),
-            "package": lambda: inner.descend(w, load, shell, held, descent._replace(max_steps=steps)),
+            "pack": lambda: inner.descend(w, load, shell, held, descent._replace(max_steps=steps)),
         },
         3,
     )
-    return best["film"] / steps, best["package"] / steps
+    return best["film"] / steps, best["pack"] / steps
 
 
 # ---------------------------------------------------------------------------------------------- counts on a given path
@@ -97,13 +97,13 @@ def settlings(orbit: Orbit, pair: tuple[Instant, Instant], tolerance: float, sec
     begin, end = pair
     steps, start = math.ceil(turn(orbit) * (end.tau - begin.tau) / (2.0 * math.pi)), time.process_time()
     problem = placed(orbit, begin)
-    package, w, total = PackDescent(problem, NUMBERS), begin.x[: problem.layout.n_wall].copy(), 0
-    settings = DescentSettings(package.step, False, tolerance, NUMBERS.max_pack_steps)
+    pack, w, total = PackDescent(problem, NUMBERS), begin.x[: problem.layout.n_wall].copy(), 0
+    settings = DescentSettings(pack.step, False, tolerance, NUMBERS.max_pack_steps)
     for step in range(1, steps + 1):
         share = step / steps
         x, e = begin.x + share * (end.x - begin.x), begin.e + share * (end.e - begin.e)
         held = columns(placed(orbit, begin, e))
-        total += kernels().descend(w, package.load(x[problem.layout.n_wall :]), package.shell, held, settings)[0]
+        total += kernels().descend(w, pack.load(x[problem.layout.n_wall :]), pack.shell, held, settings)[0]
         if time.process_time() - start > seconds:
             return step, total
     return steps, total
@@ -133,7 +133,7 @@ class ExplicitMotion:
     def __post_init__(self) -> None:
         start = self.start
         self.problem = placed(self.orbit, start)
-        self.package = PackDescent(self.problem, NUMBERS)
+        self.pack = PackDescent(self.problem, NUMBERS)
         self.w = start.x[: self.problem.layout.n_wall].copy()
         self.e, self.v, self.tau = start.e.copy(), start.moving.v.copy(), start.tau
         self.P = self.problem.pressure(start.x).reshape(-1).copy()
@@ -175,8 +175,8 @@ class ExplicitMotion:
 
     def settle(self, until: float) -> None:
         """Solve the pack under the pressures, unless it diverges or the time limit is reached."""
-        load, shell, held = self.package.load(self.unknowns), self.package.shell, columns(self.problem)
-        settings, left = DescentSettings(self.package.step, False, self.tolerance, CHUNK), math.inf
+        load, shell, held = self.pack.load(self.unknowns), self.pack.shell, columns(self.problem)
+        settings, left = DescentSettings(self.pack.step, False, self.tolerance, CHUNK), math.inf
         while not left <= self.tolerance and not self.lost and time.process_time() < until:
             steps, left = kernels().descend(self.w, load, shell, held, settings)
             self.pack_steps += steps

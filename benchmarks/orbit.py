@@ -228,11 +228,11 @@ def by(engine: Engine, motion: Followed, counts: dict[str, Value], steps: tuple[
     )
     if engine is Engine.NUMBA and find_spec("numba") is None:
         return Row(name, description, None, remark="numba is not installed")
-    (film_steps, each), (film, package) = steps, explicit.costs(motion.orbit, engine, LOOPS[engine])
-    alone, whole = film_steps * film, film_steps * (film + each * package)
+    (film_steps, each), (film, pack) = steps, explicit.costs(motion.orbit, engine, LOOPS[engine])
+    alone, whole = film_steps * film, film_steps * (film + each * pack)
     details = counts | {
         "seconds_film_step": film,
-        "seconds_pack_step": package,
+        "seconds_pack_step": pack,
         "seconds_film_per_revolution": alone,
         "seconds_explicit_per_revolution": whole,
     }

@@ -86,7 +86,7 @@ class Race:
     def case(self) -> Case:
         """The bearing with the number of cells per pitch that gives this number of nodes per petal."""
         case = Case.load(EXAMPLES / f"paper_n{self.petals}.toml")
-        overlap = case.package.overlap if case.package is not None else 1.0
+        overlap = case.pack.overlap if case.pack is not None else 1.0
         changes: dict[str, object] = {
             "operation.eccentricity": (0.0, -1e-6 * self.micrometres),
             "model.cells_per_pitch": round((self.nodes - 1) / overlap),

@@ -85,7 +85,7 @@ def error_bars(case: Case, e: int, levels: int) -> dict[str, float]:
 
 
 def main(folder: Path) -> None:
-    """Run everything, two packages at a time; what is finished is written at once and outlives an interruption."""
+    """Run everything, two packs at a time; what is finished is written at once and outlives an interruption."""
     folder.mkdir(parents=True, exist_ok=True)
     finished: dict[str, Result] = {}
     tasks = [THREE_D, *TWO_D]  # the longest first

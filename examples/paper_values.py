@@ -1,4 +1,4 @@
-"""Converged values of the paper's packages: regenerates docs/paper-values.md.
+"""Converged values of the paper's packs: regenerates docs/paper-values.md.
 
     python examples/paper_values.py docs/paper-values.md
 
@@ -50,7 +50,7 @@ The bearing force on the centred journal is zero by symmetry. Pressures are abso
 
 @dataclass(frozen=True)
 class Task:
-    """One position of one package in one model; at rest without a displacement."""
+    """One position of one pack in one model; at rest without a displacement."""
 
     count: int
     kind: str
@@ -58,7 +58,7 @@ class Task:
 
     @property
     def case(self) -> Case:
-        """The package, in 3-D on equal stations, which are nested on the coarsest grid too."""
+        """The pack, in 3-D on equal stations, which are nested on the coarsest grid too."""
         changes = {"model.kind": self.kind} | ({"model.axial_density": "uniform"} if self.kind == "3d" else {})
         return Case.load(HERE / f"paper_n{self.count}.toml").replace(**changes)
 
@@ -78,7 +78,7 @@ def run(task: Task) -> dict[str, Extrapolation]:
 
 
 def at_rest(task: Task) -> dict[str, Extrapolation]:
-    """The package without rotation: contact reactions on the journal and starting torque."""
+    """The pack without rotation: contact reactions on the journal and starting torque."""
     points = [
         petalfoil.static(task.case.replace(**{"model.cells_per_pitch": cells, "model.axial_cells": cells // 2}))
         for cells in grids(task.kind)

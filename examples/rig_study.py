@@ -32,7 +32,7 @@ from petalfoil.analysis.balance import balance
 from petalfoil.analysis.crossings import CONTACT_FRACTION, crossing
 from petalfoil.analysis.session import one_thread
 from petalfoil.analysis.speeds import SpeedLine
-from petalfoil.case.package import MAX_ARC_ANGLE
+from petalfoil.case.pack_geometry import MAX_ARC_ANGLE
 from petalfoil.errors import ConvergenceError, DefinitionError
 
 Array = NDArray[np.float64]
@@ -57,15 +57,15 @@ RANGES = {  # of the unknown dimensions
 FLOORS = (0.3e-6, 5e-6)  # roughness of ground journal and sprayed coating together [m]
 FRICTIONS = (0.05, 0.5)  # solid lubricants to bare metal
 
-DRAWN, REFINED, KEPT = 32, 12, 8  # packages drawn for each pair; steps of each refinement; pairs refined
-EXPLAINS = 9.0  # misfit up to which a drawn or refined package is computed again on the fine grid
+DRAWN, REFINED, KEPT = 32, 12, 8  # packs drawn for each pair; steps of each refinement; pairs refined
+EXPLAINS = 9.0  # misfit up to which a drawn or refined pack is computed again on the fine grid
 FIRST_FLOOR = 0.8e-6  # [m]
 HOPELESS_MOMENTS, HOPELESS_SPEEDS = (
     12.0,
     60.0,
 )  # misfits, levels aside, of two and more deviations each: no more is done
 TOO_FAST = 3.0  # times the measured speed; no floor in the range makes up for more
-OUTSIDE = 1e3  # misfit of a package out of range
+OUTSIDE = 1e3  # misfit of a pack out of range
 LEVEL = 0.01  # of the mean of the lift-off speeds, which the floor is to meet
 
 out, err = Console(markup=False, highlight=False), Console(stderr=True, markup=False, highlight=False)
@@ -75,7 +75,7 @@ SEARCH, FINAL = 48, 192  # cells per pitch; from 192 to 384 lift-off speeds fall
 
 
 @dataclass(frozen=True)
-class Package:
+class Pack:
     """The unknown dimensions; `RANGES` says what they are."""
 
     count: int
@@ -87,7 +87,7 @@ class Package:
     tilt: float = 1.0
 
     def case(self, floor: float, cells: int) -> Case:
-        """The rig with this package and contact film thickness [m]."""
+        """The rig with this pack and contact film thickness [m]."""
         rig = Case.load(HERE / "rig.toml")
         R_B, delta = rig.bearing.bushing_radius, 0.15e-3 + self.coating
         pitch, r_m = 2.0 * math.pi / self.count, R_B - delta / 2.0
@@ -116,9 +116,9 @@ def chordal(rig: Case, r_m: float, length: float) -> float:
 
 @dataclass(frozen=True)
 class Finding:
-    """What the model says of a package. Misfits are sums of squares over the scatter of the experiments."""
+    """What the model says of a pack. Misfits are sums of squares over the scatter of the experiments."""
 
-    package: Package
+    pack: Pack
     floor: float  # [m]
     friction: float
     moments: tuple[float, ...] = ()  # [N m]
@@ -135,11 +135,11 @@ class Finding:
     def read(cls, line: str) -> Finding:
         """From a line of a store."""
         entries = json.loads(line)
-        entries.update(package=Package(**entries["package"]), moments=tuple(entries["moments"]))
+        entries.update(pack=Pack(**entries["pack"]), moments=tuple(entries["moments"]))
         return cls(**{**entries, "speeds": tuple(entries["speeds"])})
 
 
-# ------------------------------------------------------------------------------------------- one package
+# ------------------------------------------------------------------------------------------- one pack
 
 
 def reactions(case: Case, loads: Sequence[float]) -> list[float]:
@@ -167,35 +167,35 @@ def misfit(found: Sequence[float] | Array, measured: Sequence[float], scatter: f
     return float(left @ left)
 
 
-def judge(package: Package, floor: float, cells: int, known: int = FITTED) -> Finding:
+def judge(pack: Pack, floor: float, cells: int, known: int = FITTED) -> Finding:
     """The moments and lift-off speeds of the first `known` experiments, floor and friction set to the fitted ones."""
     loads = LOADS[:known]
     try:
-        case = package.case(floor, cells)
+        case = pack.case(floor, cells)
         arms = case.bearing.journal_radius * np.array(reactions(case, loads))
         friction = float(np.clip(np.exp(np.mean(np.log(MOMENTS[:FITTED] / arms[:FITTED]))), *FRICTIONS))
         moments = tuple((friction * arms).tolist())
-        first = Finding(package, floor, friction, moments)
+        first = Finding(pack, floor, friction, moments)
         of_moments = misfit(moments, MOMENTS, SCATTER_MOMENT)
         if of_moments > HOPELESS_MOMENTS:
             return replace(first, note="moments grow with the load")
-        floor, speeds = levelled(package, floor, cells, loads)
+        floor, speeds = levelled(pack, floor, cells, loads)
     except DefinitionError as refused:
-        return Finding(package, floor, math.nan, note=str(refused))
+        return Finding(pack, floor, math.nan, note=str(refused))
     except ConvergenceError as failure:
-        return Finding(package, floor, math.nan, note=f"not converged: {failure}")
+        return Finding(pack, floor, math.nan, note=f"not converged: {failure}")
     if not np.all(np.isfinite(speeds[:FITTED])):
         return replace(first, floor=floor, note="no lift-off near the measured speeds")
     whole = of_moments + misfit(speeds, SPEEDS, SCATTER_SPEED)
     return replace(first, floor=floor, speeds=tuple(speeds), misfit=whole)
 
 
-def levelled(package: Package, floor: float, cells: int, loads: Sequence[float]) -> tuple[float, list[float]]:
+def levelled(pack: Pack, floor: float, cells: int, loads: Sequence[float]) -> tuple[float, list[float]]:
     """Contact film thickness [m] at which experiments 1 to 3 lift off at the measured mean speed, and the speeds."""
     slope, before = 0.7, (math.nan, math.nan)  # of lift-off speed over floor, in logarithms, to begin with
     speeds: list[float] = []
     for _ in range(6):
-        case, speeds = package.case(floor, cells), []
+        case, speeds = pack.case(floor, cells), []
         for load, measured in zip(loads[:FITTED], SPEEDS[:FITTED], strict=False):
             speeds.append(lift_off(case, load, measured))
             if not math.isfinite(speeds[-1]):
@@ -219,21 +219,21 @@ def levelled(package: Package, floor: float, cells: int, loads: Sequence[float])
 
 
 class Store:
-    """Findings by package, in a file of one line each: a run that was interrupted goes on from there."""
+    """Findings by pack, in a file of one line each: a run that was interrupted goes on from there."""
 
     def __init__(self, path: Path, cells: int, known: int = FITTED) -> None:
         self.path, self.cells, self.known = path, cells, known
         lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
-        self.findings = {finding.package: finding for finding in map(Finding.read, lines)}
+        self.findings = {finding.pack: finding for finding in map(Finding.read, lines)}
 
-    def judge(self, package: Package, floor: float) -> Finding:
-        """The finding of a package, computed if it is new."""
-        if package not in self.findings:
-            found = judge(package, floor, self.cells, self.known)
+    def judge(self, pack: Pack, floor: float) -> Finding:
+        """The finding of a pack, computed if it is new."""
+        if pack not in self.findings:
+            found = judge(pack, floor, self.cells, self.known)
             with self.path.open("a", encoding="utf-8") as file:
                 file.write(found.line + "\n")
-            self.findings[package] = found
-        return self.findings[package]
+            self.findings[pack] = found
+        return self.findings[pack]
 
     @property
     def best(self) -> Finding:
@@ -241,14 +241,14 @@ class Store:
         return min(self.findings.values(), key=lambda finding: finding.misfit)
 
 
-def drawn(count: int, mount: str) -> Iterator[Package]:
-    """Packages spread evenly over the ranges."""
+def drawn(count: int, mount: str) -> Iterator[Pack]:
+    """Packs spread evenly over the ranges."""
     ranges = ranges_of(count, mount)
     for point in qmc.LatinHypercube(len(ranges), seed=count).random(DRAWN):
         values = {name: low + u * (high - low) for u, (name, (low, high)) in zip(point, ranges.items(), strict=True)}
         low, high = ranges["clearance"]
         values["clearance"] = low * (high / low) ** point[0]
-        yield Package(count, mount, **{name: float(f"{value:.4g}") for name, value in values.items()})
+        yield Pack(count, mount, **{name: float(f"{value:.4g}") for name, value in values.items()})
 
 
 def ranges_of(count: int, mount: str) -> dict[str, tuple[float, float]]:
@@ -259,9 +259,9 @@ def ranges_of(count: int, mount: str) -> dict[str, tuple[float, float]]:
 
 
 def draw(pair: tuple[int, str], folder: Path) -> Finding:
-    """The best of the packages drawn for a count and a mount."""
+    """The best of the packs drawn for a count and a mount."""
     store = searched(*pair, folder)
-    return min((store.judge(package, FIRST_FLOOR) for package in drawn(*pair)), key=lambda finding: finding.misfit)
+    return min((store.judge(pack, FIRST_FLOOR) for pack in drawn(*pair)), key=lambda finding: finding.misfit)
 
 
 def searched(count: int, mount: str, folder: Path) -> Store:
@@ -270,19 +270,19 @@ def searched(count: int, mount: str, folder: Path) -> Store:
 
 
 def refine(start: Finding, folder: Path) -> Finding:
-    """The best package near one that is known."""
-    package, store = start.package, searched(start.package.count, start.package.mount, folder)
+    """The best pack near one that is known."""
+    pack, store = start.pack, searched(start.pack.count, start.pack.mount, folder)
     ranges, names = (
-        ranges_of(package.count, package.mount),
-        ["overlap", "clearance"] + ["tilt"] * (package.mount == "clamped"),
+        ranges_of(pack.count, pack.mount),
+        ["overlap", "clearance"] + ["tilt"] * (pack.mount == "clamped"),
     )
 
     def value(steps: Array) -> float:
-        moved = {name: getattr(package, name) * math.exp(step) for name, step in zip(names, steps, strict=True)}
+        moved = {name: getattr(pack, name) * math.exp(step) for name, step in zip(names, steps, strict=True)}
         if any(not ranges[name][0] <= moved[name] <= ranges[name][1] for name in names):
             return OUTSIDE
         rounded: dict[str, Any] = {name: float(f"{x:.5g}") for name, x in moved.items()}
-        return min(store.judge(replace(package, **rounded), start.floor).misfit, OUTSIDE)
+        return min(store.judge(replace(pack, **rounded), start.floor).misfit, OUTSIDE)
 
     simplex = np.vstack([np.zeros(len(names)), np.diag([0.04, 0.15, 0.1][: len(names)])])
     minimize(value, simplex[0], method="Nelder-Mead", options={"maxfev": REFINED, "initial_simplex": simplex})
@@ -290,20 +290,20 @@ def refine(start: Finding, folder: Path) -> Finding:
 
 
 def explaining(folder: Path) -> list[Finding]:
-    """The best package near each drawn one that explains experiments 1 to 3."""
+    """The best pack near each drawn one that explains experiments 1 to 3."""
     best: dict[tuple[int, str, float], Finding] = {}
     for count in COUNTS:
         for mount in MOUNTS:
             for found in searched(count, mount, folder).findings.values():
-                drawn_as = (count, mount, found.package.turn)  # refinement leaves the turn as drawn
+                drawn_as = (count, mount, found.pack.turn)  # refinement leaves the turn as drawn
                 if found.misfit < min(EXPLAINS, best[drawn_as].misfit if drawn_as in best else math.inf):
                     best[drawn_as] = found
     return sorted(best.values(), key=lambda found: found.misfit)
 
 
 def again(finding: Finding, folder: Path) -> Finding:
-    """A known package on the fine grid, all four experiments."""
-    p = finding.package
+    """A known pack on the fine grid, all four experiments."""
+    p = finding.pack
     path = folder / f"final_{p.count}_{p.mount}_{p.turn}.jsonl"
     return Store(path, FINAL, len(LOADS)).judge(p, finding.floor)
 
@@ -328,7 +328,7 @@ def told(findings: Iterable[Finding], count: int) -> list[Finding]:
     found = []
     for finding in findings:
         found.append(finding)
-        p = finding.package
+        p = finding.pack
         err.print(f"{len(found)} of {count}: {p.count} petals, {p.mount}: misfit {finding.misfit:.3g}")
     return found
 
@@ -341,7 +341,7 @@ def table(findings: Sequence[Finding]) -> str:
     ]  # fmt: skip
     lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
     for found in findings:
-        p, case = found.package, found.package.case(found.floor, FINAL)
+        p, case = found.pack, found.pack.case(found.floor, FINAL)
         assert case.petals is not None
         cells = [
             str(p.count), p.mount, f"{case.bearing.journal_radius * 1e3:.3f}", f"{case.petals.arc_length * 1e3:.1f}",

@@ -24,7 +24,7 @@ import numpy as np
 from petalfoil.analysis.solve import point
 from petalfoil.case import Case
 from petalfoil.errors import ConvergenceError
-from tests.random_packages import wide_case
+from tests.random_packs import wide_case
 
 SEED = 7
 
@@ -49,14 +49,14 @@ def bearing(number: int, edges: str | None = None) -> Case:
 def strata(case: Case) -> tuple[str, ...]:
     """The strata that a bearing counts in, each within its edges."""
     assert case.petals is not None
-    assert case.package is not None
+    assert case.pack is not None
     surface_speed = case.operation.speed * case.bearing.journal_radius
     parts = [
         "all",
         case.petals.mount.value,
         "slip" if case.model.slip else "no slip",
         within(case.petals.count, "petals", (3, 6, 13, 20)),
-        within(case.package.overlap, "overlap", (1, 2, 3, 3.9)),
+        within(case.pack.overlap, "overlap", (1, 2, 3, 3.9)),
         within(case.gas.ambient_pressure / 1e5, "bar", (0.1, 0.5, 2, 10)),
         within(surface_speed, "m/s", (0.5, 10, 100, 400)),
         "chordal root" if case.petals.root_tilt == "chordal" else "tilted root",

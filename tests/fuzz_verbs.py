@@ -26,7 +26,7 @@ import numpy as np
 from petalfoil.analysis.known_verbs import find
 from petalfoil.case import Case, Rotor
 from petalfoil.errors import PetalfoilError
-from tests.random_packages import wide_case
+from tests.random_packs import wide_case
 
 SEED = 13
 SECONDS = 60.0
@@ -41,7 +41,7 @@ def drawn(number: int) -> tuple[Case, Arguments]:
     """A random bearing on a coarse grid, with a rotor; and the arguments of every verb that needs some."""
     rng = np.random.default_rng([number, SEED])
     case = wide_case(rng, **{"model.cells_per_pitch": 16})
-    assert case.package is not None
+    assert case.pack is not None
     area = case.gas.ambient_pressure * 2.0 * case.bearing.journal_radius * case.bearing.length
     load = area * 10.0 ** rng.uniform(-4.0, 0.0)
     span = 2.0 * case.bearing.length if rng.random() < 0.3 else None

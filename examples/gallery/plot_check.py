@@ -11,7 +11,7 @@ from petalfoil import plot
 case = petalfoil.Case.load("../paper_n8.toml").replace(**{"model.cells_per_pitch": 32})
 result = petalfoil.check(case)
 
-fig = plot.package(result)
+fig = plot.pack(result)
 
 # %%
 # Any result can be drawn as a table of its quantities.

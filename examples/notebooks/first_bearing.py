@@ -26,7 +26,7 @@ case
 # The foil pack at rest. Petals must lie as they do in the drawing.
 
 # %%
-plot.package(petalfoil.check(case))
+plot.pack(petalfoil.check(case))
 
 # %% [markdown]
 # Film, petals and contacts at the operating point under a load of 20 N, with error bars from two more grids.

@@ -63,7 +63,7 @@ kind = "3d"
 cells_per_pitch = 16
 axial_cells = 8
 """)
-pack = plot.package(petalfoil.check(first))
+pack = plot.pack(petalfoil.check(first))
 
 # %%
 # Mistake 1: to believe the 2-D model

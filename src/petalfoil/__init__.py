@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from petalfoil.errors import (
         ConvergenceError,
         DefinitionError,
-        PackageError,
+        PackError,
         PetalfoilError,
         StoreError,
         UnitError,
@@ -54,7 +54,7 @@ __all__ = [
     "ConvergenceError",
     "DefinitionError",
     "Film",
-    "PackageError",
+    "PackError",
     "PetalfoilError",
     "StoreError",
     "UnitError",

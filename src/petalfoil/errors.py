@@ -5,7 +5,7 @@
     PetalfoilError(Exception)
      ├── DefinitionError      a bad case
      │    ├── UnitError       a wrong or unknown unit
-     │    └── PackageError    a foil pack that cannot be assembled: no overlap, no clearance, no free shape
+     │    └── PackError    a foil pack that cannot be assembled: no overlap, no clearance, no free shape
      ├── UsageError           a bad argument of an analysis, a bad value on the command line
      ├── ConvergenceError     no converged answer
      └── StoreError           a result file that cannot be read or written
@@ -65,7 +65,7 @@ class UnitError(DefinitionError):
     """A quantity whose text cannot be read, or whose unit measures something else."""
 
 
-class PackageError(DefinitionError):
+class PackError(DefinitionError):
     """A foil pack that cannot be assembled; the message says by how much."""
 
 

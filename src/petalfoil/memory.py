@@ -74,8 +74,8 @@ class Grid:
 
 def grid_of(case: Case) -> Grid:
     """The grid of a case."""
-    package, axial = case.package, 0 if case.model.kind is ModelKind.TWO_D else case.axial_cells
-    count, overlap = (0, 0.0) if package is None else (package.count, package.overlap)
+    pack, axial = case.pack, 0 if case.model.kind is ModelKind.TWO_D else case.axial_cells
+    count, overlap = (0, 0.0) if pack is None else (pack.count, pack.overlap)
     return Grid(count, overlap, case.cells_per_pitch, axial, case.symmetric)
 
 

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from petalfoil.case import Case
 from petalfoil.case.toml import MAX_BYTES
-from petalfoil.errors import DefinitionError, PackageError, PetalfoilError, UnitError
+from petalfoil.errors import DefinitionError, PackError, PetalfoilError, UnitError
 from tests.cases import DELETE, EXAMPLES, put, tables
 
 BAR = 1e5
@@ -184,26 +184,26 @@ MALFORMED: dict[str, tuple[str, str, Any, type[DefinitionError], tuple[str, ...]
         PETALS, "petals.free_shape", [[0.5, 0.0259], [1, 0.024], [2, 0.0259]], DefinitionError, ("begins at 0.5 rad",),
     ),
     "rows that end early": (
-        PETALS, "petals.free_shape", [[0, 0.0259], [0.7, 0.024], [1.4, 0.0259]], PackageError, ("19.288459° short",),
+        PETALS, "petals.free_shape", [[0, 0.0259], [0.7, 0.024], [1.4, 0.0259]], PackError, ("19.288459° short",),
     ),
     "a root outside the bore": (
-        PETALS, "petals.free_shape", [[0, 0.027], [1, 0.024], [2, 0.0259]], PackageError, ("the root", "25.912 mm"),
+        PETALS, "petals.free_shape", [[0, 0.027], [1, 0.024], [2, 0.0259]], PackError, ("the root", "25.912 mm"),
     ),
-    # packages that cannot be
-    "no overlap": (PETALS, "petals.arc_length", "20 mm", PackageError, ("arc_length", "do not overlap", "short")),
-    "round the whole bore": (PETALS, "petals.arc_length", "170 mm", PackageError, ("petals.arc_length", "round")),
-    "an arc too long": (PETALS, "petals.arc_length", "65 mm", PackageError, ("petals.arc_length", "2.4 rad")),
-    "too thick": (PETALS, "petals.thickness", "0.4 mm", PackageError, ("3 layers of 400 µm", "301 µm too much")),
-    "too much coating": (PETALS, "petals.coating", "0.3 mm", PackageError, ("3 layers of 476 µm", "too much")),
+    # packs that cannot be
+    "no overlap": (PETALS, "petals.arc_length", "20 mm", PackError, ("arc_length", "do not overlap", "short")),
+    "round the whole bore": (PETALS, "petals.arc_length", "170 mm", PackError, ("petals.arc_length", "round")),
+    "an arc too long": (PETALS, "petals.arc_length", "65 mm", PackError, ("petals.arc_length", "2.4 rad")),
+    "too thick": (PETALS, "petals.thickness", "0.4 mm", PackError, ("3 layers of 400 µm", "301 µm too much")),
+    "too much coating": (PETALS, "petals.coating", "0.3 mm", PackError, ("3 layers of 476 µm", "too much")),
     "displaced too far": (
-        PETALS, "operation.eccentricity", [0, "-0.5 mm"], PackageError, ("operation.eccentricity", "29 µm too much"),
+        PETALS, "operation.eccentricity", [0, "-0.5 mm"], PackError, ("operation.eccentricity", "29 µm too much"),
     ),
-    "a bend inside the bore": (PETALS, "petals.bend_radius", "20 mm", PackageError, ("petals.bend_radius", "5.912 mm")),
-    "thicker than the bushing": (PETALS, "petals.thickness", "30 mm", PackageError, ("petals.thickness", "26 mm")),
-    "a journal too large": (PETALS, "bearing.journal_radius", "27 mm", PackageError, ("27 mm", "26 mm")),
-    "a journal that fills the bushing": (PLAIN, "bearing.journal_radius", "25.025 mm", PackageError, ("25.025 mm",)),
+    "a bend inside the bore": (PETALS, "petals.bend_radius", "20 mm", PackError, ("petals.bend_radius", "5.912 mm")),
+    "thicker than the bushing": (PETALS, "petals.thickness", "30 mm", PackError, ("petals.thickness", "26 mm")),
+    "a journal too large": (PETALS, "bearing.journal_radius", "27 mm", PackError, ("27 mm", "26 mm")),
+    "a journal that fills the bushing": (PLAIN, "bearing.journal_radius", "25.025 mm", PackError, ("25.025 mm",)),
     "a plain journal that touches": (
-        PLAIN, "operation.eccentricity", ["0 m", "-24.5 um"], PackageError, ("operation.eccentricity", "500 nm"),
+        PLAIN, "operation.eccentricity", ["0 m", "-24.5 um"], PackError, ("operation.eccentricity", "500 nm"),
     ),
 }  # fmt: skip
 
@@ -234,7 +234,7 @@ def test_the_same_words_from_a_file(name: str, tmp_path: Path) -> None:
 
 def test_an_arc_that_turns_back() -> None:
     data = put(put(tables(PETALS), "petals.bend_radius", "8 mm"), "petals.root_tilt", "10 deg")
-    with pytest.raises(PackageError, match=r"petals\.root_tilt: an arc .* turns back at .* rad short"):
+    with pytest.raises(PackError, match=r"petals\.root_tilt: an arc .* turns back at .* rad short"):
         Case(**data)
 
 

@@ -68,7 +68,7 @@ def test_a_curve_goes_from_point_to_point(method: Method) -> None:
 
 
 @METHODS
-def test_the_package_at_rest(method: Method) -> None:
+def test_the_pack_at_rest(method: Method) -> None:
     (record,) = static.records(bearing(method))
     assert record.converged
     assert float(record.scalars["starting_torque"]) > 0.0
@@ -99,7 +99,7 @@ def test_a_method_that_runs_out_of_steps_says_so_with_advice(monkeypatch: pytest
     assert all("bearing_force" not in point or point["bearing_force"] is None for point in points)
 
 
-def test_a_package_that_runs_out_of_steps_is_a_failed_point(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_pack_that_runs_out_of_steps_is_a_failed_point(monkeypatch: pytest.MonkeyPatch) -> None:
     limited(monkeypatch, max_pack_steps=200)
     (record,) = static.records(bearing(Method.CLASSIC))
     assert not record.converged

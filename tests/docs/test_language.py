@@ -101,6 +101,7 @@ NAMES = {
     "contact_total": "contact_normal_force",
     "room(?! temperature)|room_left": "radial_clearance, pack_clearance, fraction_to_boundary",
     "(?:Gas)?Content|gas_content": "GasInventory",
+    "Package(?:Error)?|packages?_(?:of|with|problems)|(?:case|of)\\.packages?": "PackGeometry, PackError, pack_of",
     "pressed_solid|SPATIAL|FLAT|RIGID": "bottomed_out, THREE_D, TWO_D, CLAMPED",
 }
 """The same for names, in their own case."""

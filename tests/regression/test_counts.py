@@ -14,7 +14,7 @@ from petalfoil.equilibrium.pack_at_rest import at_rest
 from petalfoil.equilibrium.run_context import running
 from petalfoil.system.build import build_problem
 from tests.cases import case
-from tests.random_packages import random_case
+from tests.random_packs import random_case
 
 PACKAGES = ("paper_n6", "paper_n8", "paper_n10")
 DISPLACEMENTS = (0.0, 100e-6, 200e-6, 280e-6)
@@ -97,7 +97,7 @@ def test_warm_points_cost_the_same_on_a_fine_grid() -> None:
 
 @pytest.mark.parametrize("cells", [32, 256])
 @pytest.mark.parametrize("name", PACKAGES)
-def test_package_from_nothing(name: str, cells: int) -> None:
+def test_pack_from_nothing(name: str, cells: int) -> None:
     with running() as run:
         assert at_rest(build_problem(bearing(name, cells))) is not None
     assert run.pack.factorizations <= 20

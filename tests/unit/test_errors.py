@@ -1,12 +1,12 @@
 import pytest
 
 from petalfoil import errors
-from petalfoil.errors import ConvergenceError, DefinitionError, PackageError, PetalfoilError, StoreError, UnitError
+from petalfoil.errors import ConvergenceError, DefinitionError, PackError, PetalfoilError, StoreError, UnitError
 
 
 def test_the_tree() -> None:
     assert issubclass(UnitError, DefinitionError)
-    assert issubclass(PackageError, DefinitionError)
+    assert issubclass(PackError, DefinitionError)
     classes = [
         value for value in vars(errors).values() if isinstance(value, type) and value.__module__ == errors.__name__
     ]
@@ -24,7 +24,7 @@ def test_exit_codes(kind: type[PetalfoilError], code: int) -> None:
 
 
 def test_a_definition_error_carries_what_explains_it() -> None:
-    error = PackageError("petals.count: 1 is too few", key="petals.count", given=1, allowed="at least 2")
+    error = PackError("petals.count: 1 is too few", key="petals.count", given=1, allowed="at least 2")
     assert (error.key, error.given, error.allowed) == ("petals.count", 1, "at least 2")
     assert str(error) == "petals.count: 1 is too few"
     assert DefinitionError("why").key == ""

@@ -11,7 +11,7 @@ NAMES = {
     "ConvergenceError",
     "DefinitionError",
     "Film",
-    "PackageError",
+    "PackError",
     "PetalfoilError",
     "StoreError",
     "UnitError",

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 REFERENCE = Path(__file__).parent / "reference"
 
 OVERLAP = 1.77
-"""Overlap of the package's own grid in these tests: two parts of unequal cells in every pitch."""
+"""Overlap of the pack's own grid in these tests: two parts of unequal cells in every pitch."""
 
 
 def table(name: str) -> list[dict[str, str]]:
@@ -44,12 +44,12 @@ def uniform_grid(angle: float, cells: int) -> Array:
     return np.linspace(0.0, angle, cells + 1)
 
 
-def package_grid(angle: float, cells: int) -> Array:
-    """A petal's nodes as the package has them: an overlap of 1.77 pitches, `cells` a pitch."""
+def pack_grid(angle: float, cells: int) -> Array:
+    """A petal's nodes as the pack has them: an overlap of 1.77 pitches, `cells` a pitch."""
     return petal_angles(angle / OVERLAP, OVERLAP, cells)
 
 
-GRIDS: dict[str, Callable[[float, int], Array]] = {"uniform": uniform_grid, "package": package_grid}
+GRIDS: dict[str, Callable[[float, int], Array]] = {"uniform": uniform_grid, "pack": pack_grid}
 
 
 def strip_shell(phi: Array, k: float, *, clamped: bool = True, rigidity: float = 1.0) -> PetalShell:

@@ -36,13 +36,13 @@ def test_crowns_carry_what_petals_press_on_them_and_no_petal_passes_them(kind: s
     bearing = backed(**{"model.kind": kind})
     point = petalfoil.balance(bearing, "60 N")
     assert bearing.backing is not None
-    package = bearing.package
-    assert package is not None
+    pack = bearing.pack
+    assert pack is not None
     pressure, V, r = (point[name].to_numpy() for name in ("bushing_contact_pressure", "backing_deflection", "radius"))
     start = bearing.backing.start / bearing.bearing.bushing_radius
     share = covered(build_mesh(bearing), start)[:, None]
     behind = slice(1, bearing.cells_per_pitch)
-    gap = (package.metric_radius + V - r)[:, behind] - np.where(share > 0.0, bearing.backing.height, 0.0)
+    gap = (pack.metric_radius + V - r)[:, behind] - np.where(share > 0.0, bearing.backing.height, 0.0)
     pressed = share * stiffness_of(bearing) * V[:, behind]
     assert float(point["max_backing_deflection"]) == V.max() > 20e-6
     assert_allclose(np.where(share > 0.0, pressure[:, behind], 0.0), pressed, rtol=1e-7, atol=1e-7 * pressure.max())
@@ -143,10 +143,10 @@ def test_a_strip_covers_what_lies_behind_its_start() -> None:
         bearing = backed(**{"backing.start": start})
         assert bearing.backing is not None
         assert bearing.petals is not None
-        package = bearing.package
-        assert package is not None
+        pack = bearing.pack
+        assert pack is not None
         bare, springs = PetalWall().build(bearing.replace(backing=None)), PetalWall().build(bearing)
-        n, area = bare.n_unknown, package.metric_radius * bearing.bearing.length * bearing.petals.count
+        n, area = bare.n_unknown, pack.metric_radius * bearing.bearing.length * bearing.petals.count
         per_cell = bearing.petals.pitch / bearing.cells_per_pitch
         # cells from node to node: the first half of one is the root's
         begin = max(bearing.backing.start / bearing.bearing.bushing_radius, 0.5 * per_cell)

@@ -20,7 +20,7 @@ from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.record import Record
 from petalfoil.system.build import build_problem
 from tests.cases import case
-from tests.random_packages import random_case
+from tests.random_packs import random_case
 from tests.verification.test_random_bearings import kkt_residual
 
 SEED = 2025

@@ -21,13 +21,13 @@ from petalfoil.errors import ConvergenceError
 from petalfoil.solvers.constraints import constrain
 from petalfoil.system.build import build_problem
 from tests.cases import case
-from tests.random_packages import random_case
+from tests.random_packs import random_case
 
 SEED = 2024
 
 
 def drawn(number: int) -> Case:
-    """The `number`-th random package of the seed."""
+    """The `number`-th random pack of the seed."""
     rng = np.random.default_rng(SEED)
     return next(itertools.islice((random_case(rng) for _ in range(number + 1)), number, None))
 
@@ -95,9 +95,9 @@ def test_solve_reports_the_stable_branch_and_that_there_are_more() -> None:
 def test_a_curve_reports_its_jump() -> None:
     """The branch of case 4 ends between 154.5 and 155 um: its leading eigenvalue goes to zero there, and the next point
     lies on another branch, with five times the torque though the push on the journal changes by 3 % only."""
-    package = drawn(4).replace(**{"model.cells_per_pitch": 48, "model.contacts": "nodes"})
+    pack = drawn(4).replace(**{"model.cells_per_pitch": 48, "model.contacts": "nodes"})
     way = 1e-6 * np.concatenate([np.linspace(0.0, 140.0, 8), [145.0], np.arange(150.5, 156.0, 0.5)])
-    records = list(curve.records(package, way))
+    records = list(curve.records(pack, way))
     jumps = [number for number, record in enumerate(records) if record.scalars["jump"]]
     assert len(jumps) == 1
     fold = jumps[0]
@@ -116,8 +116,8 @@ def test_a_curve_reports_its_jump() -> None:
 @pytest.mark.slow
 def test_a_long_step_that_leaves_the_branch_is_told_too() -> None:
     """From 140 to 145 um, on half as many cells, Newton and interior point both land beyond the end of the branch."""
-    package = drawn(4).replace(**{"model.cells_per_pitch": 32})
-    records = list(curve.records(package, 1e-6 * np.array([0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 120.0, 140.0, 145.0])))
+    pack = drawn(4).replace(**{"model.cells_per_pitch": 32})
+    records = list(curve.records(pack, 1e-6 * np.array([0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 120.0, 140.0, 145.0])))
     assert [bool(record.scalars["jump"]) for record in records] == [False] * 8 + [True]
 
 

@@ -26,7 +26,7 @@ from petalfoil.system.asperity_equations import AsperityEquations
 from petalfoil.system.point_equations import PointEquations, PointState
 from tests.cases import case
 from tests.contract.taylor import assert_tangent
-from tests.random_packages import random_case
+from tests.random_packs import random_case
 from tests.verification.test_contact_slopes import BEARINGS, TURBOCHARGER, apart, walk
 
 Array = NDArray[np.float64]

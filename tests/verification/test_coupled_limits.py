@@ -47,7 +47,7 @@ def test_turning_by_one_pitch_turns_the_answer(kind: str, edges: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("contacts", "exact"), [("nodes", 1e-10), ("points", 1e-9)])
-def test_turning_package_and_displacement_turns_the_force(contacts: str, exact: float) -> None:
+def test_turning_pack_and_displacement_turns_the_force(contacts: str, exact: float) -> None:
     """To what the last Newton step leaves; with contact points it is one with the factor at hand."""
     bearing = PAPER.replace(**{"model.contacts": contacts})
     e, angle = np.array([0.0, -150e-6]), 0.377
@@ -100,7 +100,7 @@ def test_stiff_petals_are_the_rigid_stepped_bearing() -> None:
 
 
 @pytest.mark.slow
-def test_slow_shaft_leaves_ambient_pressure_and_the_static_package() -> None:
+def test_slow_shaft_leaves_ambient_pressure_and_the_static_pack() -> None:
     rest = next(static.records(PAPER, (100e-6,)))
     errors = []
     for speed in (1e-2, 1e-3, 1e-4):
@@ -112,7 +112,7 @@ def test_slow_shaft_leaves_ambient_pressure_and_the_static_package() -> None:
     assert_allclose(np.array(errors[:-1]) / np.array(errors[1:]), 10.0, rtol=0.1)  # first order in speed
 
 
-def test_a_shaft_at_rest_is_the_static_package() -> None:
+def test_a_shaft_at_rest_is_the_static_pack() -> None:
     rest = next(static.records(PAPER, (100e-6,)))
     still = solve.record(PAPER, speed=0.0, eccentricity=(0.0, -100e-6))
     assert_allclose(force(still), force(rest), rtol=1e-9, atol=1e-9 * float(rest.scalars["bearing_force"]))

@@ -24,7 +24,7 @@ from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError, DefinitionError, UsageError
 from petalfoil.walls import register, unregister
 from tests.cases import case
-from tests.random_packages import random_case, wide_case
+from tests.random_packs import random_case, wide_case
 from tests.verification.film_helpers import table
 from tests.verification.resolved import compared, parameters_with_effect, solved_again
 from tests.walls.slider import Slider

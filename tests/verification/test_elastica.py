@@ -22,15 +22,15 @@ NODES = 128
 
 def pressed_radius(of: Case) -> float:
     """Radius of the mid-surface of a petal on the centred journal [m]."""
-    assert of.package is not None
-    return of.bearing.journal_radius + 0.5 * of.package.thickness + of.surface.contact_film_thickness
+    assert of.pack is not None
+    return of.bearing.journal_radius + 0.5 * of.pack.thickness + of.surface.contact_film_thickness
 
 
 def linear_force(of: Case, radius: float) -> float:
     """Force of the journal on one hinged petal whose free edge lies on the bore [N]."""
-    assert of.package is not None
+    assert of.pack is not None
     assert of.petals is not None
-    pack, D = of.package, of.petals.bending_stiffness
+    pack, D = of.pack, of.petals.bending_stiffness
     phi = np.linspace(0.0, pack.petal_angle, NODES + 1)
     petal = PetalElements(phi, of.bearing.length, pack.metric_radius, pack.reference_radius, D, clamped=False)
     K = petal.stiffness.toarray()
@@ -46,10 +46,10 @@ def linear_force(of: Case, radius: float) -> float:
 
 def elastica_force(of: Case, radius: float) -> float:
     """The same of an elastica of the petal's length [N]."""
-    assert of.package is not None
+    assert of.pack is not None
     assert of.petals is not None
-    r_m = of.package.metric_radius
-    petal = PressedPetal(of.petals.arc_length / r_m, of.package.bend_radius / r_m)
+    r_m = of.pack.metric_radius
+    petal = PressedPetal(of.petals.arc_length / r_m, of.pack.bend_radius / r_m)
     return petal.normal_force(radius / r_m) * of.petals.bending_stiffness * of.bearing.length / r_m**2
 
 
@@ -68,9 +68,9 @@ def test_preload_of_a_petal_against_an_elastica(name: str, elastica: float, abou
 def test_bending_about_the_bore_is_for_petals_bent_to_an_arc() -> None:
     """Its free edge lies on the bore, and the pack is solved; a measured shape is refused."""
     of = case("paper_n8", **{"petals.linear_about": "bore", "model.cells_per_pitch": 16})
-    assert of.package is not None
-    ends = of.package.free_radius([0.0, of.package.petal_angle])
-    assert ends == pytest.approx(of.package.metric_radius, rel=1e-12)
+    assert of.pack is not None
+    ends = of.pack.free_radius([0.0, of.pack.petal_angle])
+    assert ends == pytest.approx(of.pack.metric_radius, rel=1e-12)
     (bore,), (free,) = static.records(of), static.records(of.replace(**{"petals.linear_about": "free_shape"}))
     assert bore.converged
     assert float(bore.scalars["contact_normal_force"]) < 0.95 * float(free.scalars["contact_normal_force"])

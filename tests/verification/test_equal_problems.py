@@ -12,7 +12,7 @@ from petalfoil.analysis.solve import point
 from petalfoil.case import Case, Edges, Gas
 from petalfoil.errors import ConvergenceError
 from petalfoil.results.record import Record
-from tests.random_packages import wide_case
+from tests.random_packs import wide_case
 
 SEED = 31
 EQUAL = 1e-8

@@ -7,7 +7,7 @@ import petalfoil
 from petalfoil.case import Case
 from petalfoil.errors import ConvergenceError
 from petalfoil.results.record import Record
-from tests.random_packages import random_case
+from tests.random_packs import random_case
 
 NAMES = ("bearing_force", "min_film_thickness", "peak_pressure", "friction_torque", "max_bending_stress")
 BEARINGS, SEEDS, FINE = 20, 40, 512

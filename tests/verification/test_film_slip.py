@@ -217,7 +217,7 @@ def test_check_tells_the_knudsen_number(plain: Case) -> None:
 
 
 def test_petals_carry_less_with_slip() -> None:
-    """Film and package solved together, tangents and all, where the films are some micrometres."""
+    """Film and pack solved together, tangents and all, where the films are some micrometres."""
     bearing = case("paper_n8", **{"model.cells_per_pitch": 32, "operation.eccentricity": (0.0, -200e-6)})
     off, on = solve.record(bearing).scalars, solve.record(bearing.replace(**{"model.slip": True})).scalars
     assert on["converged"]

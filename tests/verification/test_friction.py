@@ -191,7 +191,7 @@ def test_width_of_the_stick_converges() -> None:
     assert away[1] / away[2] == pytest.approx(2.0, rel=0.2)
 
 
-# ------------------------------------------------------------------------------------------ a package
+# ------------------------------------------------------------------------------------------ a pack
 
 
 def loop_of(mu: float, count: int) -> tuple[Array, Array, float]:
@@ -206,7 +206,7 @@ def loop_of(mu: float, count: int) -> tuple[Array, Array, float]:
 
 
 @pytest.mark.slow
-def test_energy_lost_by_a_package_is_the_area_of_its_loop() -> None:
+def test_energy_lost_by_a_pack_is_the_area_of_its_loop() -> None:
     """Work of the journal in a closed cycle, by the trapezium rule, comes to the energy lost as the way is refined."""
     away = []
     for count in (5, 17):

@@ -18,7 +18,7 @@ from petalfoil.case.metals import metal_of
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.continuation import follow, predict
 from petalfoil.equilibrium.run_context import running
-from petalfoil.errors import DefinitionError, PackageError
+from petalfoil.errors import DefinitionError, PackError
 from petalfoil.system.build import build_problem
 from tests.cases import case
 from tests.verification.film_helpers import REFERENCE
@@ -149,7 +149,7 @@ def test_a_tight_pack_starts_harder_when_it_is_hot() -> None:
 
 
 def test_a_grown_shaft_that_does_not_fit_is_refused() -> None:
-    with pytest.raises(PackageError, match="shaft and bushing as grown"):
+    with pytest.raises(PackError, match="shaft and bushing as grown"):
         plain(shaft={**STEEL, "temperature": "200 degC"})
     with pytest.raises(DefinitionError, match="leaves nothing of the shaft"):
         plain(shaft={**STEEL, "bore_radius": 0.05})

@@ -101,7 +101,7 @@ def test_what_cannot_be_asked(loads: list[float], least: float, reason: str) -> 
         liftoff.records(BEARING, loads, contact_fraction=least)
 
 
-def test_a_plain_bearing_has_no_package_to_lift_off_from() -> None:
+def test_a_plain_bearing_has_no_pack_to_lift_off_from() -> None:
     for asked in (
         lambda: liftoff.records(case("plain_journal"), [1.0]),
         lambda: runup.records(case("plain_journal"), (0.0, -1.0), to=100.0),

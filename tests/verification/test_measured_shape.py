@@ -26,12 +26,12 @@ def balanced_arc() -> xr.Dataset:
 
 def balanced_rows(count: int, scatter: float, tolerance: float, seed: int = 0) -> xr.Dataset:
     """Equilibrium with `count` rows of the arc, their radii scattered but for the root's [m]."""
-    package = measured().replace(**{"petals.free_shape": None}).package
-    assert package is not None
-    angles = np.linspace(0.0, package.petal_angle, count)
+    pack = measured().replace(**{"petals.free_shape": None}).pack
+    assert pack is not None
+    angles = np.linspace(0.0, pack.petal_angle, count)
     deviation = scatter * np.random.default_rng(seed).standard_normal(count)
     deviation[0] = 0.0
-    rows = np.column_stack([angles, package.free_radius(angles) + deviation])
+    rows = np.column_stack([angles, pack.free_radius(angles) + deviation])
     petals = {"petals.free_shape": rows, "petals.bend_radius": None, "petals.free_shape_tolerance": tolerance}
     return petalfoil.balance(measured().replace(**petals))
 

@@ -1,4 +1,4 @@
-"""Two hundred random packages: each converges, to an answer that an independent recomputation confirms."""
+"""Two hundred random packs: each converges, to an answer that an independent recomputation confirms."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from petalfoil.mesh.pack import pack_mesh
 from petalfoil.mesh.quadrature import trapezoid
 from petalfoil.physics.shell import PetalShell
 from petalfoil.results.record import Record
-from tests.random_packages import random_case, wide_case
+from tests.random_packs import random_case, wide_case
 
 SEED = 2024
 
@@ -25,29 +25,27 @@ def kkt_residual(case: Case, record: Record) -> float:
     that `K W` loses). Gaps: `|min(gap / 10 um, contact pressure / p_a)|` of all three kinds. Film: the flux (F2)
     through all faces of a strip must be the same.
     """
-    petals, package, p_a = case.petals, case.package, case.gas.ambient_pressure
+    petals, pack, p_a = case.petals, case.pack, case.gas.ambient_pressure
     assert petals is not None
-    assert package is not None
-    mesh = pack_mesh(
-        petals.count, package.overlap, petals.first_root, case.cells_per_pitch, axis_2d(case.bearing.length)
-    )
+    assert pack is not None
+    mesh = pack_mesh(petals.count, pack.overlap, petals.first_root, case.cells_per_pitch, axis_2d(case.bearing.length))
     f = {name: values[..., 0] if values.ndim == 3 else values for name, values in record.fields.items()}
     return max(wall_defect(case, mesh, f) / p_a, gap_defect(case, mesh, f), film_defect(case, mesh, f))
 
 
 def wall_defect(case, mesh, f) -> float:  # type: ignore[no-untyped-def]
-    petals, package = case.petals, case.package
+    petals, pack = case.petals, case.pack
     shell = PetalShell(
         mesh.phi,
         mesh.axial,
-        package.metric_radius,
+        pack.metric_radius,
         petals.bend_radius,
         petals.bending_stiffness,
         petals.poisson_ratio,
         petals.mount is Mount.CLAMPED,
     )
-    K, area = shell.stiffness, package.metric_radius * mesh.arc_weight * case.bearing.length
-    strip = package.metric_radius * trapezoid(mesh.phi[mesh.exposed]) * case.bearing.length
+    K, area = shell.stiffness, pack.metric_radius * mesh.arc_weight * case.bearing.length
+    strip = pack.metric_radius * trapezoid(mesh.phi[mesh.exposed]) * case.bearing.length
     n, N = petals.count, case.cells_per_pitch
     worst = 0.0
     for petal in range(n):
@@ -63,8 +61,8 @@ def wall_defect(case, mesh, f) -> float:  # type: ignore[no-untyped-def]
 
 
 def gap_defect(case, mesh, f) -> float:  # type: ignore[no-untyped-def]
-    package, R_B = case.package, case.bearing.bushing_radius
-    delta, N, p_a = package.thickness, case.cells_per_pitch, case.gas.ambient_pressure
+    pack, R_B = case.pack, case.bearing.bushing_radius
+    delta, N, p_a = pack.thickness, case.cells_per_pitch, case.gas.ambient_pressure
     r = f["radius"]
     pairs = [
         (f["film_thickness"] - case.surface.contact_film_thickness, f["journal_contact_pressure"]),
@@ -113,14 +111,14 @@ def check(solved: list[tuple[Case, Record]]) -> None:
         assert kkt_residual(drawn, record) <= 1e-7, drawn
 
 
-def test_ten_random_packages() -> None:
+def test_ten_random_packs() -> None:
     solved, failed = run_random(10, SEED)
     assert not failed
     check(solved)
 
 
 @pytest.mark.slow
-def test_two_hundred_random_packages() -> None:
+def test_two_hundred_random_packs() -> None:
     """198 at least; the rest end in the typed error. (199 when this was written.)"""
     solved, failed = run_random(200, SEED)
     assert len(solved) >= 198

@@ -19,7 +19,7 @@ from petalfoil.equilibrium.run_context import running
 from petalfoil.equilibrium.small_motion import AT_POINTS, HELD_AT_NODES
 from petalfoil.errors import DefinitionError
 from tests.cases import case
-from tests.random_packages import random_case
+from tests.random_packs import random_case
 from tests.verification.test_contact_slopes import BEARINGS, apart
 
 Array = NDArray[np.float64]

@@ -116,34 +116,34 @@ def test_the_example_is_one_of_the_sets_of_the_page() -> None:
     assert_allclose(rig.surface.friction_coefficient, float(friction), rtol=0.02, atol=0.0)
 
 
-def test_packages_are_drawn_alike_each_time_and_lie_in_their_ranges() -> None:
+def test_packs_are_drawn_alike_each_time_and_lie_in_their_ranges() -> None:
     study = script("rig_study")
     first, again = (list(study.drawn(9, "clamped")) for _ in range(2))
     assert first == again
     assert len(set(first)) == study.DRAWN
     for name, (low, high) in study.ranges_of(9, "clamped").items():
-        values = np.array([getattr(package, name) for package in first])
+        values = np.array([getattr(pack, name) for pack in first])
         assert low * (1.0 - 1e-3) <= values.min()
         assert values.max() <= high * (1.0 + 1e-3)
 
 
 def test_a_store_goes_on_where_it_was_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     study = script("rig_study")
-    package = next(study.drawn(9, "hinged"))
-    known = study.Finding(package, 1e-6, 0.2, (1.0, 1.1), (8000.0,), 5.0)
+    pack = next(study.drawn(9, "hinged"))
+    known = study.Finding(pack, 1e-6, 0.2, (1.0, 1.1), (8000.0,), 5.0)
     monkeypatch.setattr(study, "judge", lambda *_: known)
-    assert study.searched(9, "hinged", tmp_path).judge(package, 1e-6) == known
+    assert study.searched(9, "hinged", tmp_path).judge(pack, 1e-6) == known
     monkeypatch.delattr(study, "judge")
-    assert study.searched(9, "hinged", tmp_path).judge(package, 1e-6) == known
+    assert study.searched(9, "hinged", tmp_path).judge(pack, 1e-6) == known
     assert study.explaining(tmp_path) == [known]
 
 
 @pytest.mark.slow
-def test_a_package_is_judged_as_the_page_says() -> None:
+def test_a_pack_is_judged_as_the_page_says() -> None:
     """The chosen one on the grid of the search: friction and floor meet the means of experiments 1 to 3."""
     study = script("rig_study")
-    package = study.Package(9, "hinged", 17.9e-6, 1.2692, 12.88e-6, 0.996)
-    found = study.judge(package, 0.8e-6, study.SEARCH)
+    pack = study.Pack(9, "hinged", 17.9e-6, 1.2692, 12.88e-6, 0.996)
+    found = study.judge(pack, 0.8e-6, study.SEARCH)
     assert found.misfit < 6.0
     assert study.FRICTIONS[0] < found.friction < study.FRICTIONS[1]
     assert abs(np.mean(np.log(np.array(found.moments) / study.MOMENTS[:3]))) < 1e-9

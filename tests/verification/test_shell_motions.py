@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from petalfoil.mesh.axial import AxialGrid, axis_2d, axis_3d
 from petalfoil.physics.shell import PetalShell
-from tests.verification.shell_helpers import GRIDS, Array, bend, orders, package_grid, plate_shell, uniform_load
+from tests.verification.shell_helpers import GRIDS, Array, bend, orders, pack_grid, plate_shell, uniform_load
 
 ANGLE, K_ARC = 1.8, 0.64
 AXES = {
@@ -17,7 +17,7 @@ AXES = {
 
 
 def shell_on(axis: AxialGrid, k: float, *, clamped: bool, cells: int = 8) -> PetalShell:
-    return plate_shell(package_grid(ANGLE, cells), axis, k, 0.3, clamped=clamped)
+    return plate_shell(pack_grid(ANGLE, cells), axis, k, 0.3, clamped=clamped)
 
 
 def spectrum(K: Array) -> Array:

@@ -24,7 +24,7 @@ CELLS = (16, 32, 64)
 
 
 def plate_answer(row: dict[str, str], grid: str, cells: int, *, half: bool = True, grading: float = 0.0) -> Array:
-    """The table's quantities on `cells` along (package grid: a pitch) and `cells` across, with `a = D = q = 1`."""
+    """The table's quantities on `cells` along (pack grid: a pitch) and `cells` across, with `a = D = q = 1`."""
     b, kappa, nu = (float(row[name]) for name in ("b=L/a", "kappa=k*phi1", "nu"))
     shell = plate_shell(GRIDS[grid](1.0, cells), axis_3d(b, cells, half=half, grading=grading), kappa, nu)
     force = uniform_load(shell)
@@ -82,7 +82,7 @@ def test_without_lateral_contraction_it_is_the_strip(row: dict[str, str], grid: 
 @pytest.mark.parametrize("clamped", [False, True], ids=["hinged", "rigid"])
 def test_half_a_plate_is_half_of_the_whole(clamped: bool) -> None:
     """Under a load that is symmetric but not uniform; a spring along the tip holds the hinged one."""
-    phi, cells = GRIDS["package"](1.0, 16), 16
+    phi, cells = GRIDS["pack"](1.0, 16), 16
     answers = []
     for half in (True, False):
         shell = plate_shell(phi, axis_3d(1.3, cells, half=half), 0.7, 0.3, clamped=clamped)

@@ -26,7 +26,7 @@ from tests.verification.shell_helpers import (
 
 CELLS = (16, 32, 64)
 BOUND = 5e-4
-"""Relative error at 64 cells: a strip (uniform), a pitch (package)."""
+"""Relative error at 64 cells: a strip (uniform), a pitch (pack)."""
 BOUNDS = {"w_tip_moment*D/(m0 r^2)": 1.2e-3}
 """The moment bends the last half cell, which carries no energy, and turns it most where `k` is large."""
 ROWS = table("d1_petal_strip")

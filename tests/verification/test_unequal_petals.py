@@ -11,7 +11,7 @@ import petalfoil
 from petalfoil.analysis.derivatives import DerivativesOf, equilibrium_results
 from petalfoil.analysis.operating_point import at_position
 from petalfoil.case import Case
-from petalfoil.case.package import solid_height
+from petalfoil.case.pack_geometry import solid_height
 from petalfoil.case.parameters import parameter_of, with_values
 from petalfoil.errors import DefinitionError, UnitError, UsageError
 from petalfoil.walls import build_wall
@@ -73,16 +73,16 @@ def test_the_wall_of_equal_lists_has_the_same_bits() -> None:
 
 def test_gaps_of_unequal_petals_are_between_their_faces() -> None:
     of = scattered()
-    wall, packages = build_wall(of), of.packages
+    wall, packs = build_wall(of), of.packs
     phi, lines = wall.contacts.lines[2].phi, wall.contacts.rest[wall.contacts.lines[2].number]
     pitch = 2.0 * np.pi / COUNT
     for petal in range(COUNT):
-        below = packages[(petal + 1) % COUNT]
-        outer = packages[petal].free_radius(phi) + 0.5 * packages[petal].thickness
+        below = packs[(petal + 1) % COUNT]
+        outer = packs[petal].free_radius(phi) + 0.5 * packs[petal].thickness
         inner = below.free_radius(phi - pitch) - 0.5 * below.thickness
         assert_allclose(lines[petal], inner - outer, atol=1e-15)
     on_bushing = wall.contacts.rest[wall.contacts.lines[1].number]
-    outer = packages[3].free_radius(wall.contacts.lines[1].phi) + 0.5 * packages[3].thickness
+    outer = packs[3].free_radius(wall.contacts.lines[1].phi) + 0.5 * packs[3].thickness
     assert_allclose(on_bushing[3], of.bearing.bushing_radius - outer, atol=1e-15)
 
 
@@ -159,7 +159,7 @@ def test_one_petal_of_equal_ones_may_be_changed_by_its_path() -> None:
 
 def test_the_solid_pack_is_as_high_as_its_thickest_neighbours() -> None:
     of = with_values(EQUAL, {"petals.thickness[0]": 2.0e-4, "petals.thickness[7]": 1.9e-4})
-    layers = of.package.layers
+    layers = of.pack.layers
     assert solid_height(of.petals, layers) == pytest.approx(2.0e-4 + 1.9e-4 + (layers - 2) * 1.76e-4, rel=1e-12)
 
 

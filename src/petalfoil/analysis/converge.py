@@ -60,7 +60,7 @@ def converge(  # noqa: PLR0913 - the options of the verb
         The case gives both a load and an eccentricity.
     ConvergenceError
         Fewer than two grids have a solution.
-    PackageError
+    PackError
         The displaced journal leaves the foil pack no clearance.
     """
     case = at(case, speed)

@@ -55,7 +55,7 @@ def curve(
 
     Raises
     ------
-    PackageError
+    PackError
         A displacement leaves the foil pack no clearance; before any point is computed.
     """
     cases = displaced(case, eccentricities, direction, speed)

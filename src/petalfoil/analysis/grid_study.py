@@ -35,7 +35,7 @@ MOST_LEVELS = 10
 
 LEAST_CELLS = {ModelKind.TWO_D: 32, ModelKind.THREE_D: 24}
 """Cells per pitch below which the default adds finer grids instead of coarser ones: at 16 the film of the paper's
-packages comes down to the floor where it should not, and such a grid only widens the bars."""
+packs comes down to the floor where it should not, and such a grid only widens the bars."""
 
 LEAST_AXIAL = 4
 """Coarsest division of the length: its pressure is zero at both ends, and one value is no profile."""

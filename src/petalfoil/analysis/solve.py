@@ -43,7 +43,7 @@ def solve(
         The case gives both a load and an eccentricity.
     ConvergenceError
         No equilibrium was found.
-    PackageError
+    PackError
         The displaced journal leaves the foil pack no clearance.
     """
     return point(placed(at(case, speed), eccentricity), progress)

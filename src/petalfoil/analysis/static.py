@@ -86,7 +86,7 @@ def static(
     ------
     UsageError
         The wall has no pack at zero speed; or a loop is asked for where petals have no friction, or of a single point.
-    PackageError
+    PackError
         A displacement leaves the foil pack no clearance.
     """
     required(case, Capability.PACK, "`static`")

@@ -20,7 +20,7 @@ In the order data flows:
 - `free_shape`: radius of a free petal bent to an arc.
 - `measured_shape`: radius of a measured one.
 - `shape_file`: its rows from a CSV file.
-- `package`: geometry that follows, and whether the foil pack can be assembled.
+- `pack_geometry`: geometry that follows, and whether the foil pack can be assembled.
 - `toml`: files and texts.
 - `whole_case`: why a case cannot be solved that no single key shows.
 - `definitions`: `Case`, which puts all of it together.
@@ -39,7 +39,7 @@ from petalfoil.case.gas import Gas
 from petalfoil.case.growth import Bushing, Growth, Shaft
 from petalfoil.case.heat import Heat, HotGas
 from petalfoil.case.implausible_answers import warnings_of_errors
-from petalfoil.case.package import Package, package_of
+from petalfoil.case.pack_geometry import PackGeometry, pack_of
 from petalfoil.case.parameters import Parameter, parameter_of, parameters_of, parameters_of_petals, with_values
 from petalfoil.case.petal_table import LinearAbout, Mount, Petals, PetalTheory
 from petalfoil.case.plausibility import warnings_of
@@ -67,7 +67,7 @@ __all__ = [
     "ModelKind",
     "Mount",
     "Operation",
-    "Package",
+    "PackGeometry",
     "Parameter",
     "PetalTheory",
     "Petals",
@@ -80,7 +80,7 @@ __all__ = [
     "Which",
     "arc_radius",
     "chordal_tilt",
-    "package_of",
+    "pack_of",
     "parameter_of",
     "parameters_of",
     "parameters_of_petals",

@@ -15,10 +15,10 @@ from petalfoil.case.definition import Definition
 from petalfoil.case.gas import Gas
 from petalfoil.case.growth import Bushing, Growth, Shaft
 from petalfoil.case.heat import Heat
-from petalfoil.case.package import (
-    Package,
-    package_of,
-    packages_of,
+from petalfoil.case.pack_geometry import (
+    PackGeometry,
+    pack_of,
+    packs_of,
     solid_height,
 )
 from petalfoil.case.petal_table import Petals, PetalTheory
@@ -52,7 +52,7 @@ class Case(Definition):
     ------
     DefinitionError
         Unknown or missing keys, wrong types or units, values outside their range: all problems in one message.
-    PackageError
+    PackError
         The petals do not overlap, do not fit, or have no free shape.
     """
 
@@ -139,14 +139,14 @@ class Case(Definition):
         return next(iter(self.walls), None)
 
     @property
-    def package(self) -> Package | None:
+    def pack(self) -> PackGeometry | None:
         """Geometry of the assembled petals; None for a plain bearing."""
-        return None if self.petals is None else package_of(self.bearing, self.petals)
+        return None if self.petals is None else pack_of(self.bearing, self.petals)
 
     @property
-    def packages(self) -> tuple[Package, ...]:
+    def packs(self) -> tuple[PackGeometry, ...]:
         """The same as seen by each petal, where they are unequal; none for a plain bearing."""
-        return () if self.petals is None else packages_of(self.bearing, self.petals)
+        return () if self.petals is None else packs_of(self.bearing, self.petals)
 
     @property
     def petal_theory(self) -> PetalTheory:
@@ -191,8 +191,8 @@ class Case(Definition):
     @property
     def solid_height(self) -> float | None:
         """Height over the bushing of the wall that has bottomed out: 0 of a plain bearing, None if unknown [m]."""
-        if self.petals is not None and (package := self.package) is not None:
-            return solid_height(self.petals, package.layers)
+        if self.petals is not None and (pack := self.pack) is not None:
+            return solid_height(self.petals, pack.layers)
         return 0.0 if self.wall is None else self.wall.solid_height
 
     @property

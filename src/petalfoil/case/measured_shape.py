@@ -46,7 +46,7 @@ def measured_radius(phi: ArrayLike, table: Table, tolerance: float = 0.0) -> NDA
     return np.asarray(_spline(table, tolerance)(angle), dtype=np.float64)
 
 
-@lru_cache(maxsize=16)  # a package is derived anew whenever it is asked for
+@lru_cache(maxsize=16)  # a pack is derived anew whenever it is asked for
 def _spline(table: Table, tolerance: float) -> BSpline:
     from scipy.interpolate import BSpline, make_interp_spline, splrep  # 0.3 s: only for those who measured
 

@@ -145,7 +145,7 @@ def with_values(case: Case, values: Mapping[str, object]) -> Case:
     Raises
     ------
     DefinitionError
-        A path is unknown, a value outside its range, or the values do not go together (a `PackageError` where the foil
+        A path is unknown, a value outside its range, or the values do not go together (a `PackError` where the foil
         pack cannot be assembled).
     """
     changes: dict[str, object] = {}

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from petalfoil.case.growth import REFERENCE_TEMPERATURE, growth_problems
 from petalfoil.case.heat import heat_problems
-from petalfoil.case.package import bearing_problems, package_problems
+from petalfoil.case.pack_geometry import bearing_problems, pack_problems
 from petalfoil.case.petal_table import PetalTheory
 from petalfoil.case.problems import Problem, refusal
 from petalfoil.case.sections import ADAPTED, Method, ModelKind
-from petalfoil.errors import DefinitionError, PackageError
+from petalfoil.errors import DefinitionError, PackError
 from petalfoil.units import format_quantity
 
 if TYPE_CHECKING:
@@ -24,14 +24,14 @@ def refuse_unsolvable(case: Case) -> None:
 
     Raises
     ------
-    PackageError
+    PackError
         The geometry does not fit.
     DefinitionError
         Something else does not.
     """
     problems = list(_geometry_problems(case))
     if problems:
-        raise refusal(PackageError, problems)
+        raise refusal(PackError, problems)
     problems = [
         *_grid_problems(case),
         *_tilt_problems(case),
@@ -53,7 +53,7 @@ def _geometry_problems(case: Case) -> Iterator[Problem]:
     if not found:
         found = list(bearing_problems(case.bearing, case.surface, case.operation, case.travel))
     if not found and case.petals is not None:
-        found = list(package_problems(case.bearing, case.petals, case.surface, case.operation))
+        found = list(pack_problems(case.bearing, case.petals, case.surface, case.operation))
     yield from found or _problems_as_grown(case)
 
 
@@ -74,7 +74,7 @@ def _problems_as_grown(case: Case) -> Iterator[Problem]:
         return
     found = list(bearing_problems(grown, case.surface, case.operation, case.travel))
     if not found and case.petals is not None:
-        found = list(package_problems(grown, case.petals, case.surface, case.operation))
+        found = list(pack_problems(grown, case.petals, case.surface, case.operation))
     for problem in found:
         text = (
             f"shaft and bushing as grown at {format_quantity(case.operation.speed, 'rad/s')} take "

@@ -11,7 +11,7 @@ In the order data flows:
 - ``stretch``      the radial map of a section
 - ``section_walls`` petals, bumps and bushing in a section
 - ``section``      the section of the loaded bearing (`cross_section`), with its film (`operating_point`)
-- ``assembly``     the foil pack as it is assembled (`package`)
+- ``assembly``     the foil pack as it is assembled (`pack`)
 - ``characteristics`` against displacement: `curve`, `load_characteristic`, `static`, `hysteresis`
 - ``speed_sweeps`` over the speed under a load (`runup`), lift-off over the load (`liftoff`)
 - ``load_capacity`` load capacity over speed and direction (`capacity`)
@@ -45,7 +45,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from petalfoil.plot.animation import animate
-    from petalfoil.plot.assembly import package
+    from petalfoil.plot.assembly import pack
     from petalfoil.plot.campbell_diagram import campbell
     from petalfoil.plot.canvas import save
     from petalfoil.plot.characteristics import curve, hysteresis, load_characteristic, static
@@ -70,7 +70,7 @@ if TYPE_CHECKING:
 
 _MODULES = {
     "animation": ("animate",),
-    "assembly": ("package",),
+    "assembly": ("pack",),
     "campbell_diagram": ("campbell",),
     "canvas": ("save",),
     "characteristics": ("curve", "hysteresis", "load_characteristic", "static"),
@@ -115,7 +115,7 @@ __all__ = [
     "orbit_path",
     "orbit_spectrum",
     "orbit_waterfall",
-    "package",
+    "pack",
     "parallel_coordinates",
     "petal_profiles",
     "pressure_and_film",

@@ -22,7 +22,7 @@ _MARGIN = 0.12
 _MILLI = 1e3
 
 
-def package(ds: xr.Dataset) -> Figure:
+def pack(ds: xr.Dataset) -> Figure:
     """Draw the foil pack of ``check``: the section with its clearance stretched, and one petal unrolled.
 
     Parameters

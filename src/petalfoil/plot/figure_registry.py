@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 Draw: TypeAlias = "Callable[[xr.Dataset], Figure]"
 
 FIGURES: dict[str, Draw | str] = {
-    "check": "assembly:package",
+    "check": "assembly:pack",
     "solve": "characteristics:curve",
     "curve": "characteristics:curve",
     "balance": "characteristics:curve",

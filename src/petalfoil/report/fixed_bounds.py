@@ -86,11 +86,11 @@ def bounded(case: Case) -> CoupledProblem:
 
 def bounds(case: Case, contacts: Contacts) -> Contacts:
     """Gaps of the pack, with the fixed bounds instead of the gaps between petals."""
-    (petals, package), mesh = petals_of(case), build_mesh(case)
+    (petals, pack), mesh = petals_of(case), build_mesh(case)
     delta, least = petals.total_thickness, case.bearing.journal_radius + case.surface.contact_film_thickness
-    r0 = np.broadcast_to(package.free_radius(mesh.phi)[None, :, None], mesh.shape)
+    r0 = np.broadcast_to(pack.free_radius(mesh.phi)[None, :, None], mesh.shape)
     theta = np.broadcast_to(mesh.theta[:, :, None], mesh.shape)
-    area = np.broadcast_to(package.metric_radius * mesh.arc_weight[:, None] * mesh.axial.weight, mesh.shape)
+    area = np.broadcast_to(pack.metric_radius * mesh.arc_weight[:, None] * mesh.axial.weight, mesh.shape)
     covered, lap, kept = slice(1, mesh.n_node - mesh.cells - 1), mesh.on_neighbour, slice(0, contacts.bushing.stop)
     number, n = mesh.free_numbers(), contacts.G.shape[1]
     direction = np.stack([np.cos(theta[:, covered]).ravel(), np.sin(theta[:, covered]).ravel()], axis=1)

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class FoilPackProblem:
-    """Package equilibrium at one journal position; unknowns are the deflections `w` alone.
+    """Pack equilibrium at one journal position; unknowns are the deflections `w` alone.
 
     Attributes
     ----------

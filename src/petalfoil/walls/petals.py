@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.case import Case, Edges, Method, Mount, Package, Petals, PetalTheory
+from petalfoil.case import Case, Edges, Method, Mount, PackGeometry, Petals, PetalTheory
 from petalfoil.case.petal_table import Petal
 from petalfoil.mesh.pack import PackMesh, pack_mesh
 from petalfoil.mesh.strips import exposed_strips
@@ -37,30 +37,30 @@ FREE_SHAPE_ANGLES = 2001
 """Angles at which the free shape is searched for its height and for where it meets the journal."""
 
 
-def petals_of(case: Case) -> tuple[Petals, Package]:
+def petals_of(case: Case) -> tuple[Petals, PackGeometry]:
     """The petals of a case that has them, and the geometry that follows."""
-    if case.petals is None or case.package is None:
+    if case.petals is None or case.pack is None:
         raise ValueError("this case has no [petals]")
-    return case.petals, case.package
+    return case.petals, case.pack
 
 
 def build_mesh(case: Case) -> PackMesh:
     """Grid of the foil pack of `case`."""
-    petals, package = petals_of(case)
-    return pack_mesh(petals.count, package.overlap, petals.first_root, case.cells_per_pitch, axial_grid(case))
+    petals, pack = petals_of(case)
+    return pack_mesh(petals.count, pack.overlap, petals.first_root, case.cells_per_pitch, axial_grid(case))
 
 
 def build_shells(case: Case, mesh: PackMesh) -> list[PetalShell]:
     """The petals of `case` on `mesh`, one by one; equal ones are the same object."""
     petals, _ = petals_of(case)
     made: dict[Petal, PetalShell] = {}
-    for petal, package in zip(petals.each, case.packages, strict=True):
+    for petal, pack in zip(petals.each, case.packs, strict=True):
         if petal not in made:
             made[petal] = PetalShell(
                 phi=mesh.phi,
                 axial=mesh.axial,
-                metric_radius=package.metric_radius,
-                bend_radius=package.reference_radius,
+                metric_radius=pack.metric_radius,
+                bend_radius=pack.reference_radius,
                 rigidity=petal.bending_stiffness,
                 poisson_ratio=petal.poisson_ratio,
                 clamped=petals.mount is Mount.CLAMPED,
@@ -70,11 +70,11 @@ def build_shells(case: Case, mesh: PackMesh) -> list[PetalShell]:
 
 def petal_sizes(case: Case, mesh: PackMesh) -> PetalSizes:
     """Free shapes, metric radii and thicknesses of the petals of `case`."""
-    free = {package: package.free_radius(mesh.phi) for package in case.packages}
+    free = {pack: pack.free_radius(mesh.phi) for pack in case.packs}
     return PetalSizes(
-        np.stack([free[package] for package in case.packages]),
-        np.array([package.metric_radius for package in case.packages]),
-        np.array([package.thickness for package in case.packages]),
+        np.stack([free[pack] for pack in case.packs]),
+        np.array([pack.metric_radius for pack in case.packs]),
+        np.array([pack.thickness for pack in case.packs]),
     )
 
 
@@ -82,9 +82,9 @@ def petal_faces(case: Case) -> Faces:
     """What the petals of `case` slide on."""
     petals, _ = petals_of(case)
     return Faces(
-        half_thickness=np.array([0.5 * package.thickness for package in case.packages]),
-        metric_radius=np.array([package.metric_radius for package in case.packages]),
-        bend_radius=np.array([package.reference_radius for package in case.packages]),
+        half_thickness=np.array([0.5 * pack.thickness for pack in case.packs]),
+        metric_radius=np.array([pack.metric_radius for pack in case.packs]),
+        bend_radius=np.array([pack.reference_radius for pack in case.packs]),
         membrane=np.array([petal.membrane_stiffness for petal in petals.each]),
         slides=case.petal_theory is PetalTheory.SHELL,
     )
@@ -96,7 +96,7 @@ def slides(case: Case) -> bool:
     return rubs and case.petal_theory is PetalTheory.SHELL
 
 
-def package_elasticity(shells: list[PetalShell], mesh: PackMesh) -> Elasticity:
+def pack_elasticity(shells: list[PetalShell], mesh: PackMesh) -> Elasticity:
     """Elastic energy of all petals, their roots held."""
     free = slice(mesh.n_z, None)
     return Elasticity(
@@ -143,7 +143,7 @@ class PetalWall(WallKind):
         rest = sizes.free_radius[:, mesh.exposed] - 0.5 * sizes.thickness[:, None] - R_j
         wall = Wall(
             film=film,
-            elasticity=package_elasticity(shells, mesh),
+            elasticity=pack_elasticity(shells, mesh),
             film_unknown=mesh.free_numbers()[:, mesh.exposed],
             load_area=np.broadcast_to(node_area(film, r_m), film.shape),
             rest_film=np.broadcast_to(rest[:, :, None], film.shape),
@@ -221,10 +221,10 @@ class PetalWall(WallKind):
 
         With backing springs also their deflection behind the petals, likewise.
         """
-        (_, package), mesh = petals_of(case), build_mesh(case)
+        (_, pack), mesh = petals_of(case), build_mesh(case)
         r0 = petal_sizes(case, mesh).free_radius
         radius = mesh.axial.whole(r0[:, :, None] + nodal(mesh, deflection))
-        section = {"free_radius": package.free_radius(mesh.phi), "radius": radius}
+        section = {"free_radius": pack.free_radius(mesh.phi), "radius": radius}
         if case.backing is not None:
             section["backing_deflection"] = mesh.axial.whole(crowns(mesh, deflection, springs_from(case)))
         return section
@@ -247,22 +247,22 @@ class PetalWall(WallKind):
 
     def check_scalars(self, case: Case) -> Scalars:
         """Overlap, layers, stiffness, free shape of the mean petal."""
-        petals, package = petals_of(case)
-        phi = np.linspace(0.0, package.petal_angle, FREE_SHAPE_ANGLES)
-        r0 = package.free_radius(phi)
-        inner = r0 - 0.5 * package.thickness - case.bearing.journal_radius
+        petals, pack = petals_of(case)
+        phi = np.linspace(0.0, pack.petal_angle, FREE_SHAPE_ANGLES)
+        r0 = pack.free_radius(phi)
+        inner = r0 - 0.5 * pack.thickness - case.bearing.journal_radius
         touching = np.flatnonzero(inner <= 0.0)
         return {
-            "overlap": package.overlap,
-            "layers": package.layers,
-            "petal_angle": package.petal_angle,
-            "pitch": package.pitch,
-            "covered_angle": package.covered_angle,
-            "metric_radius": package.metric_radius,
+            "overlap": pack.overlap,
+            "layers": pack.layers,
+            "petal_angle": pack.petal_angle,
+            "pitch": pack.pitch,
+            "covered_angle": pack.covered_angle,
+            "metric_radius": pack.metric_radius,
             "bending_stiffness": petals.bending_stiffness,
-            "root_tilt": package.root_tilt,
+            "root_tilt": pack.root_tilt,
             "first_contact_angle": float(phi[touching[0]]) if len(touching) else math.nan,
-            "free_petal_height": float(np.max(package.metric_radius - r0)),
+            "free_petal_height": float(np.max(pack.metric_radius - r0)),
             **({} if case.backing is None else {"foundation_stiffness": foundation_stiffness(case.backing)}),
         }
 

@@ -12,7 +12,7 @@ from petalfoil import plot
 from petalfoil.case import Case
 from petalfoil.errors import ConvergenceError, UsageError
 from tests.cases import case
-from tests.random_packages import random_case
+from tests.random_packs import random_case
 
 PLAIN = case("plain_journal", **{"model.cells_per_pitch": 24, "model.axial_cells": 6})
 BUMPS = case("bump_foil", **{"model.cells_per_pitch": 24, "model.axial_cells": 6})

@@ -14,7 +14,7 @@ from petalfoil.analysis.converge import converge
 from petalfoil.analysis.grid_study import error_bars, grid_of, grid_records, grids, resolution, table
 from petalfoil.analysis.solve import point as solved
 from petalfoil.case import Case
-from petalfoil.errors import ConvergenceError, PackageError, UsageError
+from petalfoil.errors import ConvergenceError, PackError, UsageError
 from petalfoil.results import Record
 from petalfoil.results.estimate import Estimate
 from tests.cases import case
@@ -72,7 +72,7 @@ def test_grids_that_tell_nothing_are_refused(arguments: dict[str, Any], reason: 
 
 
 def test_a_position_without_room_is_refused_before_any_grid() -> None:
-    with pytest.raises(PackageError):
+    with pytest.raises(PackError):
         converge.records(FLAT, eccentricity=(0.0, 1e-3))
 
 

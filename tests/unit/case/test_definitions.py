@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from petalfoil.case import Bearing, Case, Edges, Gas, Method, Model, ModelKind, Mount, Operation, Petals, Surface
-from petalfoil.errors import DefinitionError, PackageError, UnitError
+from petalfoil.errors import DefinitionError, PackError, UnitError
 from tests.cases import EXAMPLES, case, put, tables
 
 NAMES = sorted(path.stem for path in EXAMPLES.glob("*.toml"))
@@ -161,7 +161,7 @@ def test_a_file_is_named_in_the_message(tmp_path: Path) -> None:
     path.write_text(
         (EXAMPLES / "paper_n8.toml").read_text(encoding="utf-8").replace("0.176 mm", "0.8 mm"), encoding="utf-8"
     )
-    with pytest.raises(PackageError, match="too much") as caught:
+    with pytest.raises(PackError, match="too much") as caught:
         Case.load(path)
     assert str(caught.value).startswith(f"{path}: ")
     assert caught.value.key == "petals"

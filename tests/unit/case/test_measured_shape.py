@@ -11,18 +11,18 @@ import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from petalfoil.case import Case, Package
+from petalfoil.case import Case, PackGeometry
 from petalfoil.case.measured_shape import EDGE_TOLERANCE, Table, fitted_bend_radius, measured_radius, row_errors
-from petalfoil.errors import DefinitionError, PackageError
+from petalfoil.errors import DefinitionError, PackError
 from tests.cases import EXAMPLES, case, put, tables
 
 MICRON = 1e-6
 
 
-def arc() -> Package:
-    package = case("paper_n8").package
-    assert package is not None
-    return package
+def arc() -> PackGeometry:
+    pack = case("paper_n8").pack
+    assert pack is not None
+    return pack
 
 
 def rows_of(count: int, scatter: float = 0.0, seed: int = 1) -> Table:
@@ -87,10 +87,10 @@ def test_the_rows_lie_within_the_tolerance_on_average() -> None:
 
 @pytest.mark.parametrize("bend_radius", [27e-3, 40e-3, 5.0])
 def test_the_bend_radius_of_an_arc_is_found(bend_radius: float) -> None:
-    package = case("paper_n8", **{"petals.bend_radius": bend_radius}).package
-    assert package is not None
-    angles = np.linspace(0.0, package.petal_angle, 24)
-    table = tuple(zip(angles.tolist(), package.free_radius(angles).tolist(), strict=True))
+    pack = case("paper_n8", **{"petals.bend_radius": bend_radius}).pack
+    assert pack is not None
+    angles = np.linspace(0.0, pack.petal_angle, 24)
+    table = tuple(zip(angles.tolist(), pack.free_radius(angles).tolist(), strict=True))
     assert fitted_bend_radius(table) == pytest.approx(bend_radius, rel=1e-9)
 
 
@@ -109,18 +109,18 @@ def test_the_measured_shape_needs_no_bend_radius() -> None:
     alone = measured(rows_of(24))
     assert alone.petals is not None
     assert alone.petals.bend_radius is None
-    assert alone.package is not None
-    assert alone.package.bend_radius == pytest.approx(40e-3, rel=1e-9)
+    assert alone.pack is not None
+    assert alone.pack.bend_radius == pytest.approx(40e-3, rel=1e-9)
     beside = alone.replace(**{"petals.bend_radius": "41 mm"})
-    assert beside.package is not None
-    assert beside.package.bend_radius == alone.package.bend_radius
-    with pytest.raises(PackageError, match=r"petals\.bend_radius: 43 mm contradicts the measured .* the radius 40 mm"):
+    assert beside.pack is not None
+    assert beside.pack.bend_radius == alone.pack.bend_radius
+    with pytest.raises(PackError, match=r"petals\.bend_radius: 43 mm contradicts the measured .* the radius 40 mm"):
         alone.replace(**{"petals.bend_radius": "43 mm"})
     assert Case.from_toml(alone.to_toml()) == alone
 
 
 def test_a_root_tilt_beside_a_measured_shape_is_refused() -> None:
-    with pytest.raises(PackageError, match=r"petals\.root_tilt: is given beside a measured"):
+    with pytest.raises(PackError, match=r"petals\.root_tilt: is given beside a measured"):
         measured(rows_of(24), **{"petals.root_tilt": "10 deg"})
 
 
@@ -147,21 +147,21 @@ def test_row_errors_see_scatter_and_coarse_rows() -> None:
 def test_a_last_row_rounded_below_the_edge_is_accepted() -> None:
     *inner, (angle, radius) = rows_of(24)
     for short in (1.7e-9, 0.99 * EDGE_TOLERANCE):
-        package = measured([*inner, (angle - short, radius)]).package
-        assert package is not None
-        assert_allclose(package.free_radius(angle), radius, atol=0.2 * MICRON)
+        pack = measured([*inner, (angle - short, radius)]).pack
+        assert pack is not None
+        assert_allclose(pack.free_radius(angle), radius, atol=0.2 * MICRON)
 
 
 def test_a_table_that_ends_before_the_edge_tells_by_how_much() -> None:
     *inner, (angle, radius) = rows_of(24)
-    with pytest.raises(PackageError, match=r"the table ends at 99\.5010\d+°, 0\.0015\d*° short of .* at 99\.5025\d+°"):
+    with pytest.raises(PackError, match=r"the table ends at 99\.5010\d+°, 0\.0015\d*° short of .* at 99\.5025\d+°"):
         measured([*inner, (angle - math.radians(1.5e-3), radius)])
 
 
 def test_a_scattered_root_may_lie_outside_the_bore() -> None:
     (_, radius), *others = rows_of(24)
     outside = [(0.0, radius + 12.0 * MICRON), *others]
-    with pytest.raises(PackageError, match="the root, which cannot move"):
+    with pytest.raises(PackError, match="the root, which cannot move"):
         measured(outside)
     data = put(tables("paper_n8"), "petals.free_shape", outside)
     assert Case(**put(data, "petals.free_shape_tolerance", "5 um")).petals is not None
@@ -169,16 +169,16 @@ def test_a_scattered_root_may_lie_outside_the_bore() -> None:
 
 def test_a_measured_shape_may_span_more_than_an_arc() -> None:
     long = {"petals.arc_length": "75 mm", "petals.thickness": "0.1 mm"}
-    with pytest.raises(PackageError, match=r"2\.4 rad"):
+    with pytest.raises(PackError, match=r"2\.4 rad"):
         case("paper_n8", **long)
     data = put(tables("paper_n8"), "petals.free_shape", [(angle, 25.9e-3) for angle in np.linspace(0.0, 3.0, 7)])
     del data["petals"]["bend_radius"]
     data["petals"] |= {"arc_length": "75 mm", "thickness": "0.1 mm"}
-    package = Case(**data).package
-    assert package is not None
-    assert package.petal_angle > 2.4
-    assert math.isnan(package.root_tilt)
-    assert package.bend_radius == pytest.approx(25.9e-3, rel=1e-12)
+    pack = Case(**data).pack
+    assert pack is not None
+    assert pack.petal_angle > 2.4
+    assert math.isnan(pack.root_tilt)
+    assert pack.bend_radius == pytest.approx(25.9e-3, rel=1e-12)
 
 
 # ---------------------------------------------------------------------------------------------- from a file

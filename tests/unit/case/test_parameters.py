@@ -7,7 +7,7 @@ import math
 import pytest
 
 from petalfoil.case import Case, parameter_of, parameters_of, with_values
-from petalfoil.errors import DefinitionError, PackageError, UnitError
+from petalfoil.errors import DefinitionError, PackError, UnitError
 from tests.cases import EXAMPLES, case
 
 RIG = Case.load(EXAMPLES / "rig.toml")
@@ -91,7 +91,7 @@ def test_an_unknown_path_is_refused_with_what_was_meant(path: str, words: str) -
         ({"petals.thickness": "3 m"}, DefinitionError, "allowed: greater than 0 m and at most 0.1 m"),
         ({"petals.count": 8.5}, DefinitionError, "petals.count: 8.5 is not a whole number"),
         ({"petals.count": "1"}, DefinitionError, "allowed: a whole number, at least 2 and at most 64"),
-        ({"petals.arc_length": "1 mm"}, PackageError, "do not overlap"),
+        ({"petals.arc_length": "1 mm"}, PackError, "do not overlap"),
     ],
 )
 def test_values_that_cannot_be_are_refused(values: dict[str, object], kind: type[DefinitionError], words: str) -> None:

@@ -33,7 +33,7 @@ def bearing(kind: str, **changes: object) -> CoupledProblem:
     return build_problem(case(name, **{**grid, **changes}))
 
 
-def package(cells: int, e: float = 0.0, **changes: object) -> CoupledProblem:
+def pack(cells: int, e: float = 0.0, **changes: object) -> CoupledProblem:
     """The paper's 8 petals in 2-D, displaced downward by `e` [m]."""
     grid = {"model.cells_per_pitch": cells, "operation.eccentricity": (0.0, -e)}
     return build_problem(case("paper_n8", **{**grid, **changes}))

@@ -12,7 +12,7 @@ from petalfoil.classic.method_options import ClassicOptions
 from petalfoil.classic.numpy_kernels import elastic_force, project
 from petalfoil.equilibrium.continuation import rest
 from petalfoil.system.coupled import CoupledProblem
-from tests.unit.classic.bearings import bearing, package
+from tests.unit.classic.bearings import bearing, pack
 
 Array = NDArray[np.float64]
 
@@ -26,7 +26,7 @@ def gaps(problem: CoupledProblem, W: Array) -> Array:
 
 @pytest.mark.parametrize("count", [6, 8, 10])  # overlaps 1.7, 2.2 and 2.8: two and three layers
 def test_every_deflection_stands_in_one_column_and_every_gap_is_kept(count: int) -> None:
-    problem = package(10, 50e-6, **{"petals.count": count})
+    problem = pack(10, 50e-6, **{"petals.count": count})
     columns = PackDescent(problem, ClassicOptions()).columns
     assert sorted(columns.node[columns.node >= 0]) == list(range(problem.layout.n_wall))
     W = np.random.default_rng(4).normal(size=problem.layout.n_wall) * 10.0
@@ -35,7 +35,7 @@ def test_every_deflection_stands_in_one_column_and_every_gap_is_kept(count: int)
 
 
 def test_the_projection_is_the_nearest_point() -> None:
-    problem = package(10, 50e-6)
+    problem = pack(10, 50e-6)
     columns = PackDescent(problem, ClassicOptions()).columns
     rng = np.random.default_rng(5)
     W = rng.normal(size=problem.layout.n_wall) * 10.0
@@ -65,8 +65,8 @@ def test_the_bands_are_the_stiffness(kind: str) -> None:
 @pytest.mark.compiled
 @pytest.mark.parametrize("mount", ["clamped", "hinged"])
 @pytest.mark.parametrize("momentum", [False, True])
-def test_the_package_alone_descends_to_newton_s(mount: str, momentum: bool) -> None:
-    problem = package(8, 100e-6, **{"petals.mount": mount})
+def test_the_pack_alone_descends_to_newton_s(mount: str, momentum: bool) -> None:
+    problem = pack(8, 100e-6, **{"petals.mount": mount})
     wanted = rest(problem)
     assert wanted is not None
     W, load = np.zeros(problem.layout.n_wall), np.zeros(problem.layout.n_wall)
@@ -79,7 +79,7 @@ def test_the_package_alone_descends_to_newton_s(mount: str, momentum: bool) -> N
 
 @pytest.mark.compiled
 def test_momentum_saves_steps() -> None:
-    problem, taken = package(16), {}
+    problem, taken = pack(16), {}
     for momentum in (False, True):
         descent = PackDescent(problem, ClassicOptions(momentum=momentum))
         W = np.zeros(problem.layout.n_wall)
@@ -119,7 +119,7 @@ def petal_by_petal(problem: CoupledProblem, descent: PackDescent, W: Array, swee
 @pytest.mark.compiled
 def test_petals_that_descend_one_by_one_stop_short_of_the_least_energy() -> None:
     """The pack is projected as a whole because a petal cannot displace a neighbour that is a fixed bound."""
-    problem = package(8, 100e-6)
+    problem = pack(8, 100e-6)
     descent = PackDescent(problem, ClassicOptions())
     W, none = np.zeros(problem.layout.n_wall), np.zeros(problem.layout.n_wall)
     stuck = petal_by_petal(problem, descent, project(W, descent.columns), 4000)

@@ -64,13 +64,13 @@ def test_the_marches_are_equal(kind: str) -> None:
 @pytest.mark.parametrize("kind", ["2d", "half"])
 def test_the_descents_are_equal(kind: str, momentum: bool) -> None:
     problem = bearing(kind)
-    package = PackDescent(problem, ClassicOptions(momentum=momentum))
+    pack = PackDescent(problem, ClassicOptions(momentum=momentum))
     load = np.random.default_rng(3).normal(size=problem.layout.n_wall)
     ends = []
     for engine in Engine:
         W = np.zeros(problem.layout.n_wall)
-        settings = DescentSettings(package.step, momentum, -1.0, 400)
-        ends.append((W, kernels(engine).descend(W, load, package.shell, package.columns, settings)))
+        settings = DescentSettings(pack.step, momentum, -1.0, 400)
+        ends.append((W, kernels(engine).descend(W, load, pack.shell, pack.columns, settings)))
     (W_numba, (steps_numba, left_numba)), (W_numpy, (steps_numpy, left_numpy)) = ends
     assert steps_numba == steps_numpy == 400
     assert_allclose(W_numba, W_numpy, rtol=0.0, atol=1e-10 * np.max(np.abs(W_numpy)))

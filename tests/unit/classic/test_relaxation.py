@@ -12,7 +12,7 @@ from petalfoil.classic import ClassicOptions, ClassicRun, numpy_kernels, relax
 from petalfoil.classic import kernels as inner
 from petalfoil.classic.relaxation import Relaxation
 from petalfoil.errors import ConvergenceError
-from tests.unit.classic.bearings import bearing, package
+from tests.unit.classic.bearings import bearing, pack
 
 
 @pytest.mark.compiled
@@ -22,7 +22,7 @@ from tests.unit.classic.bearings import bearing, package
 )
 def test_a_run_that_uses_up_its_steps_says_which_and_how_it_went(limits: dict[str, int], what: str) -> None:
     with pytest.raises(ConvergenceError, match=f"used up its {what} steps") as caught:
-        relax(ClassicRun(package(10), ClassicOptions(**limits)))
+        relax(ClassicRun(pack(10), ClassicOptions(**limits)))
     rows = caught.value.history
     assert len(rows) > 1
     assert [row["outer"] for row in rows] == list(range(1, len(rows) + 1))
@@ -32,7 +32,7 @@ def test_a_run_that_uses_up_its_steps_says_which_and_how_it_went(limits: dict[st
 
 
 def test_a_diverged_film_has_its_own_message() -> None:
-    problem = package(8)
+    problem = pack(8)
     closed = np.ones(problem.layout.balance.mesh.shape)
     closed[0, 3] = 0.0
     with (
@@ -45,7 +45,7 @@ def test_a_diverged_film_has_its_own_message() -> None:
 @pytest.mark.compiled
 def test_rows_are_told_as_they_come_and_the_run_can_be_watched() -> None:
     told, pulses = [], []
-    run = ClassicRun(package(8), ClassicOptions(), tell=told.append, pulse=lambda: pulses.append(1))
+    run = ClassicRun(pack(8), ClassicOptions(), tell=told.append, pulse=lambda: pulses.append(1))
     state = relax(run)
     assert told == run.rows
     assert len(told) == state.outer
@@ -56,7 +56,7 @@ def test_rows_are_told_as_they_come_and_the_run_can_be_watched() -> None:
 
 @pytest.mark.compiled
 def test_an_answer_as_a_start_is_not_taken_for_a_better_one() -> None:
-    problem = package(8, 100e-6)
+    problem = pack(8, 100e-6)
     rough = relax(ClassicRun(problem, ClassicOptions(epsilon=1e-3)))
     fine = relax(ClassicRun(problem, ClassicOptions(epsilon=1e-6)))
     again = relax(ClassicRun(problem, ClassicOptions(epsilon=1e-6)), rough)
@@ -67,8 +67,8 @@ def test_an_answer_as_a_start_is_not_taken_for_a_better_one() -> None:
 
 @pytest.mark.compiled
 def test_a_start_from_another_position_is_moved_out_of_the_journal() -> None:
-    beside = relax(ClassicRun(package(8)))
-    problem = package(8, 150e-6)
+    beside = relax(ClassicRun(pack(8)))
+    problem = pack(8, 150e-6)
     assert np.min(problem.film(np.concatenate([beside.w, beside.P]))) < 0.0
     assert_allclose(relax(ClassicRun(problem), beside).P, relax(ClassicRun(problem)).P, rtol=1e-4)
 
@@ -93,7 +93,7 @@ def test_the_relaxation_factor_is_halved_when_the_change_stops_to_fall() -> None
 
 @pytest.mark.compiled
 def test_without_relaxation_the_run_finds_a_smaller_factor() -> None:
-    run = ClassicRun(package(10), ClassicOptions(deflection_relaxation=1.0))
+    run = ClassicRun(pack(10), ClassicOptions(deflection_relaxation=1.0))
     relax(run)
     assert run.rows[-1]["deflection_relaxation"] < 1.0
 
@@ -111,8 +111,8 @@ def no_numba(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 @pytest.mark.usefixtures("no_numba")
 def test_without_numba_the_numpy_loops_run() -> None:
     assert inner.kernels() == (numpy_kernels.march, numpy_kernels.descend)
-    state = relax(ClassicRun(package(4), ClassicOptions(epsilon=1.0)))
-    twin = relax(ClassicRun(package(4), ClassicOptions(epsilon=1.0), inner.Engine.NUMPY))
+    state = relax(ClassicRun(pack(4), ClassicOptions(epsilon=1.0)))
+    twin = relax(ClassicRun(pack(4), ClassicOptions(epsilon=1.0), inner.Engine.NUMPY))
     assert state.film_steps > 0
     assert state.pack_steps > 0
     assert (state.film_steps, state.pack_steps) == (twin.film_steps, twin.pack_steps)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from petalfoil.errors import ConvergenceError, PackageError
+from petalfoil.errors import ConvergenceError, PackError
 from petalfoil.results.store import load
 
 from .conftest import point
@@ -62,7 +62,7 @@ def test_failed_points_are_named_and_the_rest_is_given_out(cli, played, case, tm
 
 @pytest.mark.parametrize("flags", [[], ["--json"]])
 def test_a_bad_case_leaves_standard_output_empty(cli, played, case, flags: list[str]) -> None:
-    played.single = raising(PackageError("too thick by 0.1 mm"))
+    played.single = raising(PackError("too thick by 0.1 mm"))
     result = cli("solve", case, *flags)
     assert (result.exit_code, result.stdout) == (2, "")
     assert result.stderr == "Error: too thick by 0.1 mm\n"

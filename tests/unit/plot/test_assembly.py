@@ -20,7 +20,7 @@ def part(ax: Axes, gid: str) -> list[object]:
 def test_the_section_shows_petals_with_the_clearance_stretched(
     checked: xr.Dataset, texts: Callable[[Figure], str]
 ) -> None:
-    fig = plot.package(checked)
+    fig = plot.pack(checked)
     left = fig.axes[0]
     assert left.get_aspect() == 1.0
     assert "radial clearance drawn ×10" in texts(fig)
@@ -32,7 +32,7 @@ def test_the_section_shows_petals_with_the_clearance_stretched(
 
 
 def test_legends_cover_neither_petals_nor_journal(checked: xr.Dataset) -> None:
-    fig = plot.package(checked)
+    fig = plot.pack(checked)
     fig.draw_without_rendering()
     left, right = fig.axes
     lowest = min(left.transData.transform(patch.get_xy())[:, 1].min() for patch in part(left, "petal 0"))
@@ -42,7 +42,7 @@ def test_legends_cover_neither_petals_nor_journal(checked: xr.Dataset) -> None:
 
 
 def test_the_unrolled_petal_shows_free_and_assembled_shape(checked: xr.Dataset) -> None:
-    right = plot.package(checked).axes[1]
+    right = plot.pack(checked).axes[1]
     (free,) = [line for line in right.lines if line.get_label() == "petal, free"]
     np.testing.assert_allclose(free.get_xdata(), np.degrees(checked["phi"].values), rtol=1e-12)
     np.testing.assert_allclose(free.get_ydata(), checked["free_radius"].values * 1e3, rtol=1e-12)
@@ -57,14 +57,14 @@ def test_the_unrolled_petal_shows_free_and_assembled_shape(checked: xr.Dataset) 
 
 
 def test_neighbours_that_pass_the_window_are_drawn_across_the_turn(checked: xr.Dataset) -> None:
-    right = plot.package(checked).axes[1]
+    right = plot.pack(checked).axes[1]
     assert len(part(right, "petal 7")) == 1  # its tip lies under the first petal's root, a turn away
     assert len(part(right, "petal 1")) == 1
     assert len(part(right, "petal 4")) == 0
 
 
 def test_the_stretch_it_states_is_the_one_it_draws(checked: xr.Dataset) -> None:
-    fig = plot.package(checked)
+    fig = plot.pack(checked)
     right = fig.axes[1]
     fig.draw_without_rendering()
     to_pixels = right.transData.transform
@@ -76,7 +76,7 @@ def test_the_stretch_it_states_is_the_one_it_draws(checked: xr.Dataset) -> None:
 
 
 def test_the_title_tells_the_derived_figures(checked: xr.Dataset, texts: Callable[[Figure], str]) -> None:
-    said = texts(plot.package(checked))
+    said = texts(plot.pack(checked))
     assert "overlap 1.77 · 2 layers · radial clearance 1000 µm · 647 µm above the solid pack height" in said
     assert "Λ on radial clearance = 5.55" in said
     assert "free petal meets the journal" in said
@@ -85,20 +85,20 @@ def test_the_title_tells_the_derived_figures(checked: xr.Dataset, texts: Callabl
 def test_a_free_petal_that_never_meets_the_journal_has_no_mark(
     checked: xr.Dataset, texts: Callable[[Figure], str]
 ) -> None:
-    said = texts(plot.package(checked.assign(first_contact_angle=((), np.nan))))
+    said = texts(plot.pack(checked.assign(first_contact_angle=((), np.nan))))
     assert "free petal meets the journal" not in said
 
 
 def test_a_plain_bearing_has_journal_and_bushing_only(texts: Callable[[Figure], str]) -> None:
     geometry = {name: value for name, value in factory.GEOMETRY.items() if name != "petal_thickness"}
     given = {"eccentricity_x": 0.0, "eccentricity_y": 0.0, "radial_clearance": 1e-3, "compressibility_number": 5.55}
-    fig = plot.package(to_dataset(Record(analysis="check", scalars={**geometry, **given}, title="Plain")))
+    fig = plot.pack(to_dataset(Record(analysis="check", scalars={**geometry, **given}, title="Plain")))
     assert "radial clearance 1000 µm · Λ on radial clearance = 5.55" in texts(fig)
     assert "solid pack height" not in texts(fig)
     assert part(fig.axes[1], "journal")
     assert part(fig.axes[1], "bushing")
 
 
-def test_a_package_that_did_not_converge_is_not_drawn(checked: xr.Dataset) -> None:
+def test_a_pack_that_did_not_converge_is_not_drawn(checked: xr.Dataset) -> None:
     with pytest.raises(ConvergenceError):
-        plot.package(checked.assign(converged=((), np.False_)))
+        plot.pack(checked.assign(converged=((), np.False_)))

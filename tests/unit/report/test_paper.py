@@ -69,10 +69,10 @@ def test_fixed_bounds_leave_one_layer_for_the_neighbour() -> None:
     problem, plain = bounded(changed), build_problem(changed)
     rows, before = problem.layout.wall.contacts, plain.layout.wall.contacts
     assert (rows.journal, rows.bushing) == (before.journal, before.bushing)
-    mesh, package_ = build_mesh(changed), changed.package
-    assert package_ is not None
+    mesh, pack_ = build_mesh(changed), changed.pack
+    assert pack_ is not None
     assert changed.petals is not None
-    r0, delta = package_.free_radius(mesh.phi), changed.petals.total_thickness
+    r0, delta = pack_.free_radius(mesh.phi), changed.petals.total_thickness
     covered, lap = r0[1 : mesh.n_node - mesh.cells - 1], r0[mesh.on_neighbour]
     W, e = 1e-4 * np.random.default_rng(0).standard_normal(problem.layout.n_wall), np.array([2e-5, -3e-5])
     gaps = rows.gaps(W, e)[rows.petals].reshape(-1)

@@ -1,6 +1,6 @@
 """Synthetic but realistic records: what a solver would hand over, without a solver.
 
-The package obeys the geometry of the model: exposed strips tile the circle, the film jumps by one petal thickness from
+The pack obeys the geometry of the model: exposed strips tile the circle, the film jumps by one petal thickness from
 strip to strip, contact is where the film is at its floor.
 """
 
@@ -49,17 +49,17 @@ def solved(
     """One converged state of a petal bearing whose journal is displaced downward."""
     coords = grid(petals, overlap, nz)
     film, pressure, contact = film_fields(coords, eccentricity, touching)
-    package = package_fields(coords, film, eccentricity, contact)
+    pack = pack_fields(coords, film, eccentricity, contact)
     scalars = {**GEOMETRY, **figures(coords, film, pressure, eccentricity, load), **bookkeeping()}
     return Record(
         analysis="solve",
         scalars=scalars,
-        fields={"pressure": pressure, "film_thickness": film, "journal_contact_pressure": contact, **package},
+        fields={"pressure": pressure, "film_thickness": film, "journal_contact_pressure": contact, **pack},
         coords=coords,
         case_toml=CASE,
         title="Paper, flat study, 8 petals",
         history=[
-            {"phase": "package", "iteration": 1, "residual": 1e-2},
+            {"phase": "pack", "iteration": 1, "residual": 1e-2},
             {"phase": "film", "iteration": 2, "residual": float("nan")},
         ],
     )
@@ -85,7 +85,7 @@ def plain(nz: int = 9) -> Record:
 
 
 def at_rest(eccentricity: float = 0.0) -> Record:
-    """The package on a journal that does not turn: contact, no film figures."""
+    """The pack on a journal that does not turn: contact, no film figures."""
     record = solved(eccentricity=eccentricity, touching=True)
     fields = {name: values for name, values in record.fields.items() if name not in ("pressure", "film_thickness")}
     given = {"speed": 0.0, "eccentricity_x": 0.0, "eccentricity_y": -eccentricity}
@@ -212,7 +212,7 @@ def film_fields(
     return full, pressure, contact
 
 
-def package_fields(
+def pack_fields(
     coords: dict[str, npt.NDArray[np.generic]], film: Floats, eccentricity: float, contact: Floats
 ) -> dict[str, Floats]:
     """Deformed petals that carry the film: from the bore at the root to the strip they expose."""

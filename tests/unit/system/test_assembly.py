@@ -129,10 +129,10 @@ def test_rows_of_a_pack_are_those_of_the_coupled_problem() -> None:
     coupled = build_problem(PETALS)
     x, lam = state(coupled)
     w = x[coupled.layout.unknowns[DEFLECTION]]
-    package = FoilPackProblem(coupled, coupled.layout.push @ (x[coupled.positive] - 1.0))
+    pack = FoilPackProblem(coupled, coupled.layout.push @ (x[coupled.positive] - 1.0))
     n = len(w)
-    assert_allclose(package.linearize(w).residual, coupled.linearize(x).residual[:n], atol=1e-9)
-    both = package.linearize(w).matrix(lam).toarray(), coupled.linearize(x).matrix(lam).toarray()[:n, :n]
+    assert_allclose(pack.linearize(w).residual, coupled.linearize(x).residual[:n], atol=1e-9)
+    both = pack.linearize(w).matrix(lam).toarray(), coupled.linearize(x).matrix(lam).toarray()[:n, :n]
     assert_allclose(both[0], both[1], atol=1e-12 * np.max(np.abs(both[1])))
 
 

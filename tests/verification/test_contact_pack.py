@@ -14,14 +14,14 @@ from petalfoil.system.build import build_problem
 from petalfoil.system.foil_pack import FoilPackProblem
 from petalfoil.walls.petals import build_mesh, petals_of
 from tests.cases import case
-from tests.random_packages import random_case
+from tests.random_packs import random_case
 from tests.verification.shell_helpers import Array, Solved, solve
 
 EXAMPLES = ("paper_n6", "paper_n8", "paper_n10", "rig")
 SEED = 2901
 
 
-def package(of: Case) -> FoilPackProblem:
+def pack(of: Case) -> FoilPackProblem:
     problem = build_problem(of)
     return FoilPackProblem(problem, np.zeros(problem.layout.n_wall))
 
@@ -87,7 +87,7 @@ def touching(of: Case, W: Array, phi: Array, roots: Array) -> list[tuple[float, 
 
 def check_optimality(of: Case) -> None:
     """Forces balance, gaps and reactions have their signs, and only what touches pushes."""
-    problem, mesh = package(of), build_mesh(of)
+    problem, mesh = pack(of), build_mesh(of)
     answer = answer_of(problem)
     scales = problem.layout.scales
     W = np.zeros((mesh.count, mesh.n_node))
@@ -122,7 +122,7 @@ def test_examples_are_optimal(name: str) -> None:
 
 
 @pytest.mark.slow
-def test_random_packages_are_optimal() -> None:
+def test_random_packs_are_optimal() -> None:
     rng = np.random.default_rng(SEED)
     for _ in range(12):
         check_optimality(random_case(rng))
@@ -166,7 +166,7 @@ WIDE: dict[str, object] = {
 @pytest.mark.parametrize("cells", [16, 48])
 def test_piqp_agrees(name: str, cells: int) -> None:
     wider = WIDE if name == "rig" else {}
-    problem = package(example(name, cells, **{**wider, "operation.eccentricity": (30e-6, -80e-6)}))
+    problem = pack(example(name, cells, **{**wider, "operation.eccentricity": (30e-6, -80e-6)}))
     agree(problem)
 
 
@@ -180,7 +180,7 @@ def test_piqp_agrees_under_film_pressure() -> None:
 def by_least_distance(problem: FoilPackProblem) -> tuple[Array, Array]:
     """Lawson and Hanson's least-distance programming over SciPy's NNLS; K must be definite.
 
-    With `K = R^T R` and `y = R x` the package is the point nearest to the origin over `G R^-1 y >= -rest`.
+    With `K = R^T R` and `y = R x` the pack is the point nearest to the origin over `G R^-1 y >= -rest`.
     """
     R = scipy.linalg.cholesky(problem.layout.stiffness.toarray())
     E = scipy.linalg.solve_triangular(R, problem.G.toarray().T, trans="T")
@@ -195,7 +195,7 @@ def test_least_distance_programming_agrees() -> None:
     rng = np.random.default_rng(SEED)
     for _ in range(6):
         of = random_case(rng, **{"petals.mount": "clamped", "model.cells_per_pitch": 8})
-        problem = package(of)
+        problem = pack(of)
         answer, (x, lam) = answer_of(problem), by_least_distance(problem)
         assert_allclose(answer.x, x, atol=1e-6 * np.abs(x).max())
         assert_allclose(answer.lam.sum(), lam.sum(), rtol=1e-5)
@@ -203,7 +203,7 @@ def test_least_distance_programming_agrees() -> None:
 
 def test_as_the_product_assembles_it() -> None:
     for name in EXAMPLES:
-        problem = package(example(name, 32))
+        problem = pack(example(name, 32))
         assembled = at_rest(problem.coupled)
         assert assembled is not None
         answer = answer_of(problem)
@@ -218,22 +218,22 @@ def test_as_the_product_assembles_it() -> None:
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_from_nothing_in_twenty_steps_on_the_finest_grid(name: str) -> None:
     wider = WIDE if name == "rig" else {}
-    problem = package(example(name, 256, **{**wider, "operation.eccentricity": (0.0, -100e-6)}))
+    problem = pack(example(name, 256, **{**wider, "operation.eccentricity": (0.0, -100e-6)}))
     answer = answer_of(problem)
     assert answer.steps <= 20
     assert answer.polish <= 12
 
 
 def test_steps_do_not_grow_with_the_grid() -> None:
-    counts = [answer_of(package(example("paper_n8", cells))).steps for cells in (32, 256)]
+    counts = [answer_of(pack(example("paper_n8", cells))).steps for cells in (32, 256)]
     assert counts[1] <= 1.5 * counts[0]
 
 
 @pytest.mark.slow
-def test_two_hundred_random_packages() -> None:
+def test_two_hundred_random_packs() -> None:
     """Both mounts, 5 to 12 petals, overlap to 3, preloads over six decades: every one is found."""
     rng = np.random.default_rng(SEED)
-    counts = [answer_of(package(random_case(rng))).steps for _ in range(200)]
+    counts = [answer_of(pack(random_case(rng))).steps for _ in range(200)]
     assert max(counts) <= 20
     assert np.median(counts) <= 15
 
@@ -243,7 +243,7 @@ def test_two_hundred_random_packages() -> None:
 
 def test_petals_around_a_centred_journal_are_alike() -> None:
     of = example("paper_n8", 32, **{"operation.eccentricity": (0.0, 0.0)})
-    W = answer_of(package(of)).x.reshape(8, -1)
+    W = answer_of(pack(of)).x.reshape(8, -1)
     assert_allclose(W, np.broadcast_to(W[0], W.shape), rtol=0.0, atol=1e-9 * np.abs(W).max())
 
 
@@ -251,14 +251,14 @@ def test_half_the_length_is_half_of_the_whole() -> None:
     answers = []
     for symmetry in (True, False):
         changes = {"model.kind": "3d", "model.axial_cells": 6, "model.symmetry": symmetry}
-        problem = package(example("paper_n8", 8, **changes))
+        problem = pack(example("paper_n8", 8, **changes))
         axial, count = problem.layout.wall.film.axial, 8
         W = answer_of(problem).x.reshape(count, -1, len(axial.z))
         answers.append(axial.whole(W))
     assert_allclose(answers[0], answers[1], rtol=0.0, atol=1e-9 * np.abs(answers[0]).max())
 
 
-def test_random_packages_are_reproducible_and_varied() -> None:
+def test_random_packs_are_reproducible_and_varied() -> None:
     first, again = ([random_case(np.random.default_rng(SEED)) for _ in range(3)] for _ in range(2))
     assert first == again
     rng = np.random.default_rng(SEED)

@@ -6,7 +6,7 @@ import numpy as np
 
 from petalfoil.case import Bearing, Case, Edges, Gas, Model, ModelKind, Mount, Operation, Petals, Surface
 from petalfoil.case.free_shape import chordal_tilt
-from petalfoil.case.package import MAX_ARC_ANGLE
+from petalfoil.case.pack_geometry import MAX_ARC_ANGLE
 from petalfoil.errors import DefinitionError
 
 FILM_FLOOR = 1e-6  # m
@@ -14,7 +14,7 @@ MAX_TRIES = 200
 
 
 def random_case(rng: np.random.Generator, **changes: object) -> Case:
-    """Draw a steel package in air, flat, 32 cells a pitch, its journal turning and displaced.
+    """Draw a steel pack in air, flat, 32 cells a pitch, its journal turning and displaced.
 
     Drawn: 5 to 12 petals, overlap 1.2 to 3 (petals up to 2.4 rad), both mounts, journals of 5 to 60 mm, petals of 0.3
     to 0.9 % of that, room for 1.25 to 2.2 times the layers and 5 um, bend radius 1.1 to 2.5 of the metric radius, L/D

@@ -35,7 +35,7 @@ FLUSH = 1e-9  # pitches; an overlap this close below a whole number is that numb
 
 
 @dataclass(frozen=True, kw_only=True)
-class Package:
+class PackGeometry:
     """Derived geometry of `count` overlapping petals; see the module's docstring."""
 
     count: int
@@ -90,32 +90,32 @@ class Package:
 
 
 @lru_cache(maxsize=KNOWN)
-def package_of(bearing: Bearing, petals: Petals) -> Package:
+def pack_of(bearing: Bearing, petals: Petals) -> PackGeometry:
     """Derive the foil pack of `petals` in `bearing`; of unequal petals that of the mean one.
 
-    A chordal tilt that does not exist comes out as nan; `package_problems` says why.
+    A chordal tilt that does not exist comes out as nan; `pack_problems` says why.
     """
     metric_radius = bearing.bushing_radius - petals.total_thickness / 2.0
-    return package_with(bearing, petals, (petals.mean, petals.arc_length / metric_radius))
+    return pack_with(bearing, petals, (petals.mean, petals.arc_length / metric_radius))
 
 
 @lru_cache(maxsize=KNOWN)
-def packages_of(bearing: Bearing, petals: Petals) -> tuple[Package, ...]:
+def packs_of(bearing: Bearing, petals: Petals) -> tuple[PackGeometry, ...]:
     """The same of each petal: all span the angle of the mean one, and each lies on the bore with its own thickness.
 
     Petals whose thickness differs from the mean by `d` would span the angle `φ1 (1 + d / 2 R_B)` instead.
     """
-    angle = package_of(bearing, petals).petal_angle
-    known = {petal: package_with(bearing, petals, (petal, angle)) for petal in petals.each}
+    angle = pack_of(bearing, petals).petal_angle
+    known = {petal: pack_with(bearing, petals, (petal, angle)) for petal in petals.each}
     return tuple(known[petal] for petal in petals.each)
 
 
-def package_with(bearing: Bearing, petals: Petals, one: tuple[Petal, float]) -> Package:
+def pack_with(bearing: Bearing, petals: Petals, one: tuple[Petal, float]) -> PackGeometry:
     """The pack as seen by `one` petal and its angle [rad]."""
     petal, angle = one
     metric_radius = bearing.bushing_radius - petal.total_thickness / 2.0
     bend_radius = _bend_radius(petals, petal)
-    return Package(
+    return PackGeometry(
         count=petals.count,
         thickness=petal.total_thickness,
         metric_radius=metric_radius,
@@ -180,7 +180,7 @@ def bearing_problems(
         )
 
 
-def package_problems(bearing: Bearing, petals: Petals, surface: Surface, operation: Operation) -> Iterator[Problem]:
+def pack_problems(bearing: Bearing, petals: Petals, surface: Surface, operation: Operation) -> Iterator[Problem]:
     """Yield what keeps a foil pack from being assembled: no overlap, no clearance (G2), no free shape."""
     if bearing.bushing_radius <= petals.total_thickness:
         yield Problem(
@@ -191,9 +191,9 @@ def package_problems(bearing: Bearing, petals: Petals, surface: Surface, operati
             f"less than {bearing.bushing_radius:g} m",
         )
         return
-    package = package_of(bearing, petals)
-    if package.petal_angle >= 2.0 * math.pi:
-        longest = package.metric_radius * 2.0 * math.pi
+    pack = pack_of(bearing, petals)
+    if pack.petal_angle >= 2.0 * math.pi:
+        longest = pack.metric_radius * 2.0 * math.pi
         yield Problem(
             "petals.arc_length",
             f"petals of {_m(petals.arc_length)} reach round the whole bore; allowed: less than {_m(longest)}",
@@ -201,68 +201,68 @@ def package_problems(bearing: Bearing, petals: Petals, surface: Surface, operati
             f"less than {longest:g} m",
         )
         return
-    yield from _overlap_problems(package, petals)
-    yield from _clearance_problems(package, petals, (bearing, surface, operation))
-    yield from _shape_problems(package, bearing, petals)
+    yield from _overlap_problems(pack, petals)
+    yield from _clearance_problems(pack, petals, (bearing, surface, operation))
+    yield from _shape_problems(pack, bearing, petals)
 
 
-def _overlap_problems(package: Package, petals: Petals) -> Iterator[Problem]:
-    if package.overlap > 1.0 + FLUSH:
+def _overlap_problems(pack: PackGeometry, petals: Petals) -> Iterator[Problem]:
+    if pack.overlap > 1.0 + FLUSH:
         return
-    shortest = package.metric_radius * package.pitch
+    shortest = pack.metric_radius * pack.pitch
     yield Problem(
         "petals.arc_length",
         f"petals of {_m(petals.arc_length)} do not overlap: {_m(shortest - petals.arc_length)} short of the distance "
-        f"between the roots of {package.count}; allowed: more than {_m(shortest)}",
+        f"between the roots of {pack.count}; allowed: more than {_m(shortest)}",
         petals.arc_length,
         f"more than {shortest:g} m",
     )
 
 
 def _clearance_problems(
-    package: Package, petals: Petals, around: tuple[Bearing, Surface, Operation]
+    pack: PackGeometry, petals: Petals, around: tuple[Bearing, Surface, Operation]
 ) -> Iterator[Problem]:
     bearing, surface, operation = around
     eccentricity = operation.farthest(bearing.length)
     clearance = bearing.clearance - eccentricity
-    need = solid_height(petals, package.layers) + surface.contact_film_thickness
-    if package.overlap <= 1.0 + FLUSH or need <= clearance:
+    need = solid_height(petals, pack.layers) + surface.contact_film_thickness
+    if pack.overlap <= 1.0 + FLUSH or need <= clearance:
         return
     displaced = need <= bearing.clearance
     where = f", the clearance {_m(bearing.clearance)} less the eccentricity {_m(eccentricity)}," if eccentricity else ""
     yield Problem(
         "operation.eccentricity" if displaced else "petals",
-        f"the foil pack does not fit: {package.layers} layers of {_layer(package, petals)} and the contact film "
+        f"the foil pack does not fit: {pack.layers} layers of {_layer(pack, petals)} and the contact film "
         f"thickness {_m(surface.contact_film_thickness)} need {_m(need)}, "
         f"the radial clearance between journal and bushing{where} is {_m(clearance)}: "
         f"{_m(need - clearance)} too much",
-        operation.eccentricity if displaced else package.thickness,
+        operation.eccentricity if displaced else pack.thickness,
         f"an eccentricity up to {bearing.clearance - need:g} m" if displaced else f"at most {clearance:g} m in all",
     )
 
 
-def _layer(package: Package, petals: Petals) -> str:
+def _layer(pack: PackGeometry, petals: Petals) -> str:
     """Thickness of a layer where the pack is thickest."""
     if len(set(petals.each)) == 1:
-        return _m(package.thickness)
-    return f"{_m(solid_height(petals, package.layers) / package.layers)} on average"
+        return _m(pack.thickness)
+    return f"{_m(solid_height(petals, pack.layers) / pack.layers)} on average"
 
 
-def _shape_problems(package: Package, bearing: Bearing, petals: Petals) -> Iterator[Problem]:
+def _shape_problems(pack: PackGeometry, bearing: Bearing, petals: Petals) -> Iterator[Problem]:
     if petals.free_shape is not None:
-        found = list(_table_problems(package, bearing, petals.free_shape))
-        yield from found or _twice_given(package, petals)
-    elif package.petal_angle > MAX_ARC_ANGLE:
-        longest = MAX_ARC_ANGLE * package.metric_radius
+        found = list(_table_problems(pack, bearing, petals.free_shape))
+        yield from found or _twice_given(pack, petals)
+    elif pack.petal_angle > MAX_ARC_ANGLE:
+        longest = MAX_ARC_ANGLE * pack.metric_radius
         yield Problem(
             "petals.arc_length",
-            f"an arc of {_m(petals.arc_length)} spans {package.petal_angle:.4g} rad, too far for a circular free "
+            f"an arc of {_m(petals.arc_length)} spans {pack.petal_angle:.4g} rad, too far for a circular free "
             f"shape; allowed: up to {MAX_ARC_ANGLE} rad, {_m(longest)}",
             petals.arc_length,
             f"up to {longest:g} m",
         )
     else:
-        for number, one in enumerate(packages_of(bearing, petals)):
+        for number, one in enumerate(packs_of(bearing, petals)):
             problems = list(_arc_problems(one, number, petals))
             yield from problems
             if problems:  # the first petal that cannot be made says what is wrong with the others
@@ -274,43 +274,43 @@ def _key(petals: Petals, name: str, number: int) -> str:
     return f"petals.{name}[{number}]" if isinstance(getattr(petals, name), tuple) else f"petals.{name}"
 
 
-def _arc_problems(package: Package, number: int, petals: Petals) -> Iterator[Problem]:
-    if math.isnan(package.root_tilt):
+def _arc_problems(pack: PackGeometry, number: int, petals: Petals) -> Iterator[Problem]:
+    if math.isnan(pack.root_tilt):
         yield Problem(
             _key(petals, "bend_radius", number),
-            f"a chordal petal bent to {_m(package.bend_radius)} would lie outside the bore; allowed: at least the "
-            f"metric radius, {_m(package.metric_radius)} ({_m(package.metric_radius - package.bend_radius)} more), "
+            f"a chordal petal bent to {_m(pack.bend_radius)} would lie outside the bore; allowed: at least the "
+            f"metric radius, {_m(pack.metric_radius)} ({_m(pack.metric_radius - pack.bend_radius)} more), "
             "or another petals.root_tilt",
-            package.bend_radius,
-            f"at least {package.metric_radius:g} m",
+            pack.bend_radius,
+            f"at least {pack.metric_radius:g} m",
         )
         return
-    if package.about_bore:  # a curve over the angle turns back nowhere
+    if pack.about_bore:  # a curve over the angle turns back nowhere
         return
-    reach = arc_reach(metric_radius=package.metric_radius, bend_radius=package.bend_radius, tilt=package.root_tilt)
-    if reach <= package.petal_angle:
+    reach = arc_reach(metric_radius=pack.metric_radius, bend_radius=pack.bend_radius, tilt=pack.root_tilt)
+    if reach <= pack.petal_angle:
         yield Problem(
             _key(petals, "root_tilt", number),
-            f"an arc bent to {_m(package.bend_radius)} with a root tilt of {package.root_tilt:.4g} rad turns back at "
-            f"{reach:.4g} rad and does not reach the free edge at {package.petal_angle:.4g} rad "
-            f"({package.petal_angle - reach:.4g} rad short)",
-            package.root_tilt,
+            f"an arc bent to {_m(pack.bend_radius)} with a root tilt of {pack.root_tilt:.4g} rad turns back at "
+            f"{reach:.4g} rad and does not reach the free edge at {pack.petal_angle:.4g} rad "
+            f"({pack.petal_angle - reach:.4g} rad short)",
+            pack.root_tilt,
             "a tilt and a bend radius whose arc reaches the free edge",
         )
 
 
-def _table_problems(package: Package, bearing: Bearing, table: Table) -> Iterator[Problem]:
+def _table_problems(pack: PackGeometry, bearing: Bearing, table: Table) -> Iterator[Problem]:
     last, root = table[-1][0], table[0][1]
-    if last < package.petal_angle - EDGE_TOLERANCE:
+    if last < pack.petal_angle - EDGE_TOLERANCE:
         yield Problem(
             "petals.free_shape",
-            f"the table ends at {_deg(last)}, {_deg(package.petal_angle - last)} short of the free edge at "
-            f"{_deg(package.petal_angle)}",
+            f"the table ends at {_deg(last)}, {_deg(pack.petal_angle - last)} short of the free edge at "
+            f"{_deg(pack.petal_angle)}",
             last,
-            f"a last angle of at least {package.petal_angle:.8g} rad",
+            f"a last angle of at least {pack.petal_angle:.8g} rad",
         )
-    lowest = bearing.journal_radius + package.thickness / 2.0
-    outermost = package.metric_radius + max(ROOT_TOLERANCE, ROOT_SCATTER * package.table_tolerance)
+    lowest = bearing.journal_radius + pack.thickness / 2.0
+    outermost = pack.metric_radius + max(ROOT_TOLERANCE, ROOT_SCATTER * pack.table_tolerance)
     if not lowest <= root <= outermost:
         yield Problem(
             "petals.free_shape",
@@ -321,9 +321,9 @@ def _table_problems(package: Package, bearing: Bearing, table: Table) -> Iterato
         )
 
 
-def _twice_given(package: Package, petals: Petals) -> Iterator[Problem]:
+def _twice_given(pack: PackGeometry, petals: Petals) -> Iterator[Problem]:
     """Yield what contradicts a measured free shape."""
-    given, measured = petals.mean.bend_radius, package.bend_radius
+    given, measured = petals.mean.bend_radius, pack.bend_radius
     if given is not None and abs(given / measured - 1.0) > BEND_TOLERANCE:
         yield Problem(
             "petals.bend_radius",
