@@ -31,6 +31,7 @@ SMALL = {
     "paper_n8_spatial": (32, 16, 8.09, 25.33e-3, 0.04),
     "plain_journal": (64, 16, 80.775, 8.5949e-3, 0.008),
     "bump_foil": (64, 32, 50.144, 7.8225e-3, 0.002),
+    "single_pad_bump_foil": (64, 32, 537.0, 61.9e-3, 0.1),
     "orbit_n8": (32, None, 29.616, 27.634e-3, 0.03),
     "backed_petals": (32, None, 9.50, 27.42e-3, 0.03),
     "unequal_petals": (32, None, 8.15, 27.32e-3, 0.02),
