@@ -29,11 +29,12 @@ import plain_journal
 import race
 import scipy
 import warm_point
+import whole_length
 from measure import Row
 
 import petalfoil
 
-GROUPS = ("race", "point", "growth", "journal", "orbit", "others", "former")
+GROUPS = ("race", "point", "growth", "whole", "journal", "orbit", "others", "former")
 
 
 def groups(quick: bool, classic_seconds: float) -> dict[str, Callable[[], list[Row]]]:
@@ -43,6 +44,7 @@ def groups(quick: bool, classic_seconds: float) -> dict[str, Callable[[], list[R
             "race": lambda: race.rows(race.QUICK, min(classic_seconds, 10.0), 1),
             "point": lambda: warm_point.rows(warm_point.Grid(12, 6), 3, 2),
             "growth": lambda: growth.rows((growth.Grid(8, 4), growth.Grid(14, 8)), None),
+            "whole": lambda: whole_length.rows(whole_length.QUICK, 1),
             "journal": lambda: plain_journal.rows(((48, 16),), 2),
             "orbit": lambda: orbit.rows(orbit.QUICK),
             "others": lambda: others.rows(1),
@@ -52,6 +54,7 @@ def groups(quick: bool, classic_seconds: float) -> dict[str, Callable[[], list[R
         "race": lambda: race.rows(race.FULL, classic_seconds, 3),
         "point": lambda: warm_point.rows(warm_point.Grid(), 9, 7),
         "growth": lambda: growth.rows(growth.SIZES, growth.LARGEST),
+        "whole": lambda: whole_length.rows(whole_length.GRID, 3),
         "journal": lambda: plain_journal.rows(plain_journal.GRIDS, 7),
         "orbit": lambda: orbit.rows(orbit.FULL),
         "others": lambda: others.rows(2),

@@ -21,12 +21,13 @@ from petalfoil.analysis.thermal_limit import beyond_thermal_limit
 from petalfoil.case import Case, ModelKind
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.equilibrium.branches import distinct, probe
-from petalfoil.equilibrium.cold_start import BARRIERS, attempt, by_barriers, solve_cold
+from petalfoil.equilibrium.cold_start import BARRIERS, by_barriers, solve_cold
 from petalfoil.equilibrium.continuation import ascend, settle
 from petalfoil.equilibrium.heated import ThermalRunawayError
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold
+from petalfoil.equilibrium.whole_length import balance_from_half, first_attempt
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.parts import AppliedLoad, Branch
 from petalfoil.system.build import build_problem
@@ -157,7 +158,9 @@ def begun_under_load(problem: CoupledProblem, load: Vector) -> tuple[Solution, c
     """
     wanted = load_of(problem.layout.case, load, problem.layout)
     try:
-        found, rate = begun(problem, wanted, lambda: balance_cold(problem, wanted))
+        found, rate = begun(
+            problem, wanted, lambda: balance_from_half(problem, wanted) or balance_cold(problem, wanted)
+        )
     except ConvergenceError as failure:
         raise beyond_capacity(problem, load, failure) from failure
     keep(found, alone=not rate.real > 0.0)
@@ -241,7 +244,7 @@ def at_position(case: Case) -> OperatingPoint:
             "operation.moment is balanced together with a load: give one, or the slopes operation.tilt in its place"
         )
     problem = build_problem(case)
-    first, rate = begun(problem, None, lambda: attempt(problem, BARRIERS[0]))
+    first, rate = begun(problem, None, lambda: first_attempt(problem))
     found = list(filter(None, [first or by_barriers(problem, BARRIERS[1:])]))
     rates = [leading_eigenvalue(answer) if first is None else rate for answer in found]
     several = wall_kind(case).can(Capability.SEVERAL_EQUILIBRIA)

@@ -27,6 +27,7 @@ from petalfoil.equilibrium.heated import ThermalRunawayError, heated, stiffness
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import FORCE_TOLERANCE, balance_cold, from_neighbour
+from petalfoil.equilibrium.whole_length import balance_from_half
 from petalfoil.errors import ConvergenceError
 from petalfoil.system.build import build_problem, build_tilting, lever_of
 from petalfoil.system.coupled import CoupledProblem
@@ -287,7 +288,8 @@ class RotorInBearings:
             case = support.case.replace(**{"operation.speed": speed})
             problem = build_problem(case)
             try:
-                one = balance_cold(problem, np.array(load) / problem.layout.scales.force)
+                wanted = np.array(load) / problem.layout.scales.force
+                one = balance_from_half(problem, wanted) or balance_cold(problem, wanted)
                 one = one if support.network is None else heated(one, support.network)
             except ConvergenceError as failure:
                 size = float(np.hypot(*load))

@@ -8,6 +8,7 @@
 `continuation.py`          from a known equilibrium to a neighbour; from rest up to speed
 `branches.py`              whether there is more than one equilibrium at a position
 `under_load.py`            the journal's position under a load
+`whole_length.py`          a whole length from half of it: an aligned journal mirrored, and then tilted
 `heated.py`                the temperatures of a heat network with film, contacts and position
 `friction_path.py`         equilibria with friction between petals, one after another
 `coulomb_path.py`          the same with petals that slide along themselves
