@@ -5,7 +5,7 @@
     PetalfoilError(Exception)
      ├── DefinitionError      a bad case
      │    ├── UnitError       a wrong or unknown unit
-     │    └── PackError    a foil pack that cannot be assembled: no overlap, no clearance, no free shape
+     │    └── PackError       a foil pack that cannot be assembled: no overlap, no clearance, no free shape
      ├── UsageError           a bad argument of an analysis, a bad value on the command line
      ├── ConvergenceError     no converged answer
      └── StoreError           a result file that cannot be read or written

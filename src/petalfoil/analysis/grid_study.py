@@ -47,6 +47,9 @@ LEAST_ELEMENTS, MOST_ELEMENTS = 12, 96
 
 POSITION = ("eccentricity_x", "eccentricity_y")
 
+PLACES = ("min_film_thickness_angle", "min_film_thickness_z")
+"""Where the film is thinnest: no single place where contact holds it at its least thickness along a stretch."""
+
 ANGLES = {name for name, variable in SCALARS.items() if variable.units == "rad"}
 
 
@@ -131,7 +134,9 @@ def table(records: Sequence[Record]) -> list[Estimate]:
         advice = "choose other grids with --coarsest, or see why a single one does not converge with `solve`"
         raise ConvergenceError(f"a grid study needs answers on two grids at least ({states})", advice=advice)
     first, good = records[answered.index(True)], [record for record in records if record.converged]
-    names = [name for name in SCALARS if _is_result(name, first) and all(_known(name, record) for record in good)]
+    in_contact = any(float(record.scalars.get("contact_fraction", 0.0)) > 0.0 for record in good)
+    results = [name for name in SCALARS if _is_result(name, first) and not (in_contact and name in PLACES)]
+    names = [name for name in results if all(_known(name, record) for record in good)]
     scale = resolution(first)
     return [_estimate(name, records, scale.get(SCALARS[name].units, 0.0)) for name in names]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from decimal import Decimal
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -139,6 +139,13 @@ _SHOWN: dict[str, Shown] = {
 }
 
 
+_IN_CONTACT = {
+    "min_film_thickness_angle": "  along contact, such as at",
+    "min_film_thickness_z": "  and at z",
+}
+"""Labels of the place of the minimum film thickness where contact holds the film at it."""
+
+
 def as_json(record: Record) -> dict[str, float | int | bool | str | None]:
     """Scalars as the object that ``--json`` prints.
 
@@ -170,7 +177,26 @@ def rows(record: Record) -> list[Row]:
         Label, value and unit.
     """
     reported = without_rounding(record)
-    return [cell(name, reported[name]) for name in in_order(reported)]
+    return [row(name, reported) for name in in_order(reported)]
+
+
+def row(name: str, reported: Mapping[str, Scalar]) -> Row:
+    """Line of one scalar of a record; where the journal is in contact, the minimum film thickness has many places.
+
+    Parameters
+    ----------
+    name : str
+        Name in the schema.
+    reported : mapping
+        Scalars of the record, SI.
+
+    Returns
+    -------
+    Row
+        Label, value and unit.
+    """
+    line, touching = cell(name, reported[name]), float(reported.get("contact_fraction", 0.0)) > 0.0
+    return line._replace(label=_IN_CONTACT[name]) if touching and name in _IN_CONTACT else line
 
 
 def without_rounding(record: Record) -> dict[str, Scalar]:

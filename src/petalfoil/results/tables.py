@@ -11,7 +11,7 @@ from petalfoil.results.grid import Grid
 from petalfoil.results.layout import Answer, Cell, Layout, Point, Series
 from petalfoil.results.record import Record, Scalar
 from petalfoil.results.study import GridStudy, grid_text
-from petalfoil.results.summary import ABSENT, cell, in_order, number, rows, with_bar, without_rounding
+from petalfoil.results.summary import ABSENT, cell, in_order, number, row, rows, with_bar, without_rounding
 
 
 @dataclass(frozen=True)
@@ -81,12 +81,12 @@ def _with_bars(record: Record) -> Iterator[tuple[str, ...]]:
         yield from rows(record)
         return
     for name in in_order(reported):
-        row, bar = cell(name, reported[name]), ""
+        line, bar = row(name, reported), ""
         is_rounding = reported[name] == 0.0 != record.scalars[name]
         if name in errors and not is_rounding:
             (value,), bar = with_bar(name, [float(reported[name])], errors[name])
-            row = row._replace(value=value)
-        yield row.label, row.value, bar and f"± {bar}", row.unit
+            line = line._replace(value=value)
+        yield line.label, line.value, bar and f"± {bar}", line.unit
 
 
 def _study(records: Sequence[Record], found: Sequence[Estimate]) -> TextTable:
@@ -96,10 +96,10 @@ def _study(records: Sequence[Record], found: Sequence[Estimate]) -> TextTable:
     trust = [*map(TextColumn, ("order", "limit", "error")), TextColumn("trust", of_numbers=False)]
     table = TextTable((*words, *grids, *trust))
     for name in in_order(estimates):
-        estimate, row = estimates[name], cell(name, 0.0)
+        estimate, shown = estimates[name], cell(name, 0.0)
         (*values, limit), bar = with_bar(name, [*estimate.values, estimate.limit], estimate.error)
         order = ABSENT if math.isnan(estimate.order) else f"{estimate.order:.2f}"
-        table.lines.append((row.label.strip(), row.unit, *values, order, limit, f"± {bar}", estimate.trust))
+        table.lines.append((shown.label.strip(), shown.unit, *values, order, limit, f"± {bar}", estimate.trust))
     return table
 
 

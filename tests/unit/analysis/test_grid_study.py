@@ -179,6 +179,13 @@ def test_angles_are_compared_the_short_way_round() -> None:
     assert halved.error == math.pi
 
 
+def test_the_place_of_a_film_that_contact_holds_has_no_error_bar() -> None:
+    angles = [point(16 * 2**k, min_film_thickness_angle=float(k), contact_fraction=0.1 * k) for k in range(3)]
+    assert "min_film_thickness_angle" not in named(table(angles))  # one of many places
+    free = [replace(one, scalars={**one.scalars, "contact_fraction": 0.0}) for one in angles]
+    assert "min_film_thickness_angle" in named(table(free))
+
+
 def test_progress_rises_from_grid_to_grid() -> None:
     told: list[tuple[float, str]] = []
     petalfoil.converge(JOURNAL, levels=2, coarsest=16, progress=lambda share, text: told.append((share, text)))

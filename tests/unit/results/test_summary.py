@@ -47,6 +47,14 @@ def test_rows_are_in_the_units_an_engineer_reads() -> None:
     assert rows["status"] == ("converged", "")
 
 
+def test_a_film_that_contact_holds_is_thinnest_along_it() -> None:
+    free = {**factory.solved().scalars, "contact_fraction": 0.0}
+    labels = [
+        [summary.row("min_film_thickness_angle", {**free, "contact_fraction": held}).label] for held in (0.0, 0.1)
+    ]
+    assert labels == [["  at angle"], ["  along contact, such as at"]]
+
+
 def test_rows_show_a_dash_for_a_missing_figure() -> None:
     rows = {row.label: row.value for row in summary.rows(factory.failed())}
     assert rows["bearing force"] == summary.ABSENT
