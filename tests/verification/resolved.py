@@ -10,7 +10,11 @@ from petalfoil.analysis.derivatives import Derivative, DerivativesOf, Results, n
 from petalfoil.analysis.variation import Variation
 from petalfoil.case import Case
 from petalfoil.case.parameters import parameters_of
+from petalfoil.equilibrium.element_rates import under
+from petalfoil.equilibrium.element_tangent import ElementTangent
 from petalfoil.equilibrium.parameter_response import Equations
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.small_motion import ElementEquilibrium
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.results.schema import SCALARS
 
@@ -29,6 +33,8 @@ WITHOUT_EFFECT = ("model", "rotor", "surface.friction_width", "surface.petal_fri
 
 def solved_again(derivatives: DerivativesOf, there: Equations) -> Solution:
     """The equilibrium of `there` with the same active contacts, by Newton's method from the first one."""
+    if derivatives.told.elements is not None:
+        return replace(derivatives.told, elements=on_elements(derivatives.told.elements, there), problem=there.problem)
     first, held = derivatives.solution, derivatives.held
     problem = there.problem if there.load is None else there.problem.at(displacement=first.problem.displacement)
     found = replace(first, problem=problem, load=there.load)
@@ -37,6 +43,23 @@ def solved_again(derivatives: DerivativesOf, there: Equations) -> Solution:
         rate = held.respond(replace(values, displacement=np.zeros_like(values.displacement)))
         found = rate.moved(found, 1.0, there)
         if np.max(np.abs(rate.x)) < SMALL * np.max(np.abs(found.x)):
+            return found
+    raise AssertionError("the second equilibrium was not reached")
+
+
+def on_elements(first: ElementEquilibrium, there: Equations) -> ElementEquilibrium:
+    """The same with petals of continuous slopes: contacts stay, their places and reactions follow."""
+    load = there.load
+    tangent = ElementTangent.at(first.equations, load, current_run().probe_solver)
+    found = under(first, there)
+    assert found is not None
+    for _ in range(STEPS):
+        equations = found.equations
+        force = equations.force + (np.zeros_like(equations.force) if load is None else load)
+        change, move = tangent.correction(equations.newton_residual, force)
+        problem = equations.problem.at(displacement=equations.problem.displacement + move)
+        found = found.moved(problem, change)
+        if np.max(np.abs(change)) < SMALL * max(1.0, np.max(np.abs(found.equations.deflection))):
             return found
     raise AssertionError("the second equilibrium was not reached")
 

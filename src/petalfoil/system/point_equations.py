@@ -135,7 +135,7 @@ class PointEquations:
     def residual(self) -> tuple[Array, Array, Array, Array]:
         """Wall, film, gaps of all points, slopes of the travelling ones."""
         (n, _), points, state, gaps = self.by_w, self.state.points, self.state, self.gaps
-        elastic = self.whole.stiffness @ state.w - self.whole.push @ (state.P - 1.0)
+        elastic = self.whole.elastic(state.w) - self.whole.push @ (state.P - 1.0)
         wall = elastic - n.T @ points.reaction
         value = np.where(self.idle > 0.0, points.reaction, gaps.value)
         return wall, self.film.residual, value, gaps.slope[points.ends] * self.travels
@@ -150,7 +150,7 @@ class PointEquations:
         """Generalised forces on the petals: elastic, by pressure and contacts, and magnitudes of these, (n_wall,)."""
         (n, _), reaction, over = self.by_w, self.state.points.reaction, self.state.P - 1.0
         loads = self.whole.push @ over + n.T @ reaction
-        return self.whole.stiffness @ self.state.w, loads, abs(self.whole.push) @ np.abs(over) + abs(n.T) @ reaction
+        return self.whole.elastic(self.state.w), loads, abs(self.whole.push) @ np.abs(over) + abs(n.T) @ reaction
 
     @property
     def scaled(self) -> Array:

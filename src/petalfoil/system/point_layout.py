@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -45,9 +46,18 @@ class PointLayout:
         return self.layout.wall.film.n_unknown
 
     @cached_property
+    def bending(self) -> sp.csr_array:
+        """`B` with `K = B^T B` [1]."""
+        return sp.csr_array(self.pack.bending * math.sqrt(self.layout.scales.length / self.layout.scales.force))
+
+    @cached_property
     def stiffness(self) -> sp.csr_array:
         """`K` [1]."""
-        return sp.csr_array(self.pack.stiffness * (self.layout.scales.length / self.layout.scales.force))
+        return sp.csr_array(self.bending.T @ self.bending)
+
+    def elastic(self, w: Array) -> Array:
+        """`K w` from changes of curvature: a small part of the digits that the sum of `K`'s entries loses."""
+        return np.asarray(self.bending.T @ (self.bending @ w))
 
     @cached_property
     def stiffness_size(self) -> sp.csr_array:

@@ -73,12 +73,12 @@ class ElementPack:
         return sp.csr_array(sp.kron(sp.eye_array(self.mesh.count), self.elements.nodal, format="csr"))
 
     @cached_property
-    def stiffness(self) -> sp.csr_array:
-        """Generalised forces from the unknowns, (n, n) [N/m]."""
+    def bending(self) -> sp.csr_array:
+        """`B` of all petals, see `PetalElements.bending`."""
         known: dict[int, sp.csr_array] = {}
         for petal in self.petals:
             if id(petal) not in known:
-                known[id(petal)] = petal.stiffness
+                known[id(petal)] = petal.bending
         return sp.csr_array(sp.block_diag([known[id(petal)] for petal in self.petals], format="csr"))
 
     @property
