@@ -7,16 +7,27 @@ at its limit.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 from scipy.optimize import root_scalar
 
+from petalfoil.analysis.crossings import PRECISION
 from petalfoil.analysis.derivatives import Derivative, Results
 from petalfoil.analysis.heated_derivatives import Derivatives
 from petalfoil.analysis.variation import Variation
 from petalfoil.case.parameters import parameter_of
+from petalfoil.equilibrium.run_context import current_run
 from petalfoil.errors import ConvergenceError
+
+SPEED = "operation.speed"
+
+NEWTON_STEPS = 8
+"""Newton steps to a crossing: from a bracket of 0.1 % two or three reach it."""
+
+PRECISE = 1e-8
+"""Relative change of the speed at which they end; a balance determines it to some 1e-9."""
 
 RATE = 1e-9
 """Relative precision of the rate of the quantity at a kink."""
@@ -131,3 +142,26 @@ class CrossingDerivatives:
                 advice="change the case or the limit by a millionth",
             )
         return float(root.root)
+
+
+def newton_to(
+    name: str, limited: tuple[str, float], speed: float, balance_at: Callable[[float], Derivatives]
+) -> CrossingDerivatives | None:
+    """Derivatives of the speed `name` [rad/s] at which a result has its limit, by Newton's method from a near `speed`.
+
+    `limited` is that result and its limit, `balance_at` gives its derivatives over speed. None where it does not pass
+    through the limit smoothly near by.
+    """
+    result, limit = limited
+    for _ in range(NEWTON_STEPS):
+        balance = balance_at(speed)
+        by_speed, value = balance.by(SPEED), balance.values[result]
+        slope = (by_speed.above if value > limit else by_speed.below)[result]
+        change = math.nan if slope == 0.0 else (limit - value) / slope
+        current_run().note("crossing", speed=speed, value=value, limit=limit)
+        if abs(change) <= PRECISE * speed:
+            return CrossingDerivatives(name, speed, balance, result, {SPEED: 1.0}, by_speed)
+        if not abs(change) <= 10.0 * PRECISION * speed:
+            return None
+        speed += change
+    return None

@@ -14,6 +14,7 @@ from petalfoil.analysis.liftoff import own_load
 from petalfoil.analysis.liftoff_derivatives import speed_derivatives
 from petalfoil.analysis.load_limit import Limits
 from petalfoil.analysis.operating_point import operating_point
+from petalfoil.analysis.response_derivatives import THRESHOLD, coefficient_results, stability_derivatives
 from petalfoil.analysis.sensitivity_table import Source
 from petalfoil.case import Case
 from petalfoil.equilibrium.continuation import rest
@@ -47,6 +48,10 @@ class Asked:
         All limits of a load capacity.
     direction : float
         Direction of its load [rad].
+    frequency : float or None
+        Whirl frequency of stiffness and damping [rad/s]; None for that of the speed.
+    mass : float or None
+        Mass of the rotor whose threshold speed is asked for [kg]; None for that of the case or its load.
     """
 
     verb: str
@@ -58,6 +63,8 @@ class Asked:
     contact_fraction: float
     limits: Limits
     direction: float
+    frequency: float | None = None
+    mass: float | None = None
 
 
 def sources_of(case: Case, asked: Asked) -> Sequence[Source]:
@@ -76,7 +83,12 @@ def sources_of(case: Case, asked: Asked) -> Sequence[Source]:
     if asked.verb == "static":
         at_rest = reported(case, at_zero_speed(case))
         return [derivatives_of(case, at_rest, results_at_rest, as_points=asked.as_points)]
+    if asked.verb == "stability":
+        threshold = THRESHOLD in asked.quantities
+        return stability_derivatives(case, asked.mass, threshold=threshold, as_points=asked.as_points)
     solution = operating_point(case, None).answer
+    if asked.verb == "coefficients":
+        return [derivatives_of(case, solution, coefficient_results(asked.frequency), as_points=asked.as_points)]
     results = results_with_growth(solution) if set(asked.quantities) & set(GROWTH) else equilibrium_results
     return [derivatives_of(case, solution, results, as_points=asked.as_points)]
 

@@ -13,26 +13,18 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from petalfoil.analysis.crossing_derivatives import CrossingDerivatives
-from petalfoil.analysis.crossings import PRECISION, crossings
+from petalfoil.analysis.crossing_derivatives import SPEED, CrossingDerivatives, newton_to
+from petalfoil.analysis.crossings import crossings
 from petalfoil.analysis.derivatives import Results
 from petalfoil.analysis.evaluation import Evaluation
-from petalfoil.analysis.heated_derivatives import derivatives_of
+from petalfoil.analysis.heated_derivatives import Derivatives, derivatives_of
 from petalfoil.analysis.operating_point import at
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
-from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 
-SPEED = "operation.speed"
 FRACTION = "contact_fraction"
-
-NEWTON_STEPS = 8
-"""Newton steps to the crossing: from a bracket of 0.1 % two or three reach it."""
-
-PRECISE = 1e-8
-"""Relative change of the speed at which they end; a balance determines it to some 1e-9."""
 
 
 def speed_derivatives(case: Case, load: float, limit: float, *, as_points: bool = False) -> list[CrossingDerivatives]:
@@ -67,19 +59,15 @@ def refined(name: str, line: SpeedLine, where: tuple[float, float], as_points: b
     of contacts at nodes do.
     """
     speed, limit = where
-    for _ in range(NEWTON_STEPS):
-        found = replace(line.at(speed), lines=None)  # in 3-D derivatives are those of contacts at nodes
+
+    def balance_at(omega: float) -> Derivatives:
+        found = replace(line.at(omega), lines=None)  # in 3-D derivatives are those of contacts at nodes
         exact = as_points and found.elements is not None
-        balance = derivatives_of(at(line.case, speed), found, fraction_of, as_points=exact)
-        by_speed, fraction = balance.by(SPEED), balance.values[FRACTION]
-        slope = (by_speed.above if fraction > limit else by_speed.below)[FRACTION]
-        change = math.nan if slope == 0.0 else (limit - fraction) / slope
-        current_run().note("crossing", speed=speed, contact_fraction=fraction)
-        if abs(change) <= PRECISE * speed:
-            return CrossingDerivatives(name, speed, balance, FRACTION, {SPEED: 1.0}, by_speed)
-        if not abs(change) <= 10.0 * PRECISION * speed:
-            break
-        speed += change
+        return derivatives_of(at(line.case, omega), found, fraction_of, as_points=exact)
+
+    found = newton_to(name, (FRACTION, limit), speed, balance_at)
+    if found is not None:
+        return found
     raise ConvergenceError(
         f"no derivative of the {name.replace('_', ' ')}: the contact fraction does not pass through {limit:g} smoothly "
         f"near {speed:.6g} rad/s",

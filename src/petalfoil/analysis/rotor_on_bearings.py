@@ -56,7 +56,11 @@ class RotorOnBearings:
         return Inertia.of(whole.with_inertias(self.case.bearing.journal_radius))
 
     def impedance(self, answer: Solution) -> Impedance:
-        """The impedance of the bearing, or of both, about the equilibrium of one.
+        """The impedance of the bearing, or of both, about the equilibrium of one; see `motion`."""
+        return whirl_impedance(self.motion(answer))
+
+    def motion(self, answer: Solution) -> JournalMotion:
+        """Small motions of the bearing, or of both, about the equilibrium of one.
 
         Raises
         ------
@@ -64,8 +68,8 @@ class RotorOnBearings:
             The pack is bottomed out.
         """
         if self.case.bearings == 1:
-            return whirl_impedance(elastic(self.case, held(self.case, answer)))
-        return whirl_impedance(self._joint(answer))
+            return elastic(self.case, held(self.case, answer))
+        return self._joint(answer)
 
     def followed(self, last: JournalMotion, speed: float, load: tuple[float, float]) -> Impedance | None:
         """The impedance under `load` (x, y) [N] at another speed [rad/s], contacts and position followed from `last`.

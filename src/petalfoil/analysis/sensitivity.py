@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Annotated
 
-from petalfoil.analysis.arguments import Load, Position, Quantity, Speed
+from petalfoil.analysis.arguments import Load, Mass, Position, Quantity, Speed
 from petalfoil.analysis.capacity import DOWN, LoadDirection, MinFilm, Stress, check_limits
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.crossings import CONTACT_FRACTION
@@ -17,7 +17,7 @@ from petalfoil.analysis.load_limit import Limits
 from petalfoil.analysis.operating_point import Vector, applied_load, at
 from petalfoil.analysis.records import asked_position, effort, record_of
 from petalfoil.analysis.runs import Points
-from petalfoil.analysis.sensitivity_table import LAYOUT, RESULTS, Line, lines_of, ordered, rounding_of
+from petalfoil.analysis.sensitivity_table import LAYOUT, MATRICES, RESULTS, Line, lines_of, ordered, rounding_of
 from petalfoil.analysis.solve import placed
 from petalfoil.analysis.words import Choice, Names, known
 from petalfoil.case import Case
@@ -35,6 +35,8 @@ MAIN_RESULT = {
     "liftoff": "liftoff_speed",
     "capacity": "load_capacity",
     "static": "starting_torque",
+    "coefficients": "stiffness_yy",
+    "stability": "critical_mass",
 }
 """Questions that have derivatives, and the result that is asked for unless another is."""
 
@@ -48,7 +50,7 @@ ANSWERS = [
     name
     for name, variable in SCALARS.items()
     if not variable.dims and variable.kind is DataType.FLOAT and variable.role is Role.ANSWER
-] + ["eccentricity_x", "eccentricity_y", "load_capacity"]
+] + ["eccentricity_x", "eccentricity_y", "load_capacity", *MATRICES]
 """Results that a question may have; which of them it has is known once it is answered."""
 
 Vary = Annotated[
@@ -62,8 +64,8 @@ Ask = Annotated[
     Choice(
         metavar="VERB",
         words=tuple(MAIN_RESULT),
-        help="Whose results: solve, balance, liftoff, capacity or static; by default balance where there is a load, "
-        "else solve.",
+        help="Whose results: solve, balance, liftoff, capacity, static, coefficients or stability; by default balance "
+        "where there is a load, else solve.",
     ),
 ]
 Of = Annotated[
@@ -94,6 +96,15 @@ Step = Annotated[
 ]
 
 
+WhirlFrequency = Annotated[
+    float | None,
+    Quantity(
+        unit="rad/s",
+        metavar="FREQUENCY",
+        help="Whirl frequency of stiffness and damping; by default that of the speed.",
+        at_least=0.0,
+    ),
+]
 Contacts = Annotated[
     str,
     Choice(
@@ -118,6 +129,8 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     min_film_thickness: MinFilm = None,
     max_stress: Stress = None,
     direction: LoadDirection = DOWN,
+    frequency: WhirlFrequency = None,
+    mass: Mass = None,
     contacts: Contacts = "points",
     step: Step = 0.01,
     progress: Progress | None = None,
@@ -152,6 +165,7 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     limits = Limits(min_film_thickness=min_film_thickness, contact_fraction=contact_fraction, max_stress=max_stress)
     fraction = CONTACT_FRACTION if contact_fraction is None else contact_fraction
     asked = Asked(verb, paths, quantities, step, vary is None, contacts == "points", fraction, limits, direction)
+    asked = replace(asked, frequency=frequency, mass=mass)
     refuse_limits(there, asked)
     most = len(ANSWERS) if ALL in quantities else len(quantities)
     return Points(_points(there, asked, progress), len(paths) * most, "effects")
@@ -177,6 +191,8 @@ def posed(case: Case, verb: str, load: Vector | None, eccentricity: Vector | Non
         if load is not None or eccentricity is not None:
             raise UsageError("capacity finds the load: give --min-film, --contact-fraction or --max-stress alone")
         return case.replace(**{"operation.load": None, "operation.eccentricity": (0.0, 0.0)})
+    if verb in ("coefficients", "stability"):
+        return posed_to_whirl(case, load, eccentricity)
     if verb == "solve":
         if load is not None:
             raise UsageError("solve holds the journal at a position: give an eccentricity, or ask balance")
@@ -191,6 +207,26 @@ def posed(case: Case, verb: str, load: Vector | None, eccentricity: Vector | Non
     return loaded
 
 
+def posed_to_whirl(case: Case, load: Vector | None, eccentricity: Vector | None) -> Case:
+    """The case with the load or the position about which the journal whirls.
+
+    Raises
+    ------
+    UsageError
+        The shaft does not turn, or the journal is free to tilt.
+    """
+    if not case.operation.speed > 0.0:
+        raise UsageError("small motions need a turning shaft: give a speed above zero")
+    if case.operation.moment is not None:
+        raise UsageError(
+            "stiffness, damping and critical mass have no derivatives under a moment: leave operation.moment out, or "
+            "compare two runs"
+        )
+    if eccentricity is not None or (load is None and case.operation.load is None):
+        return placed(case, eccentricity)
+    return case.replace(**{"operation.load": applied_load(case, load), "operation.eccentricity": (0.0, 0.0)})
+
+
 def refuse_limits(case: Case, asked: Asked) -> None:
     """Refuse a capacity without a limit, and limits of what has none.
 
@@ -203,6 +239,10 @@ def refuse_limits(case: Case, asked: Asked) -> None:
         check_limits(case, asked.limits)
     elif asked.limits.min_film_thickness is not None or asked.limits.max_stress is not None:
         raise UsageError(f"--min-film and --max-stress are limits of a load capacity: {asked.verb} has none")
+    if asked.frequency is not None and asked.verb != "coefficients":
+        raise UsageError(f"--frequency is that of stiffness and damping: {asked.verb} has none")
+    if asked.mass is not None and asked.verb != "stability":
+        raise UsageError(f"--mass is that of the rotor whose threshold speed is asked for: {asked.verb} has none")
 
 
 def default_paths(case: Case, verb: str) -> list[str]:
@@ -233,7 +273,7 @@ def checked(case: Case, path: str) -> str:
 def _points(case: Case, asked: Asked, progress: Progress | None) -> Iterator[Record]:
     """One record for each parameter and result, by the size of the effect."""
     with running(progress, "sensitivity") as run:
-        there = {name: source for source in sources_of(case, asked) for name in source.values}
+        there = {name: source for source in sources_of(case, asked) for name in source.values if name in SCALARS}
         quantities = named(asked, list(there))
         sources = {name: there[name] for name in quantities}
         lines: list[Line] = []

@@ -32,7 +32,17 @@ def _number(long_name: str, symbol: str, role: Role = Role.ANSWER, units: str = 
     return Variable((), units, long_name, symbol, role=role, shown=shown)
 
 
+STIFFNESS = ("stiffness_xx", "stiffness_xy", "stiffness_yx", "stiffness_yy")
+DAMPING = ("damping_xx", "damping_xy", "damping_yx", "damping_yy")
+MATRICES = {
+    name: _number(f"entry {name[-2:]} of the {name[:-3]} of the bearing", f"{letter}_{name[-2:]}", units=units)
+    for names, letter, units in ((STIFFNESS, "K", "N m-1"), (DAMPING, "C", "N s m-1"))
+    for name in names
+}
+"""Entries of stiffness and damping, as results that have derivatives."""
+
 RESULTS = {
+    **MATRICES,
     "parameter": _text("dotted path of a parameter of the case", "p", "parameter"),
     "parameter_text": _text("value of the parameter with its unit", "p", "value"),
     "parameter_value": _number("value of the parameter, in its SI unit", "p", Role.GIVEN),

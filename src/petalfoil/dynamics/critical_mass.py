@@ -70,12 +70,16 @@ class Balance:
 
     def eigenvalues(self, nu: float) -> Complex:
         """Masses times the square of the whirl frequency that balance the impedance at whirl ratio `nu`, (d,) [N/m]."""
-        Z = self.impedance.at_ratio(nu)
-        if self.inertia is None:
-            return np.asarray(np.linalg.eigvals(Z), dtype=np.complex128)
-        shape = (self.inertia.mass - 1j * self.inertia.gyroscopic / nu) / self.inertia.mass[0, 0]
-        inverse = np.linalg.eigvals(np.linalg.solve(Z, shape))
-        return np.asarray(1.0 / np.where(inverse == 0.0, np.finfo(float).tiny, inverse), dtype=np.complex128)
+        return eigenvalues(self.impedance.at_ratio(nu), nu, self.inertia)
+
+
+def eigenvalues(Z: Complex, nu: float, inertia: Inertia | None) -> Complex:
+    """Masses times the square of the whirl frequency that balance an impedance `Z` (d, d) at whirl ratio `nu`, (d,)."""
+    if inertia is None:
+        return np.asarray(np.linalg.eigvals(Z), dtype=np.complex128)
+    shape = (inertia.mass - 1j * inertia.gyroscopic / nu) / inertia.mass[0, 0]
+    inverse = np.linalg.eigvals(np.linalg.solve(Z, shape))
+    return np.asarray(1.0 / np.where(inverse == 0.0, np.finfo(float).tiny, inverse), dtype=np.complex128)
 
 
 def whirls_at_any_mass(motion: JournalMotion) -> bool:

@@ -15,13 +15,13 @@ from petalfoil.studies.search import Gradients, Slopes
 Ask: TypeAlias = Callable[[Sequence[Point], Question], list[Outcome]]
 
 VERB = "sensitivity"
-DIFFERENTIABLE = ("solve", "balance", "liftoff", "capacity", "static")
+DIFFERENTIABLE = ("solve", "balance", "liftoff", "capacity", "static", "stability")
 """Analyses whose results have exact derivatives."""
 ALL = "all"
 """All results that have derivatives, in place of their names."""
 RENAMED = {"loads": "load"}
 """Arguments that `sensitivity` knows by another name."""
-SHARED = ("load", "eccentricity", "speed", "contact_fraction", "min_film_thickness", "max_stress", "direction")
+SHARED = ("load", "eccentricity", "speed", "contact_fraction", "min_film_thickness", "max_stress", "direction", "mass")
 """Arguments that it shares with them; a question with others has no derivatives."""
 
 
