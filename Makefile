@@ -47,7 +47,7 @@ demo: setup ## Load characteristic of the paper's packages: figures and data in 
 	$(BIN)/python examples/demo.py demo
 
 test: setup ## Fast tests
-	$(BIN)/python -m pytest -n $(JOBS) -m "not slow and not long" tests
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "not slow and not long" tests
 
 test-studio: setup ## The page of `petalfoil studio` in a browser, under attack, and its processes
 	$(BIN)/python -m pytest -n 0 tests/studio
@@ -57,7 +57,7 @@ test-classic: setup ## Tests of the paper's own method, with the numba that comp
 	$(BIN)/python -m pytest -n 0 -m "compiled and not long" tests
 
 test-all: setup ## All tests
-	$(BIN)/python -m pytest -n $(JOBS) -m "not long" tests
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --durations 40 --durations-min 5 -m "not long" tests
 
 test-long: setup ## Tests that take minutes to hours each
 	$(BIN)/python -m pytest -n $(JOBS) -m long tests

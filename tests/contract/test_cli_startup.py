@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-BUDGET = 1.0  # [s] of CPU
+BUDGET = 0.6  # [s] of CPU
 HEAVY = ("CoolProp", "xarray", "matplotlib", "pandas", "dask", "pint", "netCDF4")
 
 IMPORT = "import petalfoil"
@@ -41,7 +41,7 @@ def test_nothing_heavy_is_loaded(start: str) -> None:
 
 
 @pytest.mark.parametrize("arguments", [["-c", IMPORT], ["-m", "petalfoil", "--help"], ["-m", "petalfoil", "--version"]])
-def test_start_takes_less_than_a_second_of_cpu(arguments: list[str]) -> None:
+def test_start_takes_little_cpu(arguments: list[str]) -> None:
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run([sys.executable, *arguments], capture_output=True, check=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -70,7 +70,14 @@ def test_nothing_above_the_walls_asks_for_petals() -> None:
     assert asking == []
 
 
-LONG = {("stability", "petal"), ("liftoff", "petal"), ("liftoff", "bump foil"), ("coefficients", "petal")}
+LONG = {
+    ("stability", "petal"),
+    ("liftoff", "petal"),
+    ("liftoff", "bump foil"),
+    ("coefficients", "petal"),
+    ("capacity", "petal"),
+    ("runup", "petal"),
+}
 """Pairs that take more than a second."""
 
 PAIRS = [

@@ -75,6 +75,7 @@ def check_warm_counts(counts: list[int]) -> None:
     assert max(counts) <= 20  # 16 (required: 25)
 
 
+@pytest.mark.slow
 def test_warm_points_of_a_curve() -> None:
     check_warm_counts(warm(32, (SPEED,)))
 

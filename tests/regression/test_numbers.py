@@ -196,6 +196,13 @@ RUNS = (
 )  # fmt: skip
 
 
+SLOW = {
+    "converge 2-D", "curve 2-D", "curve 3-D", "static 3-D", "static loop", "liftoff 2-D", "runup 2-D",
+    "coefficients 3-D", "stability table 2-D", "orbit 2-D", "orbit 3-D", "orbit rubbing", "orbit ramp",
+}  # fmt: skip
+"""Runs of more than half a second whose verb has a faster one, or whose verb is slow on petals."""
+
+
 def value(ds: xr.Dataset, name: str) -> Any:
     """Value of the answer under a name of the table, as JSON holds it."""
     variable, _, reduction = name.partition("@")
@@ -233,9 +240,12 @@ def compare(name: str, found: Any, stored: Any) -> None:
         assert_allclose(np.asarray(found, dtype=float), stored, rtol=RTOL, atol=atol, err_msg=name)
 
 
-@pytest.mark.parametrize(
-    "run", [pytest.param(run, id=run.name, marks=[getattr(pytest.mark, mark) for mark in run.marks]) for run in RUNS]
-)
+def marks(run: Run) -> list[pytest.MarkDecorator]:
+    """Its own marks, and `slow` where it takes more than half a second."""
+    return [getattr(pytest.mark, mark) for mark in (*run.marks, *(("slow",) if run.name in SLOW else ()))]
+
+
+@pytest.mark.parametrize("run", [pytest.param(run, id=run.name, marks=marks(run)) for run in RUNS])
 def test_numbers(run: Run) -> None:
     stored, found = table()[run.name], answer(run)
     assert found.keys() == stored.keys()

@@ -149,6 +149,7 @@ def test_an_answer_survives_its_file(tmp_path: Path, name: str) -> None:
     xr.testing.assert_identical(load(tmp_path / "result.nc"), ds)
 
 
+@pytest.mark.slow
 def test_the_legs_of_a_run_up_share_one_dimension() -> None:
     ds = ASKED["runup"]()
     assert ds["leg"].values.tolist() == ["up", "up", "up", "down", "down"]

@@ -49,7 +49,7 @@ def stopped_after(number: int, bearing: Case, verb: str, given: dict[str, Any]) 
     return analysis.answer(run, "interrupted").to_dataset()
 
 
-QUICK = ("static loop", "grid study", "stability chart")
+QUICK = ("grid study",)
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[] if n in QUICK else pytest.mark.slow) for n in SERIES])
@@ -81,6 +81,7 @@ def test_points_that_are_done_are_not_computed_again() -> None:
     assert told[-1] == "liftoff: 2 of 2 points"
 
 
+@pytest.mark.slow
 def test_a_curve_goes_on_along_the_branch_it_was_on_and_not_on_one_found_from_nothing(monkeypatch: Any) -> None:
     """Where the last point is found differently from nothing, the points before it are followed again."""
     from petalfoil.analysis import curve as module

@@ -52,6 +52,7 @@ def test_crowns_carry_what_petals_press_on_them_and_no_petal_passes_them(kind: s
     assert (gap > 1e-6).any()
 
 
+@pytest.mark.slow
 def test_stiff_springs_are_a_rigid_bushing() -> None:
     """In 3-D, where contacts of both lie at nodes."""
     grid = {"model.kind": "3d", "model.cells_per_pitch": 16, "model.axial_cells": 4, "model.contacts": "nodes"}

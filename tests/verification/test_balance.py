@@ -65,6 +65,7 @@ def test_the_load_of_a_position_leads_back_to_it(e: tuple[float, float]) -> None
         assert_allclose(number(found, name), number(fixed, name), rtol=1e-7, atol=0.0)
 
 
+@pytest.mark.slow
 def test_a_plain_bearing_and_a_spatial_one() -> None:
     plain = case("plain_journal", **{"model.cells_per_pitch": 48, "model.axial_cells": 12})
     spatial = case("paper_n8_spatial", **{"model.cells_per_pitch": 16, "model.axial_cells": 6})

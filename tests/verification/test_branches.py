@@ -121,6 +121,7 @@ def test_a_long_step_that_leaves_the_branch_is_told_too() -> None:
     assert [bool(record.scalars["jump"]) for record in records] == [False] * 8 + [True]
 
 
+@pytest.mark.slow
 def test_a_point_that_is_asked_for_again_is_no_jump() -> None:
     """Nothing is foretold there, and rounding is larger."""
     for name in ("paper_n6", "paper_n8"):

@@ -44,6 +44,7 @@ def test_a_point_has_the_modes_of_the_rotor_at_its_speed() -> None:
         assert_allclose(modes, np.sort(alone[name].astype(float)), rtol=1e-6, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_branch_keeps_its_form_and_its_frequency() -> None:
     ds = over_speed()
     ratio = ds["natural_frequency"].values / ds["speed"].values[:, None]
@@ -91,6 +92,7 @@ def test_a_table_has_a_line_for_each_mode_and_json_its_lists() -> None:
     assert len(answer.layout.to_json(answer.records)["points"]) == len(SPEEDS)
 
 
+@pytest.mark.slow
 def test_the_figure_marks_crossings_and_growth() -> None:
     ax = campbell(over_speed()).axes[0]
     marks = {line.get_gid() for line in ax.lines}
@@ -179,6 +181,7 @@ def test_the_threshold_is_that_of_the_assembled_equations_of_motion(inertias: di
     assert_allclose(float(modes["natural_frequency"][least]), frequency, rtol=1e-5)
 
 
+@pytest.mark.slow
 def test_the_critical_mass_makes_the_assembled_system_neutral() -> None:
     """At one speed: the determinant of the assembled equations vanishes at the critical mass and the whirl ratio."""
     speed = 4000.0 * RPM

@@ -258,6 +258,7 @@ def test_petals_pressed_solid_have_no_coefficients() -> None:
 # ---------------------------------------------------------------------------------------------- stability
 
 
+@pytest.mark.slow
 def test_threshold_speed_is_where_the_critical_mass_is_the_rotor_s() -> None:
     bearing, load = plain((24, 8)), (0.0, -30.0)
     found = stability.record(bearing, load=load, mass=0.5, speed=1800.0)

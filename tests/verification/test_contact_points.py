@@ -107,6 +107,7 @@ def test_stiffness_is_the_slope_of_equilibria_with_contact_points(name: str) -> 
     assert apart(K, slope) <= 5e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["turbocharger", STRETCHES, "rig"])
 def test_slopes_do_not_depend_on_the_elements(name: str) -> None:
     """On 32 and 48 elements per pitch: stiffness within 0.15 %, damping within 0.4 %."""
@@ -232,6 +233,7 @@ def moved_by(equations: AsperityEquations, step: Array, de: Array) -> AsperityEq
     return there
 
 
+@pytest.mark.slow
 def test_tangent_with_asperities() -> None:
     """Remainder of second order in deflections, film pressures and the journal's position; of the force on it too."""
     slow = {"model.cells_per_pitch": 24, "operation.speed": 200.0, "operation.eccentricity": (0.0, -250e-6)}

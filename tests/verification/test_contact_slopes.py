@@ -150,6 +150,7 @@ def apart(one: Array, other: Array) -> float:
     return float(np.max(np.abs(one - other)) / np.max(np.abs(other)))
 
 
+@pytest.mark.slow
 def test_stiffness_of_a_turbocharger_bearing_has_a_limit() -> None:
     """33.50, -0.97, -1.62, 148.1 kN/m on 256 cells; contacts at nodes give 140 to 154 kN/m for the last."""
     limit = stiffness(BEARINGS["turbocharger"], 256)

@@ -31,6 +31,7 @@ def turned(vector: np.ndarray[Any, Any], angle: float) -> np.ndarray[Any, Any]:
     return np.array([c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "edges"), [("2d", "ambient"), ("3d", "ambient"), ("3d", "continuous")])
 def test_turning_by_one_pitch_turns_the_answer(kind: str, edges: str) -> None:
     base = PAPER.replace(

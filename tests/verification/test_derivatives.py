@@ -110,6 +110,7 @@ def test_a_journal_at_a_position_in_petals() -> None:
     assert_exact(derivatives_of(case(**{"model.cells_per_pitch": 8})), FEW)
 
 
+@pytest.mark.slow
 def test_a_journal_under_a_load_in_petals() -> None:
     assert_exact(derivatives_of(loaded(case(**{"model.cells_per_pitch": 8}), 20.0)), FEW)
 

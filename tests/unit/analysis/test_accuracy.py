@@ -145,6 +145,7 @@ def test_every_verb_has_both_arguments() -> None:
         assert {"error", "accuracy"} <= set(getattr(petalfoil, name).arguments)
 
 
+@pytest.mark.slow
 def test_points_of_curves_have_bars() -> None:
     small = FLAT.replace(**{"model.cells_per_pitch": 32})
     curve = petalfoil.curve(small, [0.0, 1e-4], error=True)
@@ -153,6 +154,7 @@ def test_points_of_curves_have_bars() -> None:
     assert np.all(rest["contact_normal_force_error"] > 0.0)
 
 
+@pytest.mark.slow
 def test_natural_modes_have_bars() -> None:
     plain = case("plain_journal", **{"model.kind": "2d", "model.cells_per_pitch": 32})
     ds = petalfoil.stability(plain, load="15 N", mass="1 kg", error=True)
@@ -161,6 +163,7 @@ def test_natural_modes_have_bars() -> None:
     assert float(ds["natural_frequency_error"][0]) < 0.05 * float(ds["natural_frequency"][0])
 
 
+@pytest.mark.slow
 def test_a_motion_has_bars_and_one_that_goes_on_has_none() -> None:
     rotor = case("plain_journal", **{"model.kind": "2d", "model.cells_per_pitch": 24, "rotor.mass": 1.0})
     rotor = rotor.replace(**{"rotor.unbalance": 2e-6})

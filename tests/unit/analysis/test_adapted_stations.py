@@ -51,6 +51,7 @@ def test_second_derivatives_are_exact_for_parabolas_on_any_spacing() -> None:
     assert_allclose(over_mean(np.zeros(3)), 0.0)
 
 
+@pytest.mark.slow
 def test_stations_crowd_where_the_petals_lift_off_the_film() -> None:
     bearing = case("paper_n8_spatial", **COARSE)
     adapted = with_stations(bearing)
@@ -62,6 +63,7 @@ def test_stations_crowd_where_the_petals_lift_off_the_film() -> None:
     assert with_stations(bearing) == adapted
 
 
+@pytest.mark.slow
 def test_results_tell_their_stations() -> None:
     result = petalfoil.solve(case("paper_n8_spatial", **COARSE))
     shown = Case.from_toml(result.attrs["case"])

@@ -26,7 +26,9 @@ LIMITS = {
 }
 
 
-@pytest.mark.parametrize("name", LIMITS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow if "petals" in name else ()) for name in LIMITS]
+)
 def test_the_limit_holds_at_the_answer_and_fails_beyond(name: str) -> None:
     bearing, limit, result, allowed = LIMITS[name]
     found = petalfoil.capacity(bearing, **limit)
@@ -40,6 +42,7 @@ def test_the_limit_holds_at_the_answer_and_fails_beyond(name: str) -> None:
     assert worse * (float(beyond[result]) - allowed) > 1e-4 * allowed
 
 
+@pytest.mark.slow
 def test_the_first_limit_counts() -> None:
     stress = float(petalfoil.balance(PETALS, "20 N")["max_bending_stress"])
     both = petalfoil.capacity(PETALS, min_film_thickness=4e-6, max_stress=stress)
@@ -51,7 +54,14 @@ def test_the_first_limit_counts() -> None:
     assert float(film["load_capacity"]) > 21.0
 
 
-@pytest.mark.parametrize(("bearing", "most"), [(PLAIN, 6), (BUMPS, 6), (PETALS, 16)], ids=["plain", "bumps", "petals"])
+@pytest.mark.parametrize(
+    ("bearing", "most"),
+    [
+        pytest.param(PLAIN, 6, id="plain"),
+        pytest.param(BUMPS, 6, id="bumps"),
+        pytest.param(PETALS, 16, id="petals", marks=pytest.mark.slow),
+    ],
+)
 def test_warm_speeds_take_few_factorisations(bearing: Case, most: int) -> None:
     """Six; of petals up to three more for the contact points of each balance."""
     speed = bearing.operation.speed
@@ -83,6 +93,7 @@ def test_the_load_coefficient_is_the_load_over_projected_area_and_surface_speed(
     assert float(found["load_coefficient_imperial"]) == pytest.approx(expected, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_turning_the_load_is_turning_the_petals_back() -> None:
     turned = petalfoil.capacity(PETALS, min_film_thickness=4e-6, orientations=3)
     angles = turned["load_orientation"].to_numpy()

@@ -87,6 +87,7 @@ def test_a_force_leaves_the_state_as_it_is_and_an_advance_moves_it() -> None:
     assert once[1] > at_rest[1]
 
 
+@pytest.mark.slow
 def test_a_journal_that_is_held_comes_to_its_equilibrium() -> None:
     film, speed = petalfoil.Film(BUMPS), BUMPS.operation.speed
     x, y = 2e-6, -12e-6

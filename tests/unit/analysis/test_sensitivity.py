@@ -140,6 +140,7 @@ def test_the_starting_torque_is_proportional_to_friction_and_to_the_modulus() ->
     assert_allclose(ds["quantity_value"].values[list(ds["quantity"].values).index("starting_torque")], own, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_the_load_capacity_follows_speed_as_it_follows_viscosity() -> None:
     finer = case(**{"model.cells_per_pitch": 24})
     ds = petalfoil.sensitivity(finer, "operation.speed, gas.viscosity", ask="capacity", min_film_thickness=8e-6)

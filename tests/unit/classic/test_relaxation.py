@@ -91,6 +91,7 @@ def test_the_relaxation_factor_is_halved_when_the_change_stops_to_fall() -> None
     assert (relaxation.smallest, relaxation.waited) == (0.9, 0)
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_without_relaxation_the_run_finds_a_smaller_factor() -> None:
     run = ClassicRun(pack(10), ClassicOptions(deflection_relaxation=1.0))
@@ -108,6 +109,7 @@ def no_numba(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     inner.kernels.cache_clear()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_numba")
 def test_without_numba_the_numpy_loops_run() -> None:
     assert inner.kernels() == (numpy_kernels.march, numpy_kernels.descend)

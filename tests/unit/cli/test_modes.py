@@ -23,6 +23,7 @@ def small(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_modes_are_lists_by_frequency_and_come_back_from_a_file(cli, small: Path, tmp_path: Path) -> None:
     out = tmp_path / "modes.nc"
     answer = json.loads(cli("stability", str(small), "--mass", "1 kg", "--json", "--out", str(out)).stdout)

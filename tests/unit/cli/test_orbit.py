@@ -90,6 +90,7 @@ def test_json_gives_lists_over_time(cli: Run, rotor: str, tmp_path: Path) -> Non
     assert json.loads(shown.stdout) == answer
 
 
+@pytest.mark.slow
 def test_the_table_is_the_same_from_the_file(cli: Run, rotor: str, tmp_path: Path) -> None:
     out = tmp_path / "orbit.nc"
     result = cli("orbit", rotor, "--duration", "3 ms", "--out", str(out))
@@ -166,6 +167,7 @@ def test_a_motion_that_is_stuck_keeps_what_is_done(
     assert kept == f"stopped: {_turns(out)} are finished and kept in {out}"
 
 
+@pytest.mark.slow
 def test_the_file_grows_with_the_motion(cli: Run, rotor: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out, seen = tmp_path / "orbit.nc", []
     monkeypatch.setattr(keeping, "PERIOD", 0.0)

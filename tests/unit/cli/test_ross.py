@@ -76,6 +76,7 @@ def test_a_table_that_is_coarse_near_half_speed_is_warned_of(cli, loads, case, t
     assert "near half of 100 rad/s" in result.stderr
 
 
+@pytest.mark.slow
 def test_two_bearings_of_a_rotor_have_their_nodes_and_names(cli, loads, case, tmp_path: Path) -> None:
     one, two = tmp_path / "drive end.toml", tmp_path / "b.json"
     cli("coefficients", case, *SPEEDS, "--ross", str(one))

@@ -70,7 +70,7 @@ main()
 @pytest.mark.parametrize(
     ("signal", "exit_code"),
     [
-        ("SIGTERM", 143),
+        pytest.param("SIGTERM", 143, marks=pytest.mark.slow),
         pytest.param("SIGINT", 130, marks=pytest.mark.slow),
         pytest.param("SIGHUP", 129, marks=pytest.mark.slow),
     ],

@@ -15,7 +15,7 @@ from tests.cases import case as small_case
 PETALFOIL = [sys.executable, "-m", "petalfoil"]
 
 
-@pytest.mark.parametrize("arguments", [["--version"], ["solve", "--help"]])
+@pytest.mark.parametrize("arguments", [["--version"], pytest.param(["solve", "--help"], marks=pytest.mark.slow)])
 def test_a_reader_that_goes_away_is_no_event(arguments: list[str]) -> None:
     reading, writing = os.pipe()
     os.close(reading)
@@ -57,6 +57,7 @@ def test_a_terminal_that_is_gone_does_not_end_the_run() -> None:
     assert (done.returncode, done.stdout) == (0, "files are written\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", ["before", "behind"])
 def test_verbose_tells_the_steps(tmp_path: Path, place: str) -> None:
     path = tmp_path / "case.toml"

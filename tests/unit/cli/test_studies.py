@@ -50,6 +50,7 @@ def test_a_sweep_tells_counts_ranges_and_reasons(swept: tuple[Path, Result]) -> 
     assert "processor time: " in done.stderr
 
 
+@pytest.mark.slow
 def test_a_study_is_shown_again_and_drawn(swept: tuple[Path, Result], tmp_path: Path) -> None:
     shown = run("study", "show", str(swept[0]), "--json", "--of", "bearing_force", "--plot", str(tmp_path / "f.png"))
     assert shown.exit_code == 0, shown.output
@@ -127,6 +128,7 @@ def test_a_study_without_any_answer_has_an_exit_code(two_d: str, tmp_path: Path)
     assert json.loads(failed.stdout)["cases"] == {"invalid case": 2}
 
 
+@pytest.mark.slow
 def test_tolerance_tells_how_likely_limits_are_kept(two_d: str, tmp_path: Path) -> None:
     words = ["tolerance", two_d, "--scatter", "gas.viscosity=± 2 %", "--eccentricity", "0 um, -20 um"]
     words_of_run = ["--limit", "bearing_force > 1 N", "--samples", "8", "--workers", "0", "--out", str(tmp_path / "t")]
@@ -139,6 +141,7 @@ def test_tolerance_tells_how_likely_limits_are_kept(two_d: str, tmp_path: Path) 
     assert "Did you mean 'bearing_force'?" in refused.stderr
 
 
+@pytest.mark.slow
 def test_optimize_tells_the_best_design(two_d: str, tmp_path: Path) -> None:
     words = ["optimize", two_d, "--vary", "operation.speed=1000 rad/s : 9000 rad/s", "--eccentricity", "0 um, -10 um"]
     goal = ["--maximize", "bearing_force", "--subject", "power_loss < 30 W", "--budget", "20", "--workers", "0"]
@@ -154,6 +157,7 @@ def test_optimize_tells_the_best_design(two_d: str, tmp_path: Path) -> None:
     assert run(*words, *goal, "--method", "sqp", "--out", str(tmp_path / "p")).exit_code == 2
 
 
+@pytest.mark.slow
 def test_sensitivity_with_samples_is_a_study(two_d: str, tmp_path: Path) -> None:
     words = ["sensitivity", two_d, "--samples", "8", "--vary", "gas.viscosity=± 2 %", "--vary", "operation.speed=± 5 %"]
     done = run(

@@ -58,6 +58,7 @@ def test_values_limits_and_bars_are_drawn() -> None:
     assert "grids 32, 64, 128" in fig.get_suptitle()
 
 
+@pytest.mark.slow
 def test_a_spatial_study_names_both_numbers_of_cells() -> None:
     assert "grids 32 × 16, 64 × 32, 128 × 64" in plot.convergence(study(axial_cells=16)).get_suptitle()
 

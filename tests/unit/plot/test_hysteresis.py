@@ -18,6 +18,7 @@ def loop() -> xr.Dataset:
     return petalfoil.static(rubbing, "0 um : 100 um : 3", loop=True)
 
 
+@pytest.mark.slow
 def test_legs_join(loop: xr.Dataset) -> None:
     assert is_loop(loop)
     there, back, again = (force_along(loop, leg) for leg in ("loading", "unloading", "reloading"))

@@ -186,6 +186,7 @@ def test_coefficients_at_one_speed_are_two_panels_over_the_frequency() -> None:
     assert_allclose(line(stiffness, "synchronous, Ω = ω")[0], 100.0 / (2.0 * math.pi), rtol=1e-12, atol=0.0)
 
 
+@pytest.mark.slow
 def test_coefficients_at_several_speeds_are_a_panel_for_each_entry(texts: Texts) -> None:
     fig = plot.coefficients(coefficients([300.0, 100.0, 200.0], [50.0, 100.0], frozenset({2})))
     assert len(fig.axes) == 8
@@ -216,6 +217,7 @@ def test_coefficients_at_one_speed_and_frequency_are_bars_with_their_values(text
         assert all(ax.bbox.x1 >= text.get_window_extent().x1 for text in ax.texts)
 
 
+@pytest.mark.slow
 def test_frequencies_are_in_hertz_and_speeds_in_rpm(texts: Texts) -> None:
     for speeds, frequencies in (([300.0], [50.0, 400.0]), ([300.0, 100.0], [50.0, 400.0]), ([300.0, 100.0], [50.0])):
         said = texts(plot.coefficients(coefficients(speeds, frequencies)))
@@ -241,6 +243,7 @@ def test_a_coefficient_that_hardly_changes_looks_constant() -> None:
 # ---------------------------------------------------------------------------------------------- stability
 
 
+@pytest.mark.slow
 def test_a_chart_has_a_line_for_each_load(texts: Texts) -> None:
     masses = {(5.0, 200.0): 0.01, (5.0, 100.0): 0.4, (20.0, 200.0): 1.0, (20.0, 100.0): math.inf}
     fig = plot.summary(chart(masses))

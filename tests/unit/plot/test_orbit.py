@@ -22,6 +22,7 @@ from PIL import Image
 
 from petalfoil import plot
 from petalfoil.errors import StoreError, UsageError
+from petalfoil.plot import animation
 from petalfoil.plot.animation import DELAY
 from petalfoil.results.dataset import to_dataset
 from petalfoil.results.store import load, save
@@ -243,6 +244,14 @@ def test_a_page_holds_its_pictures(steady: xr.Dataset, tmp_path: File) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["orbit.html"]
 
 
+@pytest.fixture
+def blank_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three pictures that need no drawing, for what is asked of the page around them."""
+    pictures = [Image.new("RGB", (2, 2)) for _ in range(3)]
+    monkeypatch.setattr(animation, "frames", lambda ds: iter(pictures))
+
+
+@pytest.mark.usefixtures("blank_pictures")
 @pytest.mark.parametrize("title", ["@FRAMES@", "@DELAY@ @TITLE@", "</title><script>alert(1)</script>", "\\g<0> \\1"])
 def test_a_title_fills_no_placeholder_and_closes_no_tag(title: str, steady: xr.Dataset, tmp_path: File) -> None:
     plot.animate(steady.assign_attrs(title=title), tmp_path / "orbit.html")
@@ -252,6 +261,7 @@ def test_a_title_fills_no_placeholder_and_closes_no_tag(title: str, steady: xr.D
     assert page.count("<script>") == 1
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_a_title_brings_no_control_character_to_the_page(steady: xr.Dataset, tmp_path: File) -> None:
     plot.animate(steady.assign_attrs(title="a\x1b[31mb\x07c\u202ed\nfake"), tmp_path / "orbit.html")
     assert r"<title>a\x1b[31mb\x07c\u202ed\nfake</title>" in (tmp_path / "orbit.html").read_text(encoding="utf-8")
@@ -267,6 +277,7 @@ def test_a_gif_plays_its_pictures_for_ever(steady: xr.Dataset, tmp_path: File) -
         assert picture.convert("RGB").getpixel((2, 2)) == (255, 255, 255)
 
 
+@pytest.mark.slow
 def test_an_animation_that_cannot_be_written_says_so(steady: xr.Dataset, tmp_path: File) -> None:
     with pytest.raises(UsageError, match=r"\.html, \.gif"):
         plot.animate(steady, tmp_path / "orbit.mp4")

@@ -46,7 +46,7 @@ def test_a_long_title_is_wrapped_and_not_clipped() -> None:
     assert "rpm · e" in fig.get_suptitle()
 
 
-@pytest.mark.parametrize("title", ["cost $_$ per unit", "$\\frac{a$ $x^{$", "100 $", "$x$"])
+@pytest.mark.parametrize("title", ["cost $_$ per unit", "$\\frac{a$ $x^{$"])
 def test_a_title_with_dollar_signs_is_drawn_as_it_stands(title: str, flat: xr.Dataset) -> None:
     fig = plot.summary(flat.assign_attrs(title=title))
     fig.draw_without_rendering()

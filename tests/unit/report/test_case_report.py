@@ -83,6 +83,7 @@ def test_the_commands_compute_it_again(folder: Path, monkeypatch: pytest.MonkeyP
     assert files[0]["digest"] == files[1]["digest"]
 
 
+@pytest.mark.slow
 def test_a_part_without_a_result_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
     plain = case("plain_journal", **{"model.cells_per_pitch": 16, "model.axial_cells": 4, "operation.speed": 0.0})
     parts = case_results.compute(Request(case=plain, load=(0.0, -30.0), error=False), quiet)

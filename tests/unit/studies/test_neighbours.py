@@ -57,6 +57,7 @@ def assert_same_answers(found: xr.Dataset, alone: xr.Dataset, tolerance: float =
     assert compared > 2
 
 
+@pytest.mark.slow
 def test_a_balance_from_a_neighbour_is_that_of_the_case_itself(tmp_path: Path) -> None:
     alone = sweep(PAPER, VARY, "balance", load=20.0, execution=ALONE)
     found = sweep(PAPER, VARY, "balance", load=20.0, out=tmp_path, execution=BESIDE)

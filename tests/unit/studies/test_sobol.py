@@ -58,6 +58,7 @@ def test_indices_of_a_known_function() -> None:
             assert found[key] == pytest.approx(known[number], abs=max(0.01, found[f"{key}_conf"]))
 
 
+@pytest.mark.slow
 def test_blocks_without_an_answer_are_left_out_and_told() -> None:
     variations, points = unit_study()
     told = indices(variations, ishigami(points, fail=range(7, 100)), "bearing_force", seed=0)
