@@ -67,12 +67,37 @@ def test_a_motion_that_goes_on_keeps_them_too(tmp_path: Path) -> None:
         orbit(HOT, revolutions=0.05, restart=load(tmp_path / "cold.nc"))
 
 
+UNEVEN = HOT.replace(
+    rotor={"mass": 4.0, "span": 0.2, "centre": 0.03, "second": {"surface": {"contact_film_thickness": 2e-6}}}
+)
+"""In two bearings that carry unequal loads, and have unequal temperatures."""
+
+
+@pytest.mark.slow
+def test_both_bearings_of_a_motion_keep_temperatures_of_their_own(tmp_path: Path) -> None:
+    """Those of the balance, where the rotor rests as it begins and as it goes on."""
+    steady, still = balance.record(UNEVEN, (0.0, -4.0 * 9.80665)).scalars, UNEVEN
+    ds = orbit(still, revolutions=0.05, initial="balance")
+    for node in NODES:
+        assert_allclose(float(ds[f"{node}_temperature"]), steady[f"{node}_temperature"], rtol=1e-9)
+    for node in ("shaft", "pack"):
+        assert_allclose(float(ds[f"other_{node}_temperature"]), steady[f"other_{node}_temperature"], rtol=1e-9)
+    assert abs(float(ds["shaft_temperature"] - ds["other_shaft_temperature"])) > 0.01
+    assert float(np.ptp(ds["x"].values)) < 1e-12
+    assert float(np.ptp(ds["slope_y"].values)) < 1e-11
+    save(ds, tmp_path / "motion.nc")
+    further = orbit(still, revolutions=0.02, restart=load(tmp_path / "motion.nc"))
+    for node in NODES:
+        assert float(further[f"other_{node}_temperature"]) == float(ds[f"other_{node}_temperature"])
+    assert_allclose(further["y"], ds["y"].values[-1], rtol=1e-9)
+
+
 def test_a_start_from_rest_has_the_temperatures_before_it() -> None:
     """Those of the surroundings, but for a shaft that is still warm."""
     warm = HOT.replace(**{"heat.shaft_start_temperature": 303.15})
     begun = Orbit.begin(warm, OrbitRequest(duration=1e-4, speeds=((0.0, 0.0), (1e-2, 2000.0)), initial=(0.0, -5e-6)))
-    assert begun.warm is not None
-    assert_allclose(begun.warm.nodes, [293.15, 303.15, 293.15, 293.15], rtol=1e-12)
+    assert begun.warm[0] is not None
+    assert_allclose(begun.warm[0].nodes, [293.15, 303.15, 293.15, 293.15], rtol=1e-12)
     assert begun.case.growth.journal(0.0) > 1e-6
 
 

@@ -10,9 +10,7 @@ from petalfoil.analysis.orbit_motion import Orbit, follow
 from petalfoil.analysis.release import OrbitRequest
 from petalfoil.case import Case
 from petalfoil.errors import DefinitionError
-from petalfoil.physics.forces import node_area
 from petalfoil.results.record import Record
-from petalfoil.system.build import build_pair, build_problem
 from tests.cases import case
 
 Array = NDArray[np.float64]
@@ -80,36 +78,6 @@ def test_nutation_of_a_rotor_that_hardly_feels_its_film() -> None:
     # from rest: a = -chi (e^{i t} - 1) + chi / ratio (e^{i ratio t} - 1), t in radians of the shaft
     exact = -skew * (np.exp(1j * turned) - 1.0) + skew / ratio * (np.exp(1j * ratio * turned) - 1.0)
     assert np.max(np.abs(slope - exact)) < 2e-3 * np.max(np.abs(exact))
-
-
-def test_pair_is_two_bearings() -> None:
-    """Film and force of both sides by the tilted displacement, and the moment by virtual work."""
-    bearing = case("paper_n8_spatial", **{"model.cells_per_pitch": 8, "model.axial_cells": 4})
-    bearing = bearing.replace(rotor={"mass": 1.0, "span": 0.2, "transverse_inertia": 1e-3})
-    pair, one = build_pair(bearing), build_problem(bearing.replace(**{"model.symmetry": False}))
-    q = np.array([1.0, -2.0, 0.3, 0.7])
-    rng = np.random.default_rng(0)
-    x = np.concatenate(
-        [0.1 * rng.standard_normal(pair.layout.n_wall), 1.0 + 0.1 * rng.random(pair.layout.n - pair.layout.n_wall)]
-    )
-    film = pair.at(displacement=q).film(x)
-    z = (one.layout.wall.film.axial.z - 0.5 * bearing.bearing.length) / 0.1
-    strips = len(one.layout.wall.film.theta)
-    for side, half in ((-1.0, slice(0, strips)), (1.0, slice(strips, None))):
-        for k, place in enumerate(z):
-            there = q[:2] + (side + place) * q[2:]
-            w = x[: pair.layout.n_wall].reshape(2, -1)[0 if side < 0.0 else 1]
-            alone = one.at(displacement=there).film(np.concatenate([w, np.ones(one.layout.n - one.layout.n_wall)]))
-            assert np.allclose(film[half][:, :, k], alone[:, :, k], atol=1e-12)
-    step = 1e-6
-    for axis in range(4):  # the force is minus the derivative of the film's volume under the pressure
-        nudge = np.zeros(4)
-        nudge[axis] = step
-        scales = pair.layout.scales
-        area = node_area(pair.layout.wall.film, pair.layout.balance.radius) * scales.pressure / scales.force
-        change = (pair.at(displacement=q + nudge).film(x) - film) / step
-        P = pair.pressure(x)
-        assert pair.film_force(x)[axis] == pytest.approx(float(np.sum((P - 1.0) * area * change)), rel=1e-6)
 
 
 @pytest.mark.slow

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.interpolate import CubicSpline
 
 from petalfoil import Case, balance, capacity, coefficients, curve, liftoff, orbit, runup, sensitivity, solve, stability
 from petalfoil.analysis.rotor_balance import RotorInBearings
@@ -18,6 +19,7 @@ from petalfoil.errors import DefinitionError, UsageError
 from petalfoil.results.layout import Answer
 from petalfoil.results.record import Record
 from tests.cases import FAULTS, case
+from tests.verification.test_campbell import exponents
 
 RPM = math.pi / 30.0
 PAIR = Case.load(FAULTS / "two_bearings_plain.toml").replace(**{"model.cells_per_pitch": 24, "model.axial_cells": 8})
@@ -167,10 +169,14 @@ def test_the_critical_mass_makes_the_assembled_rotor_neutral() -> None:
     assert here < 1e-3 * away  # a hundred-thousandth of the mass
 
 
+OTHER_GAS = {"viscosity": 2.2e-5, "ambient_pressure": 1.3e5}
+
+
 @pytest.mark.slow
-def test_a_motion_rests_at_the_balance_of_the_rotor() -> None:
+@pytest.mark.parametrize("second", [None, {"bearing": SMALLER, "gas": OTHER_GAS}], ids=["equal", "unequal"])
+def test_a_motion_rests_at_the_balance_of_the_rotor(second: dict[str, object] | None) -> None:
     """Off-centre, askew, loaded elsewhere and under a moment: without unbalance nothing moves."""
-    changes = {"rotor.centre": 0.02, "rotor.load_place": -0.03, "operation.tilt": (3e-5, 0.0)}
+    changes = {"rotor.centre": 0.02, "rotor.load_place": -0.03, "operation.tilt": (3e-5, 0.0), "rotor.second": second}
     still = {"rotor.unbalance": 0.0, "rotor.skew": 0.0, "operation.moment": (0.0, 0.1), "operation.speed": 2500.0 * RPM}
     uneven = PAIR.replace(**changes, **still)
     rest, ds = balance.record(uneven).scalars, orbit(uneven, revolutions=0.2, initial="balance")
@@ -179,6 +185,24 @@ def test_a_motion_rests_at_the_balance_of_the_rotor() -> None:
     assert_allclose(float(ds["slope_x"][0]), rest["shaft_slope_x"], rtol=1e-9)
     first = float(ds["x"][0] + uneven.rotor.places[0] * ds["slope_x"][0])
     assert_allclose(first, rest["eccentricity_x"], rtol=1e-9)
+
+
+@pytest.mark.slow
+def test_a_motion_in_unequal_bearings_grows_as_the_modes_say() -> None:
+    """Another size and another gas in the second bearing: rate of growth to 1 %, frequency to 0.1 %."""
+    changes = {"rotor.second": {"bearing": SMALLER, "gas": OTHER_GAS}, "rotor.unbalance": 1e-10, "rotor.skew": 1e-9}
+    quiet = UNEQUAL.replace(**changes, **{"operation.speed": 7500.0 * RPM})
+    modes = stability.record(quiet).fields
+    fastest = int(np.argmax(modes["mode_growth_rate"].astype(float)))
+    ds = orbit(quiet, revolutions=16.0, initial="balance", tolerance=1e-7)
+    time = ds["time"].values
+    instants = np.linspace(0.5 * time[-1], time[-1], 150)
+    path = CubicSpline(time, ds["slope_x"].values + 1j * ds["slope_y"].values)(instants)
+    found = exponents(path - path.mean(), instants[1] - instants[0])
+    nearest = found[np.argmin(np.abs(found.imag - float(modes["natural_frequency"][fastest])))]
+    assert_allclose(nearest.real, float(modes["mode_growth_rate"][fastest]), rtol=1e-2)
+    assert_allclose(nearest.imag, float(modes["natural_frequency"][fastest]), rtol=1e-3)
+    assert float(ds["mass_balance_error"]) < 1e-6
 
 
 # ---------------------------------------------------------------------------------------------- one convention
@@ -250,8 +274,6 @@ def test_what_cannot_be_is_refused_by_its_key(changes: dict[str, object], words:
 def test_verbs_that_are_of_one_bearing_say_so() -> None:
     with pytest.raises(UsageError, match="derivatives are those of one bearing"):
         sensitivity(UNEQUAL)
-    with pytest.raises(UsageError, match="followed where they are equal"):
-        orbit(UNEQUAL, revolutions=0.01)
     with pytest.raises(UsageError, match="about its balance"):
         stability(UNEQUAL.replace(**{"operation.load": None}))
 

@@ -58,6 +58,7 @@ What they share:
 `threshold.py`         the speed at which a rotor becomes unstable
 `film_force.py`        film and petals for another program's integrator
 `release.py`           where a large motion begins
+`film_figures.py`      film, contacts and friction of one bearing in it
 `orbit_motion.py`      a large motion, step by step
 `restart.py`           a motion that goes on from a result
 `trace.py`             what a motion leaves behind

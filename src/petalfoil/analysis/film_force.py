@@ -17,7 +17,6 @@ from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.evaluation import closed_film
 from petalfoil.analysis.extremes import highest, lowest
 from petalfoil.analysis.operating_point import at, at_position
-from petalfoil.analysis.release import storing
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
 from petalfoil.dynamics.tr_bdf2 import GAMMA, IMPLICIT, WEIGHT
@@ -30,7 +29,6 @@ from petalfoil.solvers.contact_equations import ContactOptions
 from petalfoil.solvers.contact_newton import solve_contacts
 from petalfoil.solvers.tangent import BorderedTangent
 from petalfoil.system.build import build_tilting, lever_of
-from petalfoil.system.film_rows import FilmState
 from petalfoil.system.time_step import StepProblem
 
 Array = NDArray[np.float64]
@@ -233,9 +231,7 @@ class Film:
     def _begun(self, start: Solution) -> FilmInstant:
         problem, number = self._still, start.problem.bearing_number
         here = problem.at(bearing_number=number, displacement=start.problem.displacement)
-        rows = FilmState(problem.layout.film_rows, here.pressure(start.x), here.film(start.x), number)
-        rates = storing(here, rows, (start.x, start.lam))
-        e = start.problem.displacement
+        rates, e = here.storing(start.x, start.lam), start.problem.displacement
         return FilmInstant(
             0.0, start.x, start.lam, start.active, here.stored(start.x), rates, e, np.zeros_like(e), number
         )

@@ -11,10 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.analysis.classic_method import newton_only
-from petalfoil.analysis.heat_results import at_temperatures
 from petalfoil.analysis.operating_point import at
 from petalfoil.analysis.records import effort, geometry, record_of
-from petalfoil.analysis.release import OrbitRequest, at_rest, first_position, system_of, temperatures_of
+from petalfoil.analysis.release import (
+    Kept,
+    OrbitRequest,
+    at_kept,
+    at_rest,
+    first_position,
+    system_of,
+    temperatures_of,
+)
 from petalfoil.analysis.restart import (
     check_figures,
     continued,
@@ -34,7 +41,6 @@ from petalfoil.equilibrium.run_context import RunContext, new_run
 from petalfoil.results.motion import figures_of, tilt_figures
 from petalfoil.results.parts import Outcome
 from petalfoil.results.record import Record
-from petalfoil.system.temperatures import Temperatures
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -81,6 +87,16 @@ class Warmth:
 
 
 @dataclass(frozen=True, kw_only=True)
+class OtherWarmth:
+    """Temperatures that a motion keeps in the second bearing [K]."""
+
+    other_film_temperature: float
+    other_shaft_temperature: float
+    other_pack_temperature: float
+    other_bushing_temperature: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Stepping:
     """The steps in time."""
 
@@ -110,8 +126,8 @@ class Orbit:
         Counts of the start and of all steps.
     asked : Case
         The case that was asked for, with its heat network if it has one.
-    warm : Temperatures or None
-        Temperatures that the motion keeps: it is shorter than any warm-up.
+    warm : tuple of Temperatures or None
+        Temperatures that the motion keeps in each bearing: it is shorter than any warm-up.
     foretold : tuple of str
         Warnings of what it costs.
     """
@@ -123,7 +139,7 @@ class Orbit:
     end: float
     run: RunContext
     asked: Case
-    warm: Temperatures | None = None
+    warm: Kept = (None,)
     trace: Trace = field(init=False)
     foretold: tuple[str, ...] = ()
     taken: int = 0
@@ -151,16 +167,16 @@ class Orbit:
         if restart is None:
             with run.active():
                 warm = temperatures_of(case, request)
-                warmed = case if warm is None else at_temperatures(case, warm)
-                place, slope = first_position(warmed, request)
+                warmed, supports = at_kept(case, warm)
+                place, slope = first_position(warmed if case.shares_evenly else case, request)
                 request = replace(request, slope=slope)
                 placed = at(warmed, eccentricity=place)
-                system, time = system_of(placed, schedule, request.load), 0.0
+                system, time = system_of(placed, supports, schedule, request.load), 0.0
                 start = at_rest(placed, system, request)
         else:
             time, warm, place = continued(case, schedule, restart), kept_temperatures(case, restart), None
-            placed = case if warm is None else at_temperatures(case, warm)
-            system = system_of(placed, schedule, request.load)
+            placed, supports = at_kept(case, warm)
+            system = system_of(placed, supports, schedule, request.load)
             start = instant_of(restart, system, time * system.rotor.clock.rate)
         end, asked = time + request.lasts(schedule, time), at(case, eccentricity=place)
         orbit = cls(placed, request, system, start, end, run, asked, warm)
@@ -240,18 +256,22 @@ class Orbit:
         rotor = self.case.rotor
         return (Tilt(**tilt_figures(time, over), span=rotor.span or 0.0, rotor_centre=rotor.centre),)
 
-    def _warmth(self) -> tuple[Warmth, ...]:
+    def _warmth(self) -> tuple[object, ...]:
         """What is told of a motion with a heat network; nothing of another."""
-        if self.warm is None:
-            return ()
-        growth = self.case.growth
-        return (
-            Warmth(
-                **{f"{node}_temperature": T for node, T in self.warm._asdict().items()},
-                shaft_growth=growth.journal(float(self.trace.rows[0]["shaft_speed"])),
-                bushing_growth=growth.bushing,
-            ),
-        )
+        first, other = self.warm[0], self.warm[-1]
+        told: list[object] = []
+        if first is not None:
+            growth = self.case.growth
+            told.append(
+                Warmth(
+                    **{f"{node}_temperature": T for node, T in first._asdict().items()},
+                    shaft_growth=growth.journal(float(self.trace.rows[0]["shaft_speed"])),
+                    bushing_growth=growth.bushing,
+                )
+            )
+        if other is not None and not self.asked.shares_evenly:
+            told.append(OtherWarmth(**{f"other_{node}_temperature": T for node, T in other._asdict().items()}))
+        return tuple(told)
 
     def _stepping(self) -> Stepping:
         refused = [row.get("outcome") for row in self.run.history if row["phase"] == "motion"]

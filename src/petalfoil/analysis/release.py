@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.analysis.heat_results import at_temperatures
 from petalfoil.analysis.operating_point import Vector, at, at_position, under_load
 from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.case import Case
@@ -17,17 +18,21 @@ from petalfoil.dynamics.speed_schedule import Schedule
 from petalfoil.dynamics.time_state import Instant, TimeState
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.equilibrium.cold_start import solve_cold
+from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import UsageError
 from petalfoil.system.build import build_pair, build_problem
 from petalfoil.system.coupled import CoupledProblem
-from petalfoil.system.film_rows import FilmState
 from petalfoil.system.friction import FrictionState, friction_of
 from petalfoil.system.heat_network import HeatNetwork
+from petalfoil.system.on_shaft import ShaftStep
+from petalfoil.system.shaft_layout import friction_on_shaft, joined
 from petalfoil.system.temperatures import Temperatures
 from petalfoil.system.time_step import StepProblem
-from petalfoil.system.unknowns import DEFLECTION
 
 Array = NDArray[np.float64]
+
+Kept = tuple[Temperatures | None, ...]
+"""Temperatures that a motion keeps in each bearing; None of one without a heat network."""
 
 LYING = 0.999
 """Part of the way to the wall where a journal is released that lies on it: between nodes it may lie deeper than the
@@ -93,24 +98,35 @@ class OrbitRequest:
         return end - start
 
 
-def temperatures_of(case: Case, request: OrbitRequest) -> Temperatures | None:
-    """Temperatures that a motion keeps: those of the balance where it begins, of a start from rest those before it.
+def temperatures_of(case: Case, request: OrbitRequest) -> Kept:
+    """Temperatures that a motion keeps in each bearing: those of the balance where it begins; None without [heat].
+
+    A start from rest has those before it.
 
     Raises
     ------
     ConvergenceError
         No position balances the load, or there is no steady temperature.
     """
-    network, speed = HeatNetwork.of(case), request.schedule(case).speed(0.0)
-    if network is not None and not case.shares_evenly:
-        raise UsageError(
-            "a motion keeps one temperature for both bearings, and these carry unequal loads: leave [heat] out, and "
-            "give shaft.temperature and bushing.temperature from what `balance` finds"
-        )
-    if network is None or speed == 0.0:
-        return None if network is None else network.start
+    networks, speed = [HeatNetwork.of(one) for one in case.supports], request.schedule(case).speed(0.0)
+    if not any(networks) or speed == 0.0:
+        return tuple(None if network is None else network.start for network in networks)
+    if not case.shares_evenly:
+        rotor, found = on_shaft(case, request)
+        return tuple(one.problem.temperatures for one in rotor.in_order(found))
     found, _ = under_load(at(case, speed, (0.0, 0.0)), constant_load(case, request.load))
-    return found.problem.temperatures
+    return tuple(found.problem.temperatures for _ in networks)
+
+
+def at_kept(case: Case, warm: Kept) -> tuple[Case, tuple[Case, ...]]:
+    """The case with the temperatures of its first bearing, and both bearings by themselves with their own."""
+    each = zip(case.supports, warm, strict=True)
+    supports = tuple(one if kept is None else at_temperatures(one, kept) for one, kept in each)
+    first = warm[0]
+    if first is None:
+        return case, supports
+    alone = {} if case.rotor is None else {"rotor.second": None}  # its tables were for the case as it was
+    return at_temperatures(case.replace(**alone), first), supports
 
 
 def first_position(case: Case, request: OrbitRequest) -> tuple[Vector | None, Vector]:
@@ -147,25 +163,37 @@ def on_both(case: Case, request: OrbitRequest) -> tuple[Vector, Vector]:
     ConvergenceError
         No position balances the load.
     """
-    load, speed = constant_load(case, request.load), request.schedule(case).speed(0.0)
-    weighs = request.load is None and case.operation.load is None  # a weight acts at the mass centre
-    rotor = RotorInBearings.of(case.replace(**{"rotor.load_place": None}) if weighs else case, load)
-    x, y, slope_x, slope_y = map(float, rotor.position_at_nodes(rotor.at(speed)))
-    unbalance = 0.0 if case.rotor is None or speed == 0.0 else case.rotor.unbalance
+    rotor, found = on_shaft(case, request)
+    x, y, slope_x, slope_y = map(float, rotor.position_at_nodes(found))
+    turns = request.schedule(case).speed(0.0) > 0.0
+    unbalance = 0.0 if case.rotor is None or not turns else case.rotor.unbalance
     return (x - unbalance, y), (slope_x, slope_y)
 
 
-def system_of(case: Case, schedule: Schedule, load: Vector | None) -> RotorBearing:
-    """The bearing of `case` and its rotor in the units of the problem."""
+def on_shaft(case: Case, request: OrbitRequest) -> tuple[RotorInBearings, Solution]:
+    """A rotor whose bearings do not share the load evenly, and its balance where the motion begins."""
+    weighs = request.load is None and case.operation.load is None  # a weight acts at the mass centre
+    held = case.replace(**{"rotor.load_place": None}) if weighs else case
+    rotor = RotorInBearings.of(held, constant_load(case, request.load))
+    return rotor, rotor.at(request.schedule(case).speed(0.0))
+
+
+def system_of(case: Case, supports: tuple[Case, ...], schedule: Schedule, load: Vector | None) -> RotorBearing:
+    """The bearings of a case, `supports` by themselves, and its rotor in the units of the problem."""
     if case.operation.moment is not None and case.bearings == 1:
         raise UsageError(
             "a rotor in one bearing stays parallel to its axis and feels no operation.moment: give the slopes that it "
             "is held at, operation.tilt, or a rotor.span"
         )
-    problem = build_pair(case) if case.bearings > 1 else build_problem(case)
+    if case.bearings > 1:
+        pair = build_pair(case, supports)
+        rotor = RotorMotion.of(case, pair.layout.scales, schedule, load)
+        still = replace(pair, bearing_number=0.0, time_number=rotor.clock.bearing_number)
+        return RotorBearing(still, rotor, friction_on_shaft(pair.layout))
+    problem = build_problem(case)
     rotor = RotorMotion.of(case, problem.layout.scales, schedule, load)
-    still = StepProblem(problem.layout, 0.0, problem.displacement, rotor.clock.bearing_number)
-    return RotorBearing(still, rotor, friction_of(case, problem.layout))
+    alone = StepProblem(problem.layout, 0.0, problem.displacement, rotor.clock.bearing_number)
+    return RotorBearing(alone, rotor, friction_of(case, problem.layout))
 
 
 def at_rest(case: Case, system: RotorBearing, request: OrbitRequest) -> Instant:
@@ -178,15 +206,28 @@ def at_rest(case: Case, system: RotorBearing, request: OrbitRequest) -> Instant:
     off = np.zeros_like(place)  # of the axis from the mass centre, over the reference length
     if rotor is not None and request.initial == "balance":
         off[:2] = [-rotor.unbalance / scales.length, 0.0]
-    if rotor is None or len(place) == 2:
-        answer = at_position(at(case, speed)).answer
-    else:
+    if isinstance(system.problem, ShaftStep) and rotor is not None:
         place = place + rotor.lever / scales.length * np.array([0.0, 0.0, *request.slope])
-        both = system.problem.at(bearing_number=system.rotor.bearing_number(0.0), displacement=place)
-        answer = solve_cold(CoupledProblem(both.layout, both.bearing_number, both.displacement))
+        state = held_on_shaft(system.problem.at(bearing_number=system.rotor.bearing_number(0.0), displacement=place))
+    else:
+        answer = at_position(at(case, speed)).answer
+        state = answer.x, answer.lam, answer.active
     turning = np.zeros_like(place)
     turning[:2] = np.array([-off[1], off[0]]) * speed / system.rotor.clock.rate
-    return released(system, 0.0, (answer.x, answer.lam, answer.active), (place, turning))
+    return released(system, 0.0, state, (place, turning))
+
+
+def held_on_shaft(problem: ShaftStep) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Unknowns, reactions and active contacts of both bearings under a shaft that is held where it is."""
+    parts = [CoupledProblem(part.layout, part.bearing_number, part.displacement) for part in problem.parts]
+    found, layout = [solve_cold(parts[0])], problem.layout
+    same = parts[0].layout is parts[1].layout and np.array_equal(parts[0].displacement, parts[1].displacement)
+    found.append(found[0] if same else solve_cold(parts[1]))
+    lam, active = (
+        joined(layout.gap_numbers, [np.asarray(getattr(one, of), dtype=np.float64) for one in found])
+        for of in ("lam", "active")
+    )
+    return joined(layout.numbers, [one.x for one in found]), lam, active > 0.5
 
 
 def released(
@@ -195,19 +236,8 @@ def released(
     """An instant from unknowns, reactions and active contacts, position and velocity: its rates by the equations."""
     (x, lam, closed), (e, v), rotor = state, moving, system.rotor
     problem = system.problem.at(displacement=e, bearing_number=rotor.bearing_number(tau))
-    film = FilmState(problem.layout.film_rows, problem.pressure(x), problem.film(x), problem.bearing_number)
     force = problem.journal_force(x, lam) + rotor.outside(tau) - rotor.gyroscopic(tau) @ v
     speeding = np.asarray(np.linalg.solve(rotor.inertia, force), dtype=np.float64)
-    change = TimeState(storing(problem, film, (x, lam)), v, speeding)
+    change = TimeState(problem.storing(x, lam), v, speeding)
     friction = None if system.friction is None else FrictionState.fresh(system.friction, x, lam)
     return Instant(tau, x, lam, closed, TimeState(problem.stored(x), e, v), change, friction)
-
-
-def storing(problem: StepProblem, film: FilmState, state: tuple[Array, Array]) -> Array:
-    """Rates of what is stored: of the gas; of a wall that loses energy, what it is out of balance by; (n_stored,)."""
-    (x, lam), layout = state, problem.layout
-    if layout.loss is None:
-        return -film.residual
-    left = CoupledProblem(layout, problem.bearing_number, problem.displacement).linearize(x).residual
-    wall = left - problem.G.T @ lam
-    return np.concatenate([-film.residual, -wall[layout.unknowns[DEFLECTION]]])

@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.analysis.release import released
+from petalfoil.analysis.release import Kept, released
 from petalfoil.case import Case
 from petalfoil.dynamics.speed_schedule import Schedule
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.errors import UsageError
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
-from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.friction import against_slip
 from petalfoil.system.temperatures import Temperatures
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE
@@ -94,9 +93,9 @@ def wall_imbalance(instant: Instant, system: RotorBearing) -> float:
 
     What a wall that loses energy is out of balance by is the rate of its loss: nothing is left over.
     """
-    if system.problem.layout.loss is not None:
+    problem = system.problem.at(bearing_number=0.0, displacement=instant.e)  # the wall does not know the speed
+    if any(part.layout.loss is not None for part, _, _ in problem.each(instant.x, instant.lam)):
         return 0.0
-    problem = CoupledProblem(system.problem.layout, 0.0, instant.e)  # the wall knows neither speed nor storage
     linearized, wall = problem.linearize(instant.x), problem.layout.unknowns[DEFLECTION]
     residual = linearized.residual - problem.G.T @ instant.lam
     if system.friction is not None and instant.friction is not None:
@@ -126,17 +125,22 @@ def check_figures(result: xr.Dataset, figures: Mapping[str, float]) -> None:
             raise _damaged(f"its {name} is {found:.6g}, but the motion ended with {told:.6g}")
 
 
-def kept_temperatures(case: Case, result: xr.Dataset) -> Temperatures | None:
-    """Temperatures that a motion kept, and keeps where it goes on; None without a heat network.
+def kept_temperatures(case: Case, result: xr.Dataset) -> Kept:
+    """Temperatures that a motion kept in each bearing, and keeps where it goes on; None without a heat network.
 
     Raises
     ------
     UsageError
         The case has a heat network, and the motion none.
     """
-    if case.heat is None:
+    marks = ("", "") if case.shares_evenly else ("", "other_")
+    return tuple(_kept(one, result, mark) for one, mark in zip(case.supports, marks, strict=False))
+
+
+def _kept(bearing: Case, result: xr.Dataset, mark: str) -> Temperatures | None:
+    if bearing.heat is None:
         return None
-    names = [f"{node}_temperature" for node in Temperatures._fields]
+    names = [f"{mark}{node}_temperature" for node in Temperatures._fields]
     if not {*names} <= {*map(str, result.variables)}:
         raise UsageError("the motion to go on from has no heat network: leave [heat] out, or run it again")
     return Temperatures(*(float(result[name]) for name in names))
@@ -179,6 +183,11 @@ def continued(case: Case, schedule: Schedule, result: xr.Dataset) -> float:
             raise UsageError(
                 f"the motion to go on from is that of another bearing: its [{section}] differs from the case's"
             )
+    seconds = [None if of.rotor is None else of.rotor.second for of in (before, case)]
+    if seconds[0] != seconds[1]:
+        raise UsageError(
+            "the motion to go on from is that of another rotor: its [rotor.second] differs from the case's"
+        )
     end, speed, angle = (float(result[name].to_numpy()[-1]) for name in ("time", "shaft_speed", "shaft_angle"))
     if abs(schedule.speed(end) - speed) > SAME * speed or abs(schedule.angle(end) - angle) > SAME * max(angle, 1.0):
         turns = 2.0 * np.pi

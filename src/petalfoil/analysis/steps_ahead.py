@@ -14,7 +14,6 @@ from petalfoil.equilibrium.run_context import current_run
 from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.solvers.tangent import BorderedTangent, Tangent
-from petalfoil.system.coupled import CoupledProblem
 
 Array = NDArray[np.float64]
 
@@ -54,8 +53,8 @@ def hardest_landing(bearing: RotorBearing, start: Instant) -> float:
 
     ``sqrt(a / h_c)`` with the acceleration `a` with which it is released; zero from a balance.
     """
-    layout = bearing.problem.layout
-    thickness = layout.case.surface.contact_film_thickness / layout.scales.length
+    parts, length = bearing.problem.each(start.x, start.lam), bearing.problem.layout.scales.length
+    thickness = min(part.layout.case.surface.contact_film_thickness for part, _, _ in parts) / length
     return float(np.sqrt(np.linalg.norm(start.change.v) / thickness))
 
 
@@ -64,8 +63,7 @@ def fastest_swing(bearing: RotorBearing, start: Instant) -> float:
 
     Zero where the contacts there do not determine the stiffness. One factorisation.
     """
-    step = bearing.problem.at(displacement=start.e, bearing_number=bearing.rotor.bearing_number(start.tau))
-    problem = CoupledProblem(step.layout, step.bearing_number, step.displacement, temperatures=step.temperatures)
+    problem = bearing.problem.at(displacement=start.e, bearing_number=bearing.rotor.bearing_number(start.tau))
     constraints = constrain(problem.G, start.active)
     if not constraints.determinate:
         return 0.0

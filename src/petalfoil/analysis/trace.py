@@ -10,14 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
-from petalfoil.analysis.evaluation import closed_film, whole_film
-from petalfoil.analysis.extremes import highest, lowest
+from petalfoil.analysis.film_figures import Bearing, FilmFigures, film_work, growth_work
 from petalfoil.case import Case
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
-from petalfoil.physics.forces import contact_fraction, node_area, viscous_torque
-from petalfoil.system.coupled import CoupledProblem
-from petalfoil.system.film_rows import FilmState
+from petalfoil.physics.forces import contact_fraction
+from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.friction import energy_lost
 from petalfoil.system.unknowns import DEFLECTION
 from petalfoil.walls import wall_kind
@@ -126,11 +124,11 @@ class Trace:
         scales = self.system.problem.layout.scales
         return scales.length, scales.pressure, scales.force, self.system.rotor.clock.rate
 
-    def _problem(self, instant: Instant) -> CoupledProblem:
-        """The bearing at the speed and position of an instant."""
-        return self.system.problem.at(
-            bearing_number=self.system.rotor.bearing_number(instant.tau), displacement=instant.e
-        )
+    def _bearings(self, instant: Instant) -> list[Bearing]:
+        """Every bearing at the speed and position of an instant, with its unknowns and reactions."""
+        number = self.system.rotor.bearing_number(instant.tau)
+        there = self.system.problem.at(bearing_number=number, displacement=instant.e)
+        return there.each(instant.x, instant.lam)
 
     def _tilt(self, e: Array, v: Array) -> dict[str, float]:
         """Slopes of the shaft in two bearings [rad], and their rates [rad/s]."""
@@ -139,16 +137,12 @@ class Trace:
         slopes = np.concatenate([e[2:], v[2:]]) / self.case.rotor.lever
         return {name: float(slope) for name, slope in zip(TILT, slopes, strict=True)}
 
-    @cached_property
-    def _area(self) -> Array:
-        return node_area(self.system.problem.layout.wall.film, self.case.bearing.journal_radius)
-
     def rotor_figures(self, instant: Instant) -> dict[str, float]:
         """Position, velocity, speed and energies at an instant."""
         length, _, force, rate = self._units
-        layout, rotor = self.system.problem.layout, self.system.rotor
+        rotor = self.system.rotor
         t, (e, v) = instant.tau / rate, (instant.moving.e * length, instant.moving.v * length * rate)
-        w = instant.x[layout.unknowns[DEFLECTION]]
+        elastic = sum(0.5 * float(w @ layout.elastic_force(w)) for layout, w in self._deflections(instant))
         kinetic = 0.5 * float(instant.moving.v @ rotor.inertia @ instant.moving.v) * force * length
         tilt = self._tilt(e, v)
         return {
@@ -161,32 +155,31 @@ class Trace:
             "shaft_angle": rotor.schedule.angle(t),
             "kinetic_energy": kinetic,
             **tilt,
-            "elastic_energy": 0.5 * float(w @ layout.elastic_force(w)) * force * length,
+            "elastic_energy": elastic * force * length,
         }
 
+    def _deflections(self, instant: Instant) -> list[tuple[BearingLayout, Array]]:
+        """Every bearing and the deflections of its wall over the unit of length."""
+        parts = self.system.problem.each(instant.x, instant.lam)
+        return [(part.layout, x[part.layout.unknowns[DEFLECTION]]) for part, x, _ in parts]
+
     def film_figures(self, instant: Instant) -> dict[str, float]:
-        """Film, pressure, forces and friction at an instant, its gas and what of it leaves."""
-        length, ambient, force, _ = self._units
-        problem = self._problem(instant)
-        mesh, case, contacts = problem.layout.wall.film, self.case, problem.layout.wall.contacts
-        P, H = problem.pressure(instant.x), problem.film(instant.x)
-        p, h, omega = P * ambient, H * length, self.system.rotor.schedule.speed(instant.tau / self._units[3])
-        touching = float(instant.lam[contacts.journal].sum()) * force
-        pushed = problem.journal_force(instant.x, instant.lam) * force
-        shear = (case.gas.viscosity, omega * case.bearing.journal_radius)
-        rubbing = case.surface.friction_coefficient * case.bearing.journal_radius * touching
-        viscous = viscous_torque(mesh, case.bearing.journal_radius, (p, h), shear, case.slip_length * ambient)
-        film = FilmState(problem.layout.film_rows, P, H, problem.bearing_number)
+        """Film, pressure, forces and friction at an instant, gas and what of it leaves; of all bearings together."""
+        parts = self._bearings(instant)
+        stored = self.system.problem.stored_of_each(instant.moving.stored)
+        films = [FilmFigures.of(part, gas) for part, gas in zip(parts, stored, strict=True)]
+        pushed = self.system.problem.at(displacement=instant.e).journal_force(instant.x, instant.lam) * self._units[2]
+        touching, pressed = sum(film.touching for film in films), np.concatenate([film.pressed for film in films])
         return {
-            "min_film_thickness": closed_film(case, h, lowest(*whole_film(mesh, h)).value),
-            "peak_pressure": highest(*whole_film(mesh, p)).value,
-            "contact_fraction": contact_fraction(touching, p - ambient, self._area),
+            "min_film_thickness": min(film.thinnest for film in films),
+            "peak_pressure": max(film.peak for film in films),
+            "contact_fraction": contact_fraction(touching, pressed, np.ones_like(pressed)),
             "force_x": float(pushed[0]),
             "force_y": float(pushed[1]),
-            "friction_torque": viscous + rubbing,
-            "rubbing_torque": rubbing,
-            "gas": film.rows.total(instant.moving.stored[: mesh.n_unknown]),
-            "outflow": film.rows.total(film.residual) * self._units[3],
+            "friction_torque": sum(film.viscous + film.rubbing for film in films),
+            "rubbing_torque": sum(film.rubbing for film in films),
+            "gas": sum(film.gas for film in films),
+            "outflow": sum(film.outflow for film in films) * self._units[3],
         }
 
     def done_since(self, instant: Instant) -> dict[str, float]:
@@ -194,28 +187,27 @@ class Trace:
         before = self.last
         if before is None:
             return {"film_step": 0.0, "load_step": 0.0, "petals_step": 0.0, "growth_step": 0.0}
-        length, _, force, _ = self._units
-        layout, system = self.system.problem.layout, self.system
-        kept, wall = system.problem.positive, layout.unknowns[DEFLECTION]
-        by_film = 0.5 * (system.problem.film_force(before.x) + system.problem.film_force(instant.x))
-        pushed = 0.5 * layout.push @ (before.x[kept] + instant.x[kept] - 2.0)
+        system, unit = self.system, self._units[2] * self._units[0]
+        pairs = list(zip(self._bearings(before), self._bearings(instant), strict=True))
         loads = 0.5 * (system.rotor.outside(before.tau) + system.rotor.outside(instant.tau))
-        moved, bent = instant.e - before.e, instant.x[wall] - before.x[wall]
-        unit, friction, worn = force * length, system.friction, 0.0
+        friction, worn = system.friction, self._lost(before, instant)
         if friction is not None and before.friction is not None and instant.friction is not None:
-            worn = energy_lost(friction.in_step(before.lam), before.friction, instant.friction)
-        if layout.loss is not None:
-            rates = before.change.stored + instant.change.stored
-            worn += 0.5 * float(rates[layout.wall.film.n_unknown :] @ bent)
-        done = float(by_film @ moved + pushed @ bent)
-        touching = float(np.sum((before.lam + instant.lam)[layout.wall.contacts.journal]))
-        grown = 0.5 * touching * (self._problem(instant).closing - self._problem(before).closing)
+            worn += energy_lost(friction.in_step(before.lam), before.friction, instant.friction)
         return {
-            "film_step": done * unit,
-            "load_step": float(loads @ moved) * unit,
+            "film_step": sum(film_work(*pair) for pair in pairs) * unit,
+            "load_step": float(loads @ (instant.e - before.e)) * unit,
             "petals_step": worn * unit,
-            "growth_step": grown * unit,
+            "growth_step": sum(growth_work(*pair) for pair in pairs) * unit,
         }
+
+    def _lost(self, before: Instant, instant: Instant) -> float:
+        """Energy that walls with a loss factor lose between two instants [1]."""
+        rates, lost = before.change.stored + instant.change.stored, 0.0
+        walls = zip(self._deflections(before), self._deflections(instant), strict=True)
+        for own, ((layout, earlier), (_, later)) in zip(self.system.problem.stored_of_each(rates), walls, strict=True):
+            if layout.loss is not None:
+                lost += 0.5 * float(own[layout.wall.film.n_unknown :] @ (later - earlier))
+        return lost
 
     def column(self, name: str) -> Array:
         """One figure over all steps."""
@@ -248,47 +240,28 @@ class Trace:
         )
 
     def pictures(self) -> tuple[dict[str, NDArray[np.generic]], Named]:
-        """Coordinates and fields of the pictures."""
-        length, ambient, _, rate = self._units
-        problem = self.system.problem
-        mesh = problem.layout.wall.film
-        whole, instants = mesh.axial.whole, list(self.frames)
-        first = len(mesh.theta) // problem.layout.wall.n_bearings  # of two bearings the first is shown
+        """Coordinates and fields of the pictures; of two bearings the first is shown."""
+        rate, instants = self._units[3], list(self.frames)
+        shown = [self._bearings(instant)[0] for instant in instants]
+        layout = shown[0][0].layout
+        mesh, length, ambient = layout.wall.film, layout.scales.length, layout.scales.pressure
+        whole, kind = mesh.axial.whole, wall_kind(layout.case)
         coords: dict[str, NDArray[np.generic]] = {
             "frame": np.array([instant.tau for instant in instants]) / rate,
-            "petal": np.arange(first),
-            "root_angle": mesh.theta[:first, 0] - mesh.phi[0],
+            "petal": np.arange(len(mesh.theta)),
+            "root_angle": mesh.theta[:, 0] - mesh.phi[0],
             "phi_exposed": mesh.phi,
             "z": mesh.axial.whole_z,
         }
-        films = [self._problem(instant).film(instant.x) * length for instant in instants]
         fields: Named = {
-            "frame_pressure": np.array([whole(problem.pressure(at.x)[:first] * ambient) for at in instants]),
-            "frame_film_thickness": np.array([whole(film[:first]) for film in films]),
-            "frame_x": np.array([self._at_first(instant)[0] for instant in instants]),
-            "frame_y": np.array([self._at_first(instant)[1] for instant in instants]),
+            "frame_pressure": np.array([whole(part.pressure(x) * ambient) for part, x, _ in shown]),
+            "frame_film_thickness": np.array([whole(part.film(x) * length) for part, x, _ in shown]),
+            "frame_x": np.array([part.displacement[0] * length for part, _, _ in shown]),
+            "frame_y": np.array([part.displacement[1] * length for part, _, _ in shown]),
         }
-        sections = [wall_kind(self.case).cross_section(self._whole, self._deflection(at)) for at in instants]
+        bent = [x[layout.unknowns[DEFLECTION]] * length for _, x, _ in shown]
+        sections = [kind.cross_section(layout.case, W) for W in bent]
         if any(sections):
-            coords |= wall_kind(self.case).coordinates(self._whole, problem.layout.wall)
+            coords |= kind.coordinates(layout.case, layout.wall)
             fields["frame_radius"] = np.array([section["radius"] for section in sections])
         return coords, fields
-
-    @cached_property
-    def _whole(self) -> Case:
-        """The case on the grid that is solved: of a shaft that tilts the whole length."""
-        tilts = self.system.problem.layout.wall.n_bearings > 1
-        return self.case.replace(**{"model.symmetry": False}) if tilts else self.case
-
-    def _at_first(self, instant: Instant) -> Array:
-        """Displacement of the journal in the (first) bearing [m]."""
-        e = instant.e * self._units[0]
-        if self.system.problem.layout.wall.n_bearings == 1 or self.case.rotor is None:
-            return e
-        return np.asarray(e[:2] + self.case.rotor.places[0] / self.case.rotor.lever * e[2:])
-
-    def _deflection(self, instant: Instant) -> Array:
-        """Deflections of the wall of the (first) bearing, (n,) [m]."""
-        layout = self.system.problem.layout
-        deflection: Array = instant.x[: layout.n_wall // layout.wall.n_bearings] * layout.scales.length
-        return deflection

@@ -151,8 +151,7 @@ class SlidingStage:
 
     def in_question(self, at: Iterate) -> Mask:
         """Contacts that may open or close, (m,): those closed, their neighbours, gaps below zero."""
-        lines = [line.number for line in self.stage.problem.layout.wall.contacts.lines]
-        return beside(at.closed, lines) | (self.gaps(at) < CLOSED)
+        return beside(at.closed, self.stage.problem.contact_lines) | (self.gaps(at) < CLOSED)
 
     def tangent_at(self, at: Iterate) -> SlidingTangent | None:
         """The factorised stage with the contacts of an iterate; None if it has no inverse."""

@@ -32,6 +32,7 @@ from petalfoil.solvers.contact_newton import contact_newton
 from petalfoil.solvers.problem import Border, ContactProblem, fraction_to_boundary
 from petalfoil.solvers.tangent import BorderedTangent
 from petalfoil.system.friction import FrictionProblem, FrictionState, FrictionStep
+from petalfoil.system.on_shaft import ShaftStep
 from petalfoil.system.time_step import StepProblem
 
 Array = NDArray[np.float64]
@@ -83,7 +84,7 @@ class Stage(ContactEquations):
 
     Attributes
     ----------
-    problem : StepProblem
+    problem : StepProblem or ShaftStep
         Film and wall with the stage's base mass, speed and rate; its displacement does not matter.
     base : TimeState
         Where the rates lead from.
@@ -99,7 +100,7 @@ class Stage(ContactEquations):
         Tangents made so far with the contact set at hand.
     """
 
-    problem: StepProblem
+    problem: StepProblem | ShaftStep
     base: TimeState
     inertia: Array
     gyroscopic: Array
@@ -126,7 +127,7 @@ class Stage(ContactEquations):
     @property
     def stops(self) -> slice | None:
         """The journal alone can open contacts that close a chain between journal and bushing."""
-        return self.problem.layout.wall.contacts.journal
+        return self.problem.journal
 
     def at(self, b: Array) -> ContactProblem:
         """Film and wall at a displacement, friction included."""

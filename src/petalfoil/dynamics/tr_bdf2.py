@@ -21,6 +21,7 @@ from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.contact_newton import border_change
 from petalfoil.solvers.tangent import BorderedTangent
 from petalfoil.system.friction import FrictionStep
+from petalfoil.system.on_shaft import ShaftStep
 from petalfoil.system.time_step import StepProblem
 from petalfoil.system.unknowns import PRESSURE
 
@@ -39,9 +40,9 @@ ERROR = ((4.0 * WEIGHT - 1.0) / 3.0, -1.0 / 3.0, 2.0 * IMPLICIT / 3.0)
 
 @dataclass(frozen=True)
 class RotorBearing:
-    """A bearing and the rotor in it."""
+    """A bearing, or two on one shaft, and the rotor in it."""
 
-    problem: StepProblem
+    problem: StepProblem | ShaftStep
     rotor: RotorMotion
     friction: Friction | None = None
 
@@ -50,13 +51,12 @@ class RotorBearing:
         rotor, friction = self.rotor, None
         if self.friction is not None and begin.friction is not None:
             friction = FrictionStep.beginning(self.friction, begin.friction, begin.lam)
-        problem = StepProblem(
-            self.problem.layout,
-            rotor.bearing_number(tau),
-            base.e,
-            self.problem.time_number,
-            1.0 / (IMPLICIT * step),
-            base.stored,
+        problem = replace(
+            self.problem,
+            bearing_number=rotor.bearing_number(tau),
+            displacement=base.e,
+            rate=1.0 / (IMPLICIT * step),
+            start=base.stored,
         )
         return Stage(problem, base, rotor.inertia, rotor.gyroscopic(tau), rotor.outside(tau), options, friction)
 

@@ -81,12 +81,12 @@ def force_unit(problem: CoupledProblem) -> float:
 def half_of(problem: CoupledProblem) -> CoupledProblem | None:
     """The bearing of `problem` under an aligned journal on half of its length, at the same speed and position.
 
-    None where there is no half: in 2-D, of two bearings, on stations without symmetry; and of a rigid wall, over which
+    None where there is no half: in 2-D, on stations without symmetry; and of a rigid wall, over which
     Newton's method takes as few steps by itself.
     """
     layout = problem.layout
     axial = layout.wall.film.axial
-    if axial.half or axial.is_2d or not layout.n_wall or layout.wall.n_bearings > 1:
+    if axial.half or axial.is_2d or not layout.n_wall:
         return None
     half = build_problem(layout.case.replace(**ALIGNED, **{"model.symmetry": True}))
     z = half.layout.wall.film.axial.whole_z

@@ -278,6 +278,8 @@ SCALARS: dict[str, Variable] = {
     "other_min_film_thickness": _answer("m", "minimum film thickness of the other bearing", "min h_2"),
     "other_peak_pressure": _answer("Pa", "peak absolute pressure of the other bearing", "p_max,2"),
     "other_power_loss": _answer("W", "power loss of the other bearing", "M_2 omega"),
+    "other_film_temperature": _answer("K", "temperature of the film of the other bearing", "T_f,2"),
+    "other_bushing_temperature": _answer("K", "temperature of the bushing of the other bearing", "T_b,2"),
     "other_shaft_temperature": _answer("K", "temperature of the shaft in the other bearing", "T_s,2"),
     "other_pack_temperature": _answer("K", "temperature of the pack of the other bearing", "T_p,2"),
     "critical_mass": _answer("kg", "critical mass of a rigid rotor: it whirls above", "m_c"),

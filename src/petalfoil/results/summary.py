@@ -103,6 +103,8 @@ _SHOWN: dict[str, Shown] = {
     "other_min_film_thickness": Shown("  minimum film thickness", "µm", 1e6),
     "other_peak_pressure": Shown("  peak pressure", "kPa", 1e-3),
     "other_power_loss": Shown("  power loss", "W"),
+    "other_film_temperature": Shown("  film temperature", "K"),
+    "other_bushing_temperature": Shown("  bushing temperature", "K"),
     "other_shaft_temperature": Shown("  shaft temperature", "K"),
     "other_pack_temperature": Shown("  pack temperature", "K"),
     "overlap": Shown("overlap"),

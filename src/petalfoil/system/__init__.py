@@ -13,6 +13,8 @@
 `loaded.py`              the journal's position unknown, a load given
 `friction.py`            friction between petals, and a problem with it
 `time_step.py`           an implicit step in time: the film stores gas
+`shaft_layout.py`        what stays the same of two bearings on one shaft
+`on_shaft.py`            both side by side in a step in time
 `temperatures.py`        temperatures of film, shaft, pack and bushing
 `heat_network.py`        their heat balances (H3)
 `heat_rows.py`           what film and contacts do to them, and its derivatives

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.case import Case
-from petalfoil.errors import UsageError
-from petalfoil.memory import check_memory
+from petalfoil.case import Case, ModelKind
+from petalfoil.memory import check_memory, grid_of
 from petalfoil.physics.mass_balance import FilmBalance
 from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.coupled import CoupledProblem
-from petalfoil.system.scales import scales_of
+from petalfoil.system.on_shaft import ShaftStep
+from petalfoil.system.scales import Scales, scales_of
+from petalfoil.system.shaft_layout import ShaftLayout
 from petalfoil.walls import Wall, build_wall
 from petalfoil.walls.tilting import tilting
-from petalfoil.walls.two_bearings import paired
+
+Array = NDArray[np.float64]
 
 
 def build_problem(case: Case) -> CoupledProblem:
@@ -54,31 +59,55 @@ def lever_of(case: Case) -> float:
     return 0.5 * case.bearing.length
 
 
-def build_pair(case: Case) -> CoupledProblem:
+def build_pair(case: Case, supports: Sequence[Case] = ()) -> ShaftStep:
     """Both bearings of `case` on a shaft that tilts, as its rotor has them; the whole length of each.
 
-    Raises
-    ------
-    UsageError
-        Their 2-D films have no ends, or they differ by more than how they stand askew.
+    `supports` are the bearings by themselves where they are not those of the case, at temperatures of their own.
     """
     if case.rotor is None or case.rotor.span is None:
         raise ValueError("this rotor runs in one bearing")
-    if case.rotor.second is not None and case.rotor.second.replaced:
-        raise UsageError(
-            "a motion in two bearings is followed where they are equal: leave the tables of rotor.second out, or ask "
-            "`balance` and `stability`, which take unequal ones"
-        )
-    whole = case.replace(**{"model.symmetry": False})
-    check_memory(whole, bearings=2)
-    first, second = (build_wall(one.replace(**{"model.symmetry": False})) for one in case.supports)
-    before, behind = case.rotor.places
-    wall = paired((first, second), (before, behind))
-    slopes = np.zeros(wall.n_position - len(case.operation.eccentricity))
-    problem = discretised(whole, wall, np.append(case.operation.eccentricity, slopes))
-    if problem.layout.film_rows.inventory is not None:
-        raise UsageError("two 2-D films without ends hold no gas of their own: take the 3-D model or ambient edges")
-    return problem
+    both = [one.replace(**{"model.symmetry": False}) for one in supports or case.supports]
+    check_memory(max(both, key=lambda one: grid_of(one).memory), bearings=2)
+    first = free_to_tilt(both[0])
+    second = first if same_wall(*both) else free_to_tilt(both[1], first.scales)
+    length, levers = first.scales.length, np.array([1.0, 1.0, case.rotor.lever, case.rotor.lever])
+    arms = [arm_of(one, place) / levers for one, place in zip(both, case.rotor.places, strict=True)]
+    askew = [askew_of(one) / length for one in both]
+    layout = ShaftLayout((first, second), (arms[0], arms[1]), (askew[0], askew[1]))
+    position = np.append(case.operation.eccentricity, np.zeros(2)) / length
+    radius, speed = case.bearing.journal_radius, case.operation.speed
+    return ShaftStep(layout, first.scales.bearing_number(both[0].gas.viscosity, speed, radius), position)
+
+
+def free_to_tilt(case: Case, units: Scales | None = None) -> BearingLayout:
+    """The layout of a bearing on a shaft that tilts; lengths and forces in the units of another one, if given."""
+    bare = case.replace(**{"operation.tilt": None})
+    wall = build_wall(bare)
+    wall = wall if case.model.kind is ModelKind.TWO_D else tilting(wall, lever_of(case))
+    own = discretised(bare, wall, np.zeros(wall.n_position)).layout
+    return own if units is None else replace(own, scales=replace(own.scales, length=units.length, force=units.force))
+
+
+def arm_of(case: Case, place: float) -> Array:
+    """Position of a journal `place` [m] along a shaft, slopes times the lever, by (x, y, a_x, a_y); (n_position, 4).
+
+    A 2-D film does not feel the slopes.
+    """
+    one, none = np.eye(2), np.zeros((2, 2))
+    own = [] if case.model.kind is ModelKind.TWO_D else [[none, lever_of(case) * one]]
+    return np.block([[one, place * one], *own])
+
+
+def askew_of(case: Case) -> Array:
+    """Position of a journal, slopes times the lever, under a shaft at the origin: how it stands askew; [m]."""
+    tilt = np.array(case.operation.tilt or (0.0, 0.0)) * lever_of(case)
+    return np.zeros(2) if case.model.kind is ModelKind.TWO_D else np.concatenate([np.zeros(2), tilt])
+
+
+def same_wall(one: Case, other: Case) -> bool:
+    """Whether two bearings differ by how they stand askew at most."""
+    straight = {"operation.tilt": None}
+    return one.replace(**straight) == other.replace(**straight)
 
 
 def discretised(case: Case, wall: Wall, displacement: NDArray[np.float64]) -> CoupledProblem:

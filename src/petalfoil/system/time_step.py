@@ -23,6 +23,7 @@ from petalfoil.system.film_rows import FilmState
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE
 
 Array = NDArray[np.float64]
+Index = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,33 @@ class StepProblem(CoupledProblem):
         mass = self.layout.film_rows.mass(self.pressure(x), self.film(x), self.time_number)
         loss = self.layout.loss
         return mass if loss is None else np.concatenate([mass, loss @ x[self.layout.unknowns[DEFLECTION]]])
+
+    def storing(self, x: Array, lam: Array) -> Array:
+        """Rates of what is stored, (n_stored,): of a wall that loses energy what it is out of balance by."""
+        rows = self.layout.film_rows.at(self.pressure(x), self.film(x), self.bearing_number)
+        if self.layout.loss is None:
+            return -rows.residual
+        still = CoupledProblem(self.layout, self.bearing_number, self.displacement)
+        wall = still.linearize(x).residual - self.G.T @ lam
+        return np.concatenate([-rows.residual, -wall[self.layout.unknowns[DEFLECTION]]])
+
+    def each(self, x: Array, lam: Array) -> list[tuple[StepProblem, Array, Array]]:
+        """Every bearing with its unknowns and reactions: this one."""
+        return [(self, x, lam)]
+
+    def stored_of_each(self, stored: Array) -> list[Array]:
+        """What each bearing stores: this one all of it."""
+        return [stored]
+
+    @property
+    def journal(self) -> slice:
+        """Gaps on the journal."""
+        return self.layout.wall.contacts.journal
+
+    @property
+    def contact_lines(self) -> list[Index]:
+        """Gaps of one kind in lines around the shaft, (line, node) each."""
+        return [line.number for line in self.layout.wall.contacts.lines]
 
     def rows_of(self, stored: Array) -> Array:
         """What is stored, or its rate, at the rows that it belongs to; (n,) [1]."""
@@ -88,6 +116,8 @@ class StepLinearization(Linearization):
     @cached_property
     def residual(self) -> Array:
         """(C1) without reactions, then (O2); (n,) [1]."""
+        if not self.rate:
+            return super().residual
         loss, mass = self.layout.loss, self.film.mass
         stored = mass if loss is None else np.concatenate([mass, loss @ self.x[self.layout.unknowns[DEFLECTION]]])
         return super().residual + self.rate * at_rows(self.layout, stored - self.start)

@@ -11,7 +11,6 @@
 `bump_foil.py`       a bump foil under a smooth top foil
 `backing.py`         backing springs behind petals
 `rigid.py`           a rigid bore: plain gas journal bearing
-`two_bearings.py`    a wall twice, on one shaft that tilts
 `tilting.py`         a wall under a journal whose axis is not parallel to it
 `registry.py`        case -> wall; other kinds are registered at run time
 ===================  ============================================================================

@@ -51,8 +51,6 @@ class Wall:
     slip, reaction_share : (k, n), (k, m) sparse
         Slip where surfaces slide on each other, from the deflections, and the share of each gap's reaction that
         presses there (D1) [1].
-    n_bearings : int
-        Bearings on the shaft; strips, unknowns and gaps of each kind are those of the first, then the second.
     loss : (n, n) sparse or None
         Nodal forces that are a quarter of a cycle ahead of the deflections, whatever the frequency: structural loss
         factor times stiffness (B5) [N/m]; None of a wall that loses no energy.
@@ -70,7 +68,6 @@ class Wall:
     support: sp.csr_array
     slip: sp.csr_array
     reaction_share: sp.csr_array
-    n_bearings: int = 1
     loss: sp.csr_array | None = None
 
     @property

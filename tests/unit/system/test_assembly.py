@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from petalfoil.physics.forces import film_force
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
-from petalfoil.system.build import build_pair, build_problem
+from petalfoil.system.build import build_problem, build_tilting
 from petalfoil.system.coupled import CoupledProblem, wall_scale
 from petalfoil.system.foil_pack import FoilPackProblem
 from petalfoil.system.friction import FrictionProblem, FrictionState, FrictionStep, friction_of
@@ -21,7 +21,7 @@ from tests.contract.taylor import assert_tangent, open_state
 
 Array = NDArray[np.float64]
 PETALS = case("paper_n8", **{"model.cells_per_pitch": 8, "surface.petal_friction": 0.3})
-TILTING = PETALS.replace(rotor={"mass": 1.0, "span": 0.2, "transverse_inertia": 0.01, "polar_inertia": 0.001})
+TILTING = PETALS.replace(**{"model.kind": "3d", "model.axial_cells": 4, "surface.petal_friction": 0.0})
 
 
 def state(problem: CoupledProblem, seed: int = 1) -> tuple[Array, Array]:
@@ -30,7 +30,7 @@ def state(problem: CoupledProblem, seed: int = 1) -> tuple[Array, Array]:
     return open_state(problem, rng), rng.uniform(0.0, 1.0, len(problem.weight))
 
 
-@pytest.mark.parametrize(("case_of", "dimension"), [(build_problem, 2), (build_pair, 4)])
+@pytest.mark.parametrize(("case_of", "dimension"), [(build_problem, 2), (build_tilting, 4)])
 def test_the_journal_has_as_many_coordinates_as_its_wall_says(case_of: object, dimension: int) -> None:
     problem = case_of(TILTING)
     assert problem.layout.n_position == dimension
