@@ -68,6 +68,7 @@ What they share:
 `accuracy.py`          whether they are below an accuracy, and the next finer grid
 `richardson.py`        values on a sequence of grids: limit, order, error bar
 `classic_method.py`    the paper's own method
+`friction_told.py`     which friction forces between petals an equilibrium has
 `contact_model.py`     where contacts are, and the equilibrium that results are taken from
 `evaluation.py`        a solution evaluated once, as typed parts
 `extremes.py`          extremes between nodes

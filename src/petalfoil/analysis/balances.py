@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from petalfoil.equilibrium.small_motion import ElementEquilibrium
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.physics.reynolds import Flux
+from petalfoil.system.friction import friction_of
 from petalfoil.system.unknowns import DEFLECTION
 
 Array = NDArray[np.float64]
@@ -33,6 +34,8 @@ def reaction_balance(answer: Solution) -> float:
     """Largest error of a petal's loads against its support, in motions that bend nothing (S4), over the loads [1]."""
     if answer.elements is not None:
         return balance_on_elements(answer.elements)
+    if answer.friction is not None:
+        return balance_with_friction(answer)
     layout, lines = answer.problem.layout, answer.lines
     x, lam, rest = (answer.x, answer.lam, answer.state.low_order) if lines is None else (lines.x, lines.lam, 0.0)
     w, P = x[layout.unknowns[DEFLECTION]], x[answer.problem.positive]
@@ -41,6 +44,19 @@ def reaction_balance(answer: Solution) -> float:
     parts = layout.push @ np.abs(P - 1.0) + abs(wall.contacts.G.T) @ np.abs(lam)
     error = wall.free_motions.T @ loads + unit * (wall.support @ w + wall.support @ (rest + np.zeros_like(w)))
     return largest(error, abs(wall.free_motions.T) @ parts)
+
+
+def balance_with_friction(answer: Solution) -> float:
+    """The same where friction forces load the petals, and their membranes carry some of it [1]."""
+    problem, friction = answer.problem, friction_of(answer.case, answer.problem.layout)
+    if answer.friction is None or friction is None:
+        raise ValueError("an equilibrium without friction forces")
+    wall, layout, x = problem.layout.wall, problem.layout, answer.x
+    w, P, rubbing = x[layout.unknowns[DEFLECTION]], x[problem.positive], answer.friction.state.force
+    G, B = wall.contacts.G, friction.slip
+    loads = layout.push @ (P - 1.0) + G.T @ answer.lam - B.T @ rubbing - layout.elastic_force(w)
+    parts = layout.push @ np.abs(P - 1.0) + abs(G.T) @ np.abs(answer.lam) + abs(B.T) @ np.abs(rubbing)
+    return largest(wall.free_motions.T @ loads, abs(wall.free_motions.T) @ parts)
 
 
 def balance_on_elements(found: ElementEquilibrium) -> float:

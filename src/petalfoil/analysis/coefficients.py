@@ -14,6 +14,7 @@ from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.contact_model import ContactModel
 from petalfoil.analysis.declaration import Export, analysis
 from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.analysis.friction_told import FrictionTold
 from petalfoil.analysis.heat_results import heat_results
 from petalfoil.analysis.impedance import Array, cycle_impedance, elastic_and_sliding, impedances
 from petalfoil.analysis.operating_point import OperatingPoint, Vector, at, operating_point
@@ -335,5 +336,5 @@ def state_parts(case: Case, found: OperatingPoint) -> tuple[object, ...]:
     """What is told of the equilibrium that small motions are about."""
     bearing = bearing_of(case, found.answer)
     contact, hot = Contact(Evaluation.of(bearing, found.answer).contact_fraction), heat_results(bearing, found.answer)
-    told = (*(() if hot is None else (hot,)), *rotor_parts(case, found.answer))
+    told = (*(() if hot is None else (hot,)), *rotor_parts(case, found.answer), FrictionTold.of(case, found.answer))
     return *geometry(bearing), position(bearing, found.answer), contact, found.branch, *found.loaded, *told

@@ -2,37 +2,22 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
-from petalfoil.equilibrium.coulomb_path import slide_exactly
-from petalfoil.equilibrium.friction_path import FrictionResult, slide
-from petalfoil.equilibrium.pack_at_rest import at_rest, unloaded
-from petalfoil.equilibrium.run_context import RunContext, current_run, running
+from petalfoil.equilibrium.friction_history import assembled, moved
+from petalfoil.equilibrium.friction_path import FrictionResult
+from petalfoil.equilibrium.run_context import RunContext, running
 from petalfoil.equilibrium.solution import RefinedState, Solution
-from petalfoil.physics.dry_friction import Friction
-from petalfoil.solvers.contact_newton import solve_contacts
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
-from petalfoil.system.foil_pack import FoilPackProblem
-from petalfoil.system.friction import FrictionState, friction_of
+from petalfoil.system.friction import friction_of
 
 Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-
-HALVINGS = 8
-"""Times that a step of the way may be halved before there is no answer."""
-
-LONGEST_MOVE = 5e-6
-"""Longest step of a journal that moves in petals that slide along themselves [m]."""
-
-LONGEST_INSERTION = 5e-5
-"""Longest step of the radius of a journal that is inserted into them [m]."""
 
 WAY = "foil pack at zero speed, moved here with friction between its petals"
 """How such a state was reached."""
@@ -90,71 +75,6 @@ def follow(way: list[tuple[str, Case]]) -> Iterator[Point]:
         total += slid.lost
         before = problem, slid
         yield Point(case, leg, answer_of(problem, slid), total * unit, run, run.seconds)
-
-
-def assembled(friction: Friction, problem: CoupledProblem) -> FrictionResult | None:
-    """The foil pack as it is assembled; None if it did not settle.
-
-    Petals that slide along themselves lie without friction round a thinner journal, short of its radius by the radial
-    clearance, which then grows to its size: friction builds up as petals are pressed outward. Others are assembled
-    without friction.
-    """
-    clearance = problem.layout.case.bearing.clearance / problem.layout.scales.length if friction.exact else 0.0
-    found = at_rest(problem, clearance)
-    if found is None:
-        return None
-    pack = unloaded(problem, clearance)
-    contacts, _ = solve_contacts(pack, (found.x, found.active), current_run().pack_solver)
-    if contacts is None:
-        return None
-    fresh = FrictionState.fresh(friction, contacts.x, contacts.lam)
-    start = FrictionResult(contacts.x, contacts.lam, contacts.active, contacts.state.residual, fresh, 0.0)
-    if not friction.exact:
-        return start
-    steps = math.ceil(problem.layout.case.bearing.clearance / LONGEST_INSERTION)
-    slid = led(friction, start, lambda share: unloaded(problem, (1.0 - share) * clearance), steps)
-    return None if slid is None else replace(slid, lost=0.0)  # energy is counted from the assembled pack on
-
-
-def moved(
-    friction: Friction, before: tuple[CoupledProblem, FrictionResult], problem: CoupledProblem
-) -> FrictionResult | None:
-    """The pack after the journal has moved on to `problem`; None if it fails."""
-    begin, state = before
-    start, way = begin.displacement, problem.displacement - begin.displacement
-    longest = LONGEST_MOVE / problem.layout.scales.length if friction.exact else np.inf
-    steps = max(1, math.ceil(float(np.linalg.norm(way)) / longest - 1e-9))
-    return led(friction, state, lambda share: unloaded(problem.at(displacement=start + share * way)), steps)
-
-
-def led(
-    friction: Friction, state: FrictionResult, at: Callable[[float], FoilPackProblem], steps: int
-) -> FrictionResult | None:
-    """The pack led along a way in equal steps, in halves where one is too long; None if it fails."""
-    parts, lost, done = [1.0 / steps] * steps, 0.0, 0.0
-    halved = steps + HALVINGS
-    while parts:
-        there = 1.0 if len(parts) == 1 else done + parts[-1]
-        slid = slid_to(at(there), friction, state)
-        current_run().note("friction", share=there, outcome="found" if slid is not None else "halved")
-        if slid is None:
-            if len(parts) > halved:
-                return None
-            parts = [*parts[:-1], 0.5 * parts[-1], 0.5 * parts[-1]]
-            continue
-        parts.pop()
-        done, lost = there, lost + slid.lost
-        state = slid
-    return replace(state, lost=lost)
-
-
-def slid_to(pack: FoilPackProblem, friction: Friction, before: FrictionResult) -> FrictionResult | None:
-    """The pack after a step: exact, or with friction that builds up over a width."""
-    solver = current_run().pack_solver
-    if not friction.exact:
-        return slide(pack, friction, before, solver)
-    lines = [line.number for line in pack.layout.wall.contacts.lines]
-    return slide_exactly(pack, friction, before, lines, solver)
 
 
 def answer_of(problem: CoupledProblem, slid: FrictionResult) -> Solution:

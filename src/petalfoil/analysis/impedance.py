@@ -48,10 +48,12 @@ def elastic_and_sliding(case: Case, answer: Solution) -> tuple[Motion, SlidingCo
     ConvergenceError
         The pack is bottomed out: the journal cannot move without bending what has no clearance to bend.
     """
-    found = near_nodes(answer)
+    found = None if answer.friction is not None else near_nodes(answer)
     if found is not None:
         return on_elements(case, found)
     sliding = sliding_at(case, answer)
+    if answer.friction is not None and sliding is not None:  # a contact that sticks does not travel
+        return SmallMotion.at_nodes(answer, sliding.sticking(len(answer.x))), sliding
     if sliding is None and answer.lines is not None:
         return answer.lines.motion, None
     motion = SmallMotion.about(answer, None if sliding is None else sliding.sticking(len(answer.x)))

@@ -12,6 +12,7 @@ import numpy as np
 from petalfoil.analysis.classic_method import by_classic, newton_only
 from petalfoil.analysis.contact_model import reported
 from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.analysis.friction_told import follows_path
 from petalfoil.analysis.heat_results import with_heat
 from petalfoil.analysis.neighbours import begun, keep
 from petalfoil.analysis.records import branch
@@ -91,7 +92,8 @@ def operating_point(case: Case, load: Vector | None) -> OperatingPoint:
 
 def with_reported(case: Case, found: OperatingPoint) -> OperatingPoint:
     """The operating point with the equilibrium that results are taken from, its growth rate among them."""
-    if found.answer.other is not None:  # both bearings of a rotor have theirs
+    answer = found.answer
+    if answer.other is not None or answer.friction is not None:  # those of both bearings, or of a path, are found
         return found
     answer = reported(case, found.answer)
     if answer.elements is None:  # in 3-D the growth rate stays that of contacts at nodes
@@ -129,6 +131,9 @@ def under_load(case: Case, load: Vector) -> tuple[Solution, Branch]:
     """
     if not case.shares_evenly:
         return on_shaft(case, load)
+    if follows_path(case):
+        found = SpeedLine(case, load).climb(case.operation.speed)
+        return found, Branch(solution_path=found.solution_path)
     problem = build_problem(case)
     found, rate = begun_under_load(problem, load)
     if case.heat is not None:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.analysis.classic_method import newton_only
+from petalfoil.analysis.friction_told import RELEASED, RELEASED_LOADED, FrictionTold
 from petalfoil.analysis.operating_point import at
 from petalfoil.analysis.records import effort, geometry, record_of
 from petalfoil.analysis.release import (
@@ -18,6 +19,9 @@ from petalfoil.analysis.release import (
     OrbitRequest,
     at_kept,
     at_rest,
+    at_rest_on_path,
+    balance_on_path,
+    begins_on_path,
     first_position,
     system_of,
     temperatures_of,
@@ -168,11 +172,12 @@ class Orbit:
             with run.active():
                 warm = temperatures_of(case, request)
                 warmed, supports = at_kept(case, warm)
-                place, slope = first_position(warmed if case.shares_evenly else case, request)
+                known = balance_on_path(warmed, request)
+                place, slope = first_position(warmed if case.shares_evenly else case, request, known)
                 request = replace(request, slope=slope)
                 placed = at(warmed, eccentricity=place)
                 system, time = system_of(placed, supports, schedule, request.load), 0.0
-                start = at_rest(placed, system, request)
+                start = at_rest(placed, system, request) if known is None else at_rest_on_path(system, known)
         else:
             time, warm, place = continued(case, schedule, restart), kept_temperatures(case, restart), None
             placed, supports = at_kept(case, warm)
@@ -230,6 +235,7 @@ class Orbit:
             self._summary(time, over),
             *self._tilt(time, over),
             *self._warmth(),
+            FrictionTold(self._path),
             self.trace.audits(over),
             self._stepping(),
             effort(self.run.seconds, self.run),
@@ -272,6 +278,13 @@ class Orbit:
         if other is not None and not self.asked.shares_evenly:
             told.append(OtherWarmth(**{f"other_{node}_temperature": T for node, T in other._asdict().items()}))
         return tuple(told)
+
+    @property
+    def _path(self) -> str | None:
+        """Where the friction forces between petals come from."""
+        if self.system.friction is None:
+            return None
+        return RELEASED_LOADED if begins_on_path(self.case, self.request) else RELEASED
 
     def _stepping(self) -> Stepping:
         refused = [row.get("outcome") for row in self.run.history if row["phase"] == "motion"]

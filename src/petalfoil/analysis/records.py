@@ -9,6 +9,7 @@ import numpy as np
 from petalfoil.analysis.contact_model import ContactModel
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.fields import all_fields, coordinates
+from petalfoil.analysis.friction_told import FrictionTold
 from petalfoil.analysis.heat_results import heat_results
 from petalfoil.case import Case, warnings_of
 from petalfoil.equilibrium.run_context import HistoryRow, RunContext, current_run
@@ -25,7 +26,7 @@ def solution_record(analysis: str, found: Evaluation, *parts: object) -> Record:
     case, answer = found.case, found.answer
     fields = all_fields(found)
     hot = heat_results(case, answer)
-    wall = wall_kind(case).scalars(fields), ContactModel.of(answer)
+    wall = wall_kind(case).scalars(fields), ContactModel.of(answer), FrictionTold.of(case, answer)
     film = (found.forces(), found.film(), found.balances(), *wall, *([hot] if hot else []))
     return record_of(
         analysis,

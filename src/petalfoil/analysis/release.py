@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.analysis.friction_told import follows_path
 from petalfoil.analysis.heat_results import at_temperatures
 from petalfoil.analysis.operating_point import Vector, at, at_position, under_load
 from petalfoil.analysis.rotor_balance import RotorInBearings
@@ -129,8 +130,29 @@ def at_kept(case: Case, warm: Kept) -> tuple[Case, tuple[Case, ...]]:
     return at_temperatures(case.replace(**alone), first), supports
 
 
-def first_position(case: Case, request: OrbitRequest) -> tuple[Vector | None, Vector]:
+def begins_on_path(case: Case, request: OrbitRequest) -> bool:
+    """Whether a motion begins with the friction forces of the path to its balance: of a rotor in one bearing."""
+    return request.initial == "balance" and case.bearings == 1 and follows_path(case)
+
+
+def balance_on_path(case: Case, request: OrbitRequest) -> Solution | None:
+    """The balance where a motion begins, if it keeps the friction of its path; else None.
+
+    Raises
+    ------
+    ConvergenceError
+        The path was lost.
+    """
+    if not begins_on_path(case, request):
+        return None
+    speed = request.schedule(case).speed(0.0)
+    return under_load(at(case, speed, (0.0, 0.0)), constant_load(case, request.load))[0]
+
+
+def first_position(case: Case, request: OrbitRequest, known: Solution | None = None) -> tuple[Vector | None, Vector]:
     """Where the journal is released [m], None where the case says so; and the slopes of a shaft in two bearings [rad].
+
+    A `known` balance that keeps the friction of its path is where it is.
 
     Raises
     ------
@@ -139,6 +161,9 @@ def first_position(case: Case, request: OrbitRequest) -> tuple[Vector | None, Ve
     """
     if request.initial != "balance":
         return request.initial, request.slope
+    if known is not None:
+        x, y = map(float, known.position[:2] * known.problem.layout.scales.length)
+        return (x, y), request.slope
     if not case.shares_evenly:
         return on_both(case, request)
     load, speed = constant_load(case, request.load), request.schedule(case).speed(0.0)
@@ -228,6 +253,13 @@ def held_on_shaft(problem: ShaftStep) -> tuple[Array, Array, NDArray[np.bool_]]:
         for of in ("lam", "active")
     )
     return joined(layout.numbers, [one.x for one in found]), lam, active > 0.5
+
+
+def at_rest_on_path(system: RotorBearing, known: Solution) -> Instant:
+    """The journal released at rest where it balances, with the friction forces that the path there has left."""
+    place, state = system.problem.displacement, (known.x, known.lam, known.active)
+    start = released(system, 0.0, state, (place, np.zeros_like(place)))
+    return start if known.friction is None else replace(start, friction=known.friction.state)
 
 
 def released(

@@ -82,7 +82,9 @@ def runup(
 
     Each point is followed from the one before. With --out the file is
     rewritten as points finish; Ctrl-C keeps what is finished, and --resume
-    goes on from it. With a heat network (table heat) every point is at its
+    goes on from it. With friction between petals that slide along themselves
+    (2-D) the pack is assembled, loaded at rest and run up, and each point
+    keeps the friction forces of that path. With a heat network (table heat) every point is at its
     steady temperature; with --warm-up the bearing starts cold.
 
     Example: petalfoil runup case.toml --load "46.4 N" --to "30000 rpm"
@@ -109,7 +111,7 @@ def _points(
     done: Sequence[Record] = (),
 ) -> Iterator[Record]:
     way, rate = in_time
-    line, before = SpeedLine(at(case, way[0][1], (0.0, 0.0)), load), 0.0
+    line, before = SpeedLine(at(case, way[0][1], (0.0, 0.0)), load, from_rest=rate is None), 0.0
     if done:
         if rate is not None and line.rotor is not None:
             raise UsageError("a warm-up of a rotor on unequal bearings does not go on: run it again from the start")

@@ -9,17 +9,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.analysis.contact_model import reported
+from petalfoil.analysis.friction_told import follows_path
 from petalfoil.analysis.heat_results import network_in_time, warm_up_step, with_heat
 from petalfoil.analysis.other_bearing import worst_contact
 from petalfoil.analysis.resume import is_same
 from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.case import Case
+from petalfoil.equilibrium.friction_under_load import LoadedPath
+from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold, rebalance
 from petalfoil.errors import ConvergenceError
 from petalfoil.results.record import Record
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.friction import friction_of
 from petalfoil.system.loaded import load_of
 from petalfoil.system.temperatures import Temperatures
 
@@ -51,6 +55,10 @@ class SpeedLine:
         The rotor, where its bearings do not share the load evenly.
     others : list
         Temperatures of both its bearings in a warm-up.
+    path : LoadedPath or None
+        Friction between the petals, where it is followed from the assembled pack at rest.
+    from_rest : bool
+        Follow it unless the case says otherwise.
     """
 
     case: Case
@@ -62,6 +70,8 @@ class SpeedLine:
     base: CoupledProblem = field(init=False)
     rotor: RotorInBearings | None = None
     others: list[Temperatures | None] = field(default_factory=list)
+    path: LoadedPath | None = field(init=False, default=None)
+    from_rest: bool = False
 
     def __post_init__(self) -> None:
         if not self.case.shares_evenly:
@@ -69,6 +79,9 @@ class SpeedLine:
             self.base = self.rotor.supports[int(self.rotor.turned)].problem
             return
         self.base = build_problem(self.case.replace(**{"operation.eccentricity": (0.0, 0.0)}))
+        friction = friction_of(self.case, self.base.layout)
+        if friction is not None and follows_path(self.case, by_default=self.from_rest):
+            self.path = LoadedPath(friction, load_of(self.case, self.load, self.base.layout))
 
     def at(self, speed: float, after: float | None = None) -> Solution:
         """The balance at `speed` [rad/s], followed from the last one.
@@ -85,6 +98,8 @@ class SpeedLine:
         scales, R_j = self.base.layout.scales, self.case.bearing.journal_radius
         number = scales.bearing_number(self.case.gas.viscosity, speed, R_j)
         problem, load = self.base.at(bearing_number=number), load_of(self.case, self.load, self.base.layout)
+        if self.path is not None:
+            return self._with_friction(self.path, problem)
         warm, before = self.temperatures, self.known
         if warm is None and after is not None:
             warm = network_in_time(self.case).start
@@ -101,6 +116,20 @@ class SpeedLine:
             reported(self.case, self.known, before) if self.seeks else replace(self.known, elements_sought=True)
         )
         return self.known
+
+    def _with_friction(self, path: LoadedPath, problem: CoupledProblem) -> Solution:
+        """The same with the friction forces of the way from the last balance, or from the assembled pack at rest."""
+        start = self.known or path.set_down(self.base)
+        found = None if start is None else path.run_up(start, problem)
+        if found is None:
+            where = "while it was loaded at rest" if start is None else "on the way to this speed"
+            raise ConvergenceError(
+                f"the path of the pack with friction was lost {where}",
+                history=current_run().history,
+                advice='take more speeds or another grid; surface.friction_history = "relaxed" leaves the path out',
+            )
+        self.known = found
+        return found
 
     def _on_shaft(self, rotor: RotorInBearings, speed: float, after: float | None) -> Solution:
         """The same of a rotor whose bearings do not share the load evenly."""
@@ -125,7 +154,7 @@ class SpeedLine:
             It was lost on the way.
         """
         self.known = None
-        for part in CLIMB:
+        for part in (1.0,) if self.path is not None else CLIMB:
             found = self.at(part * speed)
         return found
 
@@ -135,7 +164,7 @@ class SpeedLine:
         Its balance is looked for from nothing; where that is another, along the speeds.
         """
         self.known = None
-        if not last.converged or self._arrived(speeds[-1:], last):
+        if not last.converged or (self.path is None and self._arrived(speeds[-1:], last)):
             return
         self._arrived(speeds, last)
 

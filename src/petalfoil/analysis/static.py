@@ -17,10 +17,11 @@ from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.displacements import CHARACTERISTIC, displaced
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.fields import coordinates, wall_fields
+from petalfoil.analysis.friction_told import ASSEMBLED, TURNED, FrictionTold
 from petalfoil.analysis.hysteresis import follow, legs
 from petalfoil.analysis.records import asked_position, effort, failed_record, geometry, record_of
 from petalfoil.analysis.runs import Points
-from petalfoil.case import Case
+from petalfoil.case import Case, PetalTheory
 from petalfoil.equilibrium.continuation import rest
 from petalfoil.equilibrium.run_context import Progress, current_run, running
 from petalfoil.equilibrium.solution import Solution
@@ -47,10 +48,9 @@ class Torque:
 
 @dataclass(frozen=True)
 class Leg:
-    """Part of the way, and the energy lost to friction up to here."""
+    """Part of the way."""
 
     leg: str
-    petal_friction_work: float | None = None
 
 
 def preload(points: list[dict[str, Any]]) -> dict[str, Any]:
@@ -104,6 +104,7 @@ def static(
 def _with_friction(
     way: list[tuple[str, Case]], progress: Progress | None, done: Sequence[Record] = ()
 ) -> Iterator[Record]:
+    exact = way[0][1].petal_theory is PetalTheory.SHELL
     for number, point in enumerate(follow(way)):
         if number < len(done):
             continue  # friction depends on the way: it is gone once more
@@ -114,7 +115,8 @@ def _with_friction(
                 reason = "the foil pack did not settle on the way"
                 record = failed_record("static", point.case, reason, Leg(point.leg))
             else:
-                own = (Leg(point.leg, point.lost), effort(point.seconds))
+                told = FrictionTold(ASSEMBLED if exact else TURNED, point.lost)
+                own = (Leg(point.leg), told, effort(point.seconds))
                 record = static_record(point.case, point.answer, *own)
         yield record
 

@@ -45,7 +45,17 @@ from petalfoil.case.petal_table import LinearAbout, Mount, Petals, PetalTheory
 from petalfoil.case.plausibility import warnings_of
 from petalfoil.case.rotor import Rotor, Which
 from petalfoil.case.second_bearing import SecondBearing
-from petalfoil.case.sections import Bearing, Contacts, Edges, Method, Model, ModelKind, Operation, Surface
+from petalfoil.case.sections import (
+    Bearing,
+    Contacts,
+    Edges,
+    FrictionHistory,
+    Method,
+    Model,
+    ModelKind,
+    Operation,
+    Surface,
+)
 from petalfoil.case.wall_tables import WallTable, register_table, unregister_table
 
 __all__ = [
@@ -57,6 +67,7 @@ __all__ = [
     "Contacts",
     "Edges",
     "Feet",
+    "FrictionHistory",
     "Gas",
     "Growth",
     "Heat",

@@ -157,6 +157,12 @@ class Case(Definition):
         return PetalTheory.SHELL if slides else PetalTheory.INEXTENSIBLE
 
     @property
+    def follows_friction(self) -> bool:
+        """Whether equilibria can keep the friction forces of the path that the pack has gone (M6)."""
+        slides = self.surface.petal_friction > 0.0 and self.petal_theory is PetalTheory.SHELL
+        return slides and self.petals is not None and self.heat is None and self.shares_evenly
+
+    @property
     def growth(self) -> Growth:
         """How shaft and bushing have grown (G5); nothing without their tables."""
         return Growth.of(self.shaft, self.bushing, (self.bearing.journal_radius, self.bearing.bushing_radius))

@@ -33,6 +33,13 @@ class Bearing(Definition):
         return self.bushing_radius - self.journal_radius
 
 
+class FrictionHistory(StrEnum):
+    """Which friction forces petals have in an equilibrium."""
+
+    RELAXED = "relaxed"
+    ASSEMBLED = "assembled"
+
+
 class Surface(Definition):
     """Roughness and dry friction of journal and petals."""
 
@@ -65,6 +72,10 @@ class Surface(Definition):
         float,
         Quantity(unit="m", meaning="slip within which friction builds up", symbol="s_f", above=0.0, at_most=1e-3),
     ] = 1e-9
+    friction_history: FrictionHistory | None = None
+    """Friction forces between petals in an equilibrium: `assembled`, those of the path that the pack has gone
+    (assembled, loaded at rest, run up); or `relaxed`, none, as vibrations leave it. By default `runup` (and `static`)
+    follows the path where petals slide along themselves in 2-D, and every other question is about the relaxed pack."""
 
 
 _Displacement = Annotated[

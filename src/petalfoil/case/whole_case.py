@@ -11,7 +11,7 @@ from petalfoil.case.heat import heat_problems
 from petalfoil.case.pack_geometry import bearing_problems, pack_problems
 from petalfoil.case.petal_table import PetalTheory
 from petalfoil.case.problems import Problem, refusal
-from petalfoil.case.sections import ADAPTED, Method, ModelKind
+from petalfoil.case.sections import ADAPTED, FrictionHistory, Method, ModelKind
 from petalfoil.errors import DefinitionError, PackError
 from petalfoil.units import format_quantity
 
@@ -38,6 +38,7 @@ def refuse_unsolvable(case: Case) -> None:
         *_heat_problems(case),
         *_method_problems(case),
         *_second_problems(case),
+        *_history_problems(case),
     ]
     if problems:
         raise refusal(DefinitionError, problems)
@@ -105,6 +106,20 @@ def _heat_problems(case: Case) -> Iterator[Problem]:
     given = {key: part is not None and part.temperature != REFERENCE_TEMPERATURE for key, part in warm.items()}
     others = {"model.slip": case.model.slip, "classic": case.model.method is Method.CLASSIC}
     yield from heat_problems(case.heat, given | others)
+
+
+def _history_problems(case: Case) -> Iterator[Problem]:
+    """Yield why the path of a pack with friction cannot be followed."""
+    if case.surface.friction_history is not FrictionHistory.ASSEMBLED or case.follows_friction:
+        return
+    if not case.surface.petal_friction > 0.0:
+        lacks = "surface.petal_friction above 0"
+    elif case.petal_theory is not PetalTheory.SHELL:
+        lacks = 'petals that slide along themselves (2-D, petals.theory = "shell")'
+    else:
+        lacks = "one temperature (no [heat]), and bearings that share the load of a rotor evenly"
+    text = f'a pack that keeps the friction of its assembly needs {lacks}; allowed here: "relaxed"'
+    yield Problem("surface.friction_history", text, "assembled", '"relaxed"')
 
 
 def _method_problems(case: Case) -> Iterator[Problem]:

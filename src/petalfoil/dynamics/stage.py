@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from petalfoil.dynamics.time_state import TimeState
 from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.sliding_newton import SlidingNewton, SlidingOptions
 from petalfoil.solvers.contact_equations import (
     ContactEquations,
     ContactOptions,
@@ -40,6 +41,9 @@ Mask = NDArray[np.bool_]
 
 TANGENTS, TANGENTS_SLIDING = 3, 20
 """Tangents with one contact set; where petals stick and slip, the tangent changes with them."""
+
+TANGENTS_EXACT = 4
+"""Most factorisations of a stage with exact friction."""
 
 CYCLING = 3
 """Tangents with one contact set after which sticking and slipping may recur in turns: secants replace derivatives."""
@@ -141,15 +145,11 @@ class Stage(ContactEquations):
         force = self.problem.journal_force(x, lam) + self.outside
         return np.asarray(force - self.inertia @ (self.rate**2 * reached) - turned)
 
-    def step_length(self, state: ContactState, correction: Correction) -> float:
+    def longest_step(self, at: tuple[Array, Array], correction: Correction) -> float:
         """Pressures and film stay positive."""
-        return min(super().step_length(state, correction), self.open_step((state.x, state.b), correction))
-
-    def open_step(self, at: tuple[Array, Array], correction: Correction) -> float:
-        """Fraction of a correction from unknowns and displacement `at` that keeps the film open."""
         film = self.problem.at(displacement=at[1]).film(at[0])
         ahead = self.problem.at(displacement=at[1] + correction.b).film(at[0] + correction.x)
-        return FILM_FRACTION * fraction_to_boundary(film, ahead - film)
+        return min(super().longest_step(at, correction), FILM_FRACTION * fraction_to_boundary(film, ahead - film))
 
     def lagged(self, state: ContactState) -> Self:
         """Friction limited by the reactions of `state`."""
@@ -207,3 +207,19 @@ def solve_stage(
     state = contacts.state
     friction = None if stage.friction is None else stage.friction.limited(state.lam).after(state.x)
     return StageSolution(state, stage.moving(state.x, state.b), contacts.tangent, friction)
+
+
+def solve_sliding_stage(
+    stage: Stage, start: tuple[Array, Array, Mask], lam: Array, tangent: BorderedTangent | None
+) -> StageSolution | None:
+    """The same of petals that slide along themselves, from reactions `lam` (m,): contacts and friction as one."""
+    if stage.friction is None:
+        raise ValueError("a stage without friction")
+    options = SlidingOptions(stage.options.accuracy, stage.options.slow, stage.options.slow_sliding, TANGENTS_EXACT)
+    friction, smooth = stage.friction, replace(stage, friction=None)
+    newton = SlidingNewton(smooth, friction.friction, friction.before, stage.problem.contact_lines, options)
+    found = newton.solved((*start, lam), tangent)
+    if found is None:
+        return None
+    state, after = newton.state(*found)
+    return StageSolution(state, stage.moving(state.x, state.b), found[1], after)

@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.dynamics.rotor_motion import RotorMotion
-from petalfoil.dynamics.sliding_stage import SlidingStage
-from petalfoil.dynamics.stage import Stage, StageOptions, StageSolution, solve_stage
+from petalfoil.dynamics.stage import Stage, StageOptions, StageSolution, solve_sliding_stage, solve_stage
 from petalfoil.dynamics.time_state import Instant, TimeState
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.contact_newton import border_change
@@ -102,8 +101,9 @@ def advance(
     stage: Stage, tau: float, path: list[Instant], tangent: BorderedTangent | None
 ) -> tuple[Instant, StageSolution] | None:
     """The instant at `tau` that a stage leads to; None if it has no solution."""
+    last = path[-1]
     for x, e in guesses(path, tau):
-        solution = solved(stage, (x, e, path[-1].active), tangent)
+        solution = solved(stage, (x, e, last.active), last.lam, tangent)
         if solution is not None:
             state, moving = solution.state, solution.moving
             change = moving.minus(stage.base, stage.rate)
@@ -111,12 +111,12 @@ def advance(
     return None
 
 
-def solved(stage: Stage, start: tuple[Array, Array, Mask], tangent: BorderedTangent | None) -> StageSolution | None:
+def solved(
+    stage: Stage, start: tuple[Array, Array, Mask], lam: Array, tangent: BorderedTangent | None
+) -> StageSolution | None:
     """The stage's state from `start`; of petals that slide along themselves with contacts and friction as one."""
-    friction = stage.friction
-    if friction is None or not friction.friction.exact:
-        return solve_stage(stage, start, tangent)
-    return SlidingStage(stage, friction.friction, friction.before).solved(start, tangent)
+    exact = stage.friction is not None and stage.friction.friction.exact
+    return solve_sliding_stage(stage, start, lam, tangent) if exact else solve_stage(stage, start, tangent)
 
 
 def guesses(path: list[Instant], tau: float) -> list[tuple[Array, Array]]:

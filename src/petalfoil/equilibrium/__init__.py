@@ -12,6 +12,10 @@
 `heated.py`                the temperatures of a heat network with film, contacts and position
 `friction_path.py`         equilibria with friction between petals, one after another
 `coulomb_path.py`          the same with petals that slide along themselves
+`friction_history.py`      the pack assembled and moved so, without film
+`sliding_newton.py`        film, pack and journal with such petals in one Newton
+`sinking.py`               journal and petals in a medium that holds them back
+`friction_under_load.py`   a loaded journal set down on such a pack, and run up
 `parameter_response.py`    how an equilibrium follows a parameter of its case
 `point_rates.py`           the same with isolated contacts as points between nodes
 `small_motion.py`          what is asked of the response to a small motion of the journal

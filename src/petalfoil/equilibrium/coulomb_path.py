@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from petalfoil.equilibrium.friction_path import FrictionResult
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.constraints import constrain
-from petalfoil.solvers.contact_space import Columns, RubbingContacts
-from petalfoil.solvers.coulomb import ContactForces, States
+from petalfoil.solvers.contact_space import Columns, KnownState, RubbingContacts
+from petalfoil.solvers.coulomb import ContactForces
 from petalfoil.solvers.problem import ContactProblem, Linearized, no_border
 from petalfoil.solvers.sparse_lu import LinearSolver, SingularMatrixError
 from petalfoil.solvers.tangent import BorderedTangent, Tangent
@@ -76,11 +76,12 @@ def slide_exactly(
     change, reactions = tangent.respond(linearized.residual, gaps)
     base = change, reactions, gaps + pack.G @ change
     slip = slips(friction, before.x + change) - before.friction.slip
+    still = np.zeros_like(slip)
+    known = KnownState(before.active, before.friction.direction, gaps, before.lam, before.friction.force, still)
     doubt = beside(before.active, lines) | (base[2] < CLOSED)
     for _ in range(ROUNDS):
         columns = Columns.of(tangent, pack.G, np.flatnonzero(doubt), rubbing)
-        guess = States(before.active[columns.contacts], before.friction.direction[columns.rubbing])
-        found = columns.solved(base, slip, guess)
+        found = columns.solved(base, slip, known)
         if found is None:
             return None
         x = before.x + change + columns.change @ np.concatenate([found.unknown, found.friction])

@@ -12,6 +12,7 @@ from petalfoil.equilibrium.small_motion import HELD_AT_NODES, ON_LINES, ElementE
 from petalfoil.solvers.contact_newton import ActiveContacts
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, Linearized, PrimalDualPoint, scaled_residual
 from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.friction import FrictionState
 from petalfoil.system.loaded import load_scale
 from petalfoil.system.unknowns import DEFLECTION
 
@@ -54,6 +55,25 @@ class OperatingState:
 
 
 @dataclass(frozen=True)
+class FrictionPath:
+    """What petals with friction keep of the path that they have gone.
+
+    Attributes
+    ----------
+    state : FrictionState
+        Slips and friction forces.
+    active : (m,) bool array
+        Contacts that carry load.
+    lost : float
+        Energy lost to friction since the pack was assembled, over the units of force and length [1].
+    """
+
+    state: FrictionState
+    active: NDArray[np.bool_]
+    lost: float
+
+
+@dataclass(frozen=True)
 class Solution:
     """A converged state.
 
@@ -85,6 +105,8 @@ class Solution:
         The state of the other bearing of a rotor whose bearings do not share the load evenly.
     shaft_residual : float or None
         Force and moment left over on that rotor, over its load [1].
+    friction : FrictionPath or None
+        Friction forces between petals, where they were followed along a path; None of equilibria without them.
     """
 
     problem: CoupledProblem
@@ -99,6 +121,7 @@ class Solution:
     elements_sought: bool = False
     nodal_force_difference: float | None = None
     lines: LineEquilibrium | None = field(default=None, repr=False)
+    friction: FrictionPath | None = field(default=None, repr=False)
 
     @property
     def position(self) -> Array:
@@ -141,6 +164,8 @@ class Solution:
         """Contacts that carry load, (m,)."""
         if self.contacts is not None:
             return self.contacts.active
+        if self.friction is not None:
+            return self.friction.active
         return self.lam / self.problem.weight > self.problem.gaps(self.x)
 
     @property

@@ -22,7 +22,6 @@ from petalfoil.equilibrium.solution import Solution, from_contacts, unrefined
 from petalfoil.solvers.contact_equations import (
     ContactEquations,
     ContactOptions,
-    ContactState,
     Correction,
     Step,
     StepVerdict,
@@ -217,10 +216,10 @@ class LoadedEquations(ContactEquations):
         """Force of film, contacts and load on the journal."""
         return self.problem.journal_force(x, lam) + self.load
 
-    def step_length(self, state: ContactState, correction: Correction) -> float:
+    def longest_step(self, at: tuple[Array, Array], correction: Correction) -> float:
         """Pressures stay positive, and the journal moves by a few films only."""
         farthest = MOST_FILMS / max(float(np.linalg.norm(correction.b)), 1e-300)
-        return min(super().step_length(state, correction), farthest)
+        return min(super().longest_step(at, correction), farthest)
 
     def verdict(self, step: Step, options: ContactOptions) -> StepVerdict:
         """By the residual; and the forces must balance."""

@@ -127,6 +127,7 @@ _SHOWN: dict[str, Shown] = {
     "growth_rate": Shown("growth rate", "1/s"),
     "growth_frequency": Shown("growth frequency", "Hz", 0.5 / math.pi),
     "solution_path": Shown("solution path"),
+    "friction_path": Shown("petal friction"),
     "contact_model": Shown("contacts"),
     "nodal_force_difference": Shown("force from that at nodes", "%", 100.0),
     "known_equilibria": Shown("known equilibria"),

@@ -188,7 +188,11 @@ class ContactEquations:
 
     def step_length(self, state: ContactState, correction: Correction) -> float:
         """Fraction of a correction that keeps the equations valid, at most 1."""
-        return positive_step(self.problem, state.x, correction.x)
+        return self.longest_step((state.x, state.b), correction)
+
+    def longest_step(self, at: tuple[Array, Array], correction: Correction) -> float:
+        """The same from unknowns and bordered unknowns."""
+        return positive_step(self.problem, at[0], correction.x)
 
     def lagged(self, state: ContactState) -> Self:
         """The same with the terms that follow the reactions late taken at `state`."""

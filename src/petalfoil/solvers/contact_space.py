@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.solvers.coulomb import ContactForces, ContactSpace, States, contact_forces
+from petalfoil.solvers.coulomb import ContactForces, ContactSpace, KnownForces, States, contact_forces
 from petalfoil.solvers.tangent import BorderedTangent
 
 Array = NDArray[np.float64]
@@ -47,6 +47,30 @@ class Unit:
     change: Array
     reactions: Array
     gaps: Array | float
+
+
+@dataclass(frozen=True)
+class KnownState:
+    """A state of all contacts near the one that is asked for.
+
+    Attributes
+    ----------
+    closed : (m,) bool array
+        Contacts that are closed.
+    slips : (k,) int array
+        Directions of slip, 0 where a contact sticks.
+    gap, reaction : (m,) array
+        Of all gaps.
+    friction, slip : (k,) array
+        Friction forces, and slips since the step began.
+    """
+
+    closed: Mask
+    slips: Index
+    gap: Array
+    reaction: Array
+    friction: Array
+    slip: Array
 
 
 @dataclass(frozen=True)
@@ -101,8 +125,15 @@ class Columns:
         space = ContactSpace(held[contacts], answer, slips @ change, place_of[rubbing.gap[at]], rubbing.coefficient)
         return cls(contacts, at, change, space)
 
-    def solved(self, base: tuple[Array, Array, Array], slip: Array, guess: States) -> ContactForces | None:
+    def solved(self, base: tuple[Array, Array, Array], slip: Array, known: KnownState) -> ContactForces | None:
         """Forces from what the factor gives alone: unknowns' change (n,), reactions and gaps (m,), slips (k,)."""
         _, reactions, gaps = base
-        answer = np.where(self.space.held, reactions[self.contacts], gaps[self.contacts])
-        return contact_forces(self.space, (answer, slip[self.rubbing]), guess)
+        contacts, rubbing = self.contacts, self.rubbing
+        answer = np.where(self.space.held, reactions[contacts], gaps[contacts])
+        states = States(known.closed[contacts], known.slips[rubbing])
+        normal, tangential = (
+            (known.gap[contacts], known.reaction[contacts]),
+            (known.friction[rubbing], known.slip[rubbing]),
+        )
+        forces = KnownForces.of(self.space, states, normal, tangential)
+        return contact_forces(self.space, (answer, slip[rubbing]), forces)

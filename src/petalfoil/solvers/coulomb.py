@@ -6,8 +6,9 @@ For gaps `g`, reactions `lam`, slips `sigma` since the step began and friction f
     0 <= g _|_ lam >= 0 ,      |T| <= mu lam ,      T = mu lam sign(sigma) where sigma != 0                  (M6)
 
 Every state of the contacts (open; closed and sticking, slipping forward or backward) makes (M6) linear. States of wrong
-sign change all at once, then one by one (Murty 1974). Where that returns to former ones, the limits of friction follow
-the reactions: with given limits the problem is monotone.
+sign change all at once, then one by one (Murty 1974). Where that returns to former ones, the constants are led from
+those that the known forces solve to those that are asked for, and contacts change their state one after another where
+they must (Katzenelson 1965).
 """
 
 from __future__ import annotations
@@ -17,8 +18,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.solvers.lcp import solve_lcp
-
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
@@ -26,8 +25,8 @@ Mask = NDArray[np.bool_]
 AT_ONCE, ONE_BY_ONE = 20, 60
 """Most changes of all wrong states at once, and of single ones: five to ten are typical."""
 
-FOLLOWED = 12
-"""Times that the friction's limits follow the reactions where the states do not settle."""
+EVENTS = 800
+"""Most changes of state along the way from known forces: some ten to a hundred are typical."""
 
 ROUNDING = 1e-10
 """A quantity of wrong sign this small over the largest of its kind is zero."""
@@ -97,45 +96,118 @@ class ContactForces:
         return np.where(self.states.closed, np.maximum(np.where(space.held, self.answer, self.unknown), 0.0), 0.0)
 
 
-def contact_forces(space: ContactSpace, constant: tuple[Array, Array], guess: States) -> ContactForces | None:
-    """Solve (M6), None if it is not found; `constant` are answers (m,) and slips (f,) without any unknowns."""
-    found = by_states(space, constant, guess)
-    if found is not None:
-        return found
-    # limits that follow the reactions: each is a convex problem, whose states are a better guess
-    limit = np.zeros(len(space.rubs))
-    for _ in range(FOLLOWED):
-        z = with_limits(space, constant, limit)
-        if z is None:
-            return None
-        answer, slip = space.answer @ z + constant[0], space.slip @ z + constant[1]
-        m = len(space.held)
-        reaction = np.where(space.held, answer, z[:m])
-        touching = reaction > ROUNDING * np.max(reaction, initial=0.0)
-        slides = np.abs(z[m:]) >= (1.0 - ROUNDING) * limit
-        states = States(touching, np.where(slides, np.sign(slip), 0.0).astype(np.intp))
-        found = by_states(space, constant, states)
-        if found is not None:
-            return found
-        limit = 0.5 * (limit + space.coefficient * np.maximum(reaction, 0.0)[space.rubs])
-    return None
+@dataclass(frozen=True)
+class KnownForces:
+    """A solution of (M6) near the one that is asked for, with constants of its own.
 
-
-def with_limits(space: ContactSpace, constant: tuple[Array, Array], limit: Array) -> Array | None:
-    """Unknowns and friction forces (m + f,) where the friction's limits are given: a monotone problem.
-
-    answer >= 0 _|_ unknown ,      c - sigma >= 0 _|_ T + limit ,      limit - T >= 0 _|_ c
+    Attributes
+    ----------
+    states : States
+        Those of its contacts.
+    gap, reaction : (m,) array
+        One of them is zero.
+    friction, slip : (f,) array
+        Within the limits, and against each other.
     """
-    m, f = len(space.held), len(limit)
-    M = np.block([
-        [space.answer, np.zeros((m, f))],
-        [-space.slip, np.eye(f)],
-        [np.zeros((f, m)), -np.eye(f), np.zeros((f, f))],
-    ])  # fmt: skip
-    least = np.concatenate([np.zeros(m), -limit])
-    q = np.concatenate([constant[0] + space.answer @ least, -constant[1] - space.slip @ least, 2.0 * limit])
-    z = solve_lcp(M, q, np.zeros(m + 2 * f, dtype=bool))
-    return None if z is None else z[: m + f] + least
+
+    states: States
+    gap: Array
+    reaction: Array
+    friction: Array
+    slip: Array
+
+    @classmethod
+    def of(
+        cls, space: ContactSpace, states: States, normal: tuple[Array, Array], tangential: tuple[Array, Array]
+    ) -> KnownForces:
+        """From gaps and reactions (m,), friction forces and slips (f,): what contradicts the states is left out."""
+        (gap, reaction), (friction, slip) = normal, tangential
+        closed, touching = states.closed, states.closed[space.rubs]
+        pushing = np.where(closed, np.maximum(reaction, 0.0), 0.0)
+        limit = space.coefficient * pushing[space.rubs]
+        slides = states.slips != 0
+        force = np.where(slides, states.slips * limit, np.clip(friction, -limit, limit))
+        moved = np.where(touching, np.where(slides, states.slips * np.abs(slip), 0.0), slip)
+        states = States(closed, np.where(touching, states.slips, 0))
+        return cls(states, np.where(closed, 0.0, np.maximum(gap, 0.0)), pushing, np.where(touching, force, 0.0), moved)
+
+
+def contact_forces(space: ContactSpace, constant: tuple[Array, Array], known: KnownForces) -> ContactForces | None:
+    """Solve (M6), None if it is not found; `constant` are answers (m,) and slips (f,) without any unknowns."""
+    return by_states(space, constant, known.states) or led(space, constant, known)
+
+
+def led(space: ContactSpace, constant: tuple[Array, Array], known: KnownForces) -> ContactForces | None:
+    """Lead the constants from those of `known` to those asked for, contact by contact; None if that does not arrive.
+
+    Along the way the solution is linear until a contact must change its state. It goes on in the new one, where a
+    contact snaps with the constants on their way back.
+    """
+    z = np.concatenate([np.where(space.held, known.gap, known.reaction), known.friction])
+    answer = np.where(space.held, known.reaction, known.gap)
+    start = answer - space.answer @ z, known.slip - space.slip @ z
+    ahead = constant[0] - start[0], constant[1] - start[1]
+    states, part, flipped = known.states, 0.0, -1
+    for _ in range(EVENTS):
+        here, rate = of_states(space, start, states), of_states(space, ahead, states)
+        if here is None or rate is None:
+            return None
+        at, by = margins(space, here), margins(space, rate)
+        way = 1.0 if flipped < 0 else float(np.sign(by[flipped]))
+        falls = np.isfinite(at) & (by * way < 0.0)
+        if flipped >= 0:
+            falls[flipped] = False
+        length = np.full(len(at), np.inf)
+        length[falls] = np.maximum(-(at[falls] + part * by[falls]) / (by[falls] * way), 0.0)
+        first = int(np.argmin(length))
+        if way == 0.0 or (way > 0.0 and part + length[first] >= 1.0):
+            break
+        part += way * float(length[first])
+        if part < 0.0:
+            return None
+        states, flipped = changed(space, states, first, here.slip + part * rate.slip)
+    found = of_states(space, constant, states)
+    if found is None:
+        return None
+    bad, slips = wrong(space, found)
+    return None if bad.any() or np.any(slips != states.slips) else found
+
+
+def margins(space: ContactSpace, found: ContactForces) -> Array:
+    """How far each contact is from another state, (m + 3 f,): its gap or reaction, both limits of friction, its slip.
+
+    Infinite where a contact is in no such state.
+    """
+    closed, slips = found.states.closed, found.states.slips
+    reaction = np.where(space.held, found.answer, found.unknown)
+    gap = np.where(space.held, found.unknown, found.answer)
+    limit, touching = space.coefficient * reaction[space.rubs], closed[space.rubs]
+    sticks = touching & (slips == 0)
+    upper, lower = (np.where(sticks, limit - sign * found.friction, np.inf) for sign in (1.0, -1.0))
+    slid = np.where(touching & (slips != 0), slips * found.slip, np.inf)
+    return np.concatenate([np.where(closed, reaction, gap), upper, lower, slid])
+
+
+def changed(space: ContactSpace, states: States, margin: int, slip: Array) -> tuple[States, int]:
+    """The states after a `margin` has vanished, and the margin that grows from there."""
+    m, f = len(states.closed), len(states.slips)
+    closed, slips = states.closed.copy(), states.slips.copy()
+    if margin < m:
+        closed[margin] = not closed[margin]
+        own = space.rubs == margin  # a contact that closes has slipped since the step began
+        slips[own] = np.where(closed[margin], np.sign(slip[own]), 0.0)
+        return States(closed, slips), margin
+    kind, place = divmod(margin - m, f)
+    if kind < SLIP:
+        slips[place] = 1 if kind == 0 else -1
+        return States(closed, slips), m + SLIP * f + place
+    back = 0 if slips[place] > 0 else 1
+    slips[place] = 0
+    return States(closed, slips), m + back * f + place
+
+
+SLIP = 2
+"""Place of the slips behind both limits of friction."""
 
 
 def by_states(space: ContactSpace, constant: tuple[Array, Array], guess: States) -> ContactForces | None:

@@ -9,7 +9,16 @@ import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from petalfoil.solvers.coulomb import ContactForces, ContactSpace, States, contact_forces, of_states, with_limits, wrong
+from petalfoil.solvers.coulomb import (
+    ContactForces,
+    ContactSpace,
+    KnownForces,
+    States,
+    contact_forces,
+    led,
+    of_states,
+    wrong,
+)
 
 Array = NDArray[np.float64]
 
@@ -35,10 +44,21 @@ def assert_solves(space: ContactSpace, start: tuple[Array, Array], found: Contac
     assert_allclose((space.coefficient * lam - np.sign(slip) * T) * slip, 0.0, atol=1e-8)
 
 
+def known(space: ContactSpace, closed: NDArray[np.bool_], slips: NDArray[np.intp]) -> KnownForces:
+    """Contacts in given states, pushed by 1 or open by 1, slipped by 1 or sticking without force."""
+    one = np.ones(len(closed))
+    return KnownForces.of(space, States(closed, slips), (one, one), (0.0 * one, one))
+
+
+def all_open(space: ContactSpace) -> KnownForces:
+    """Nothing touches."""
+    return known(space, np.zeros(len(space.held), dtype=bool), np.zeros(len(space.rubs), dtype=np.intp))
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_of_little_friction_the_one_solution_of_all_states(seed: int) -> None:
     space, start = random_contacts(np.random.default_rng(seed), 3, 0.2)
-    found = contact_forces(space, start, States(np.zeros(3, dtype=bool), np.zeros(3, dtype=np.intp)))
+    found = contact_forces(space, start, all_open(space))
     assert found is not None
     assert_solves(space, start, found)
     right = 0
@@ -59,32 +79,31 @@ def test_many_contacts_from_any_guess(mu: float) -> None:
     rng = np.random.default_rng(5)
     for _ in range(10):
         space, start = random_contacts(rng, 20, mu)
-        guess = States(rng.random(20) < 0.5, rng.integers(-1, 2, 20).astype(np.intp))
-        found = contact_forces(space, start, guess)
-        assert found is not None
-        assert_solves(space, start, found)
+        guess = known(space, rng.random(20) < 0.5, rng.integers(-1, 2, 20).astype(np.intp))
+        for search in (contact_forces, led):
+            found = search(space, start, guess)
+            assert found is not None
+            assert_solves(space, start, found)
 
 
 def test_a_block_on_a_spring_sticks_and_slips() -> None:
     """Pressed by 2 with friction 0.3: it holds 0.6, and gives beyond; an open contact has no friction."""
     one = np.zeros(1, dtype=np.intp)
     unit = ContactSpace(np.zeros(1, dtype=bool), np.array([[1.0, 0.0]]), np.array([[0.0, -0.5]]), one, 0.3)
-    none = States(np.zeros(1, dtype=bool), one)
     for gap, slip, force in ((-2.0, 0.2, 0.4), (-2.0, -0.9, -0.6), (-2.0, 1.0, 0.6), (0.5, 1.0, 0.0)):
-        found = contact_forces(unit, (np.array([gap]), np.array([slip])), none)
+        found = contact_forces(unit, (np.array([gap]), np.array([slip])), all_open(unit))
         assert found is not None
         assert found.friction[0] == pytest.approx(force, abs=1e-12)
 
 
-def test_given_limits_are_a_monotone_problem() -> None:
-    """Friction within limits that do not depend on reactions; `T` is against the slip where it is at its limit."""
-    space, start = random_contacts(np.random.default_rng(3), 8, 0.3)
-    limit = np.full(8, 0.4)
-    z = with_limits(space, start, limit)
-    assert z is not None
-    slip, T = space.slip @ z + start[1], z[8:]
-    assert np.all(np.abs(T) <= limit + 1e-9)
-    assert_allclose((limit - np.sign(slip) * T) * slip, 0.0, atol=1e-8)
+def test_a_contact_that_snaps() -> None:
+    """A gap that a push closes further has two states or none: the near one is found, and none where there is none."""
+    one = np.zeros(1, dtype=np.intp)
+    space = ContactSpace(np.zeros(1, dtype=bool), np.array([[-1.0, 0.0]]), np.array([[0.0, -1.0]]), one, 0.0)
+    found = led(space, (np.array([0.5]), np.zeros(1)), known(space, np.ones(1, dtype=bool), one))
+    assert found is not None
+    assert found.unknown[0] == pytest.approx(0.5)
+    assert led(space, (np.array([-0.5]), np.zeros(1)), all_open(space)) is None  # nothing solves it
 
 
 def test_contacts_that_the_factor_holds_are_opened() -> None:
@@ -96,8 +115,9 @@ def test_contacts_that_the_factor_holds_are_opened() -> None:
     slip = np.hstack([open_space.slip[:, :3] @ held, open_space.slip[:, 3:] + open_space.slip[:, :3] @ answer[:, 3:]])
     closed = ContactSpace(np.ones(3, dtype=bool), answer, slip, np.arange(3), 0.2)
     begin = -held @ start[0], start[1] - open_space.slip[:, :3] @ held @ start[0]
-    guess = States(np.ones(3, dtype=bool), np.zeros(3, dtype=np.intp))
-    one, other = contact_forces(open_space, start, guess), contact_forces(closed, begin, guess)
+    guess = np.ones(3, dtype=bool), np.zeros(3, dtype=np.intp)
+    one = contact_forces(open_space, start, known(open_space, *guess))
+    other = contact_forces(closed, begin, known(closed, *guess))
     assert one is not None
     assert other is not None
     assert_allclose(other.reaction(closed), one.reaction(open_space), atol=1e-9)

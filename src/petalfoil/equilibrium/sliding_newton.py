@@ -1,8 +1,9 @@
-"""A stage in time of petals that slide along themselves: film, wall, rotor by Newton, contacts and friction exactly.
+"""Newton's method for film, wall and journal with petals that slide along themselves, contacts and friction exactly.
 
-Every correction is that of the linearised stage with openings, reactions and friction forces of all contacts in
-question as further unknowns, found together from a small dense problem (M6). The factor is that of the stage without
-friction; the journal's position answers to every unit of them as in (O3).
+Every correction is that of the linearised equations with openings, reactions and friction forces of all contacts in
+question as further unknowns, found together from a small dense problem (M6). The factor is that of the equations
+without friction; the journal's position answers to every unit of them as in (O3). It serves stages in time and balances
+under a load alike.
 """
 
 from __future__ import annotations
@@ -12,15 +13,13 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.dynamics.stage import Stage, StageSolution
-from petalfoil.equilibrium.coulomb_path import CLOSED, beside, rubbing_of
+from petalfoil.equilibrium.coulomb_path import CLOSED, Lines, beside, rubbing_of
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.constraints import constrain
-from petalfoil.solvers.contact_equations import ContactState, Correction
-from petalfoil.solvers.contact_space import Columns, RubbingContacts, Unit
-from petalfoil.solvers.coulomb import ContactForces, States
-from petalfoil.solvers.problem import positive_step
+from petalfoil.solvers.contact_equations import ContactEquations, ContactState, Correction
+from petalfoil.solvers.contact_space import Columns, KnownState, RubbingContacts, Unit
+from petalfoil.solvers.coulomb import ContactForces
 from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.solvers.tangent import BorderedTangent, Tangent
 from petalfoil.sparsity import SparseRows
@@ -33,13 +32,24 @@ Rubs = tuple[SparseRows, RubbingContacts]
 """Derivative of all gaps, and those that rub."""
 
 CORRECTIONS = 24
-"""Most corrections of a stage; two or three are typical."""
-
-TANGENTS = 4
-"""Most factorisations of a stage."""
+"""Most corrections; two or three are typical."""
 
 GROWING = 2.0
 """Growth of the correction past which a tangent no longer serves."""
+
+
+@dataclass(frozen=True)
+class SlidingOptions:
+    """Numbers of the method."""
+
+    accuracy: float
+    """Correction after which it is done [reference films, ambient pressures]."""
+    first: float
+    """Contraction that a first correction is taken to have."""
+    slow: float
+    """Contraction past which the tangent is renewed."""
+    tangents: int
+    """Most factorisations."""
 
 
 @dataclass(frozen=True)
@@ -100,89 +110,109 @@ class Iterate:
 
 
 @dataclass(frozen=True)
-class SlidingStage:
-    """A stage with friction that began at a state.
+class SlidingNewton:
+    """Equations with friction, whose step began at a state.
 
     Attributes
     ----------
-    stage : Stage
-        Film, wall and rotor.
+    equations : ContactEquations
+        Film, wall and journal, without friction.
     friction : Friction
         The gaps that rub.
     before : FrictionState
         Slips at the start of the step.
+    lines : sequence of int arrays
+        Numbers of the gaps along lines.
+    options : SlidingOptions
+        Numbers of the method.
     """
 
-    stage: Stage
+    equations: ContactEquations
     friction: Friction
     before: FrictionState
+    lines: Lines
+    options: SlidingOptions
 
-    def solved(self, start: tuple[Array, Array, Mask], tangent: BorderedTangent | None) -> StageSolution | None:
-        """The state near `start`, unknowns, displacement and active contacts; None if there is none.
+    def solved(
+        self, start: tuple[Array, Array, Mask, Array], tangent: BorderedTangent | None = None
+    ) -> tuple[Iterate, SlidingTangent] | None:
+        """The state near `start`, unknowns, bordered unknowns, active contacts, reactions; None if there is none.
 
         `tangent` of a neighbour serves as long as corrections contract.
         """
-        x, b, active = start
-        at = Iterate(x, b, np.zeros(len(active)), self.before.force, active, self.before.direction)
+        x, b, active, lam = start
+        at = Iterate(x, b, lam, self.before.force, active, self.before.direction)
         sliding, last, made = tangent if isinstance(tangent, SlidingTangent) else None, np.inf, 0
         for _ in range(CORRECTIONS):
             if sliding is None or not sliding.has(self.in_question(at)):
-                if made == TANGENTS or not self.stage.problem.at(displacement=at.b).admits(at.x):
+                if made == self.options.tangents or not self.equations.at(at.b).admits(at.x):
                     return None
                 sliding, last, made = self.tangent_at(at), np.inf, made + 1
                 if sliding is None:
                     return None
             found = self.corrected(at, sliding)
             if found is None or found[1] > GROWING * last:
+                if found is None and made and not np.isfinite(last):
+                    return None  # another tangent at this very state would be the same
                 sliding = None
                 continue
             at, size, full = found
-            contraction = size / last if np.isfinite(last) else self.stage.options.slow
+            contraction = size / last if np.isfinite(last) else self.options.first
             error = size * min(1.0, contraction / max(1.0 - contraction, 0.1))
-            if full and error <= self.stage.options.accuracy and not np.any(self.gaps(at) < CLOSED):
-                return self.solution(at, sliding)
-            sliding = sliding if contraction <= self.stage.options.slow_sliding and full else None
+            if full and error <= self.options.accuracy and not np.any(self.gaps(at) < CLOSED):
+                return at, sliding
+            sliding = sliding if contraction <= self.options.slow and full else None
             last = size
         return None
 
     def gaps(self, at: Iterate) -> Array:
         """All gaps, (m,)."""
-        return self.stage.problem.at(displacement=at.b).gaps(at.x)
+        return self.equations.at(at.b).gaps(at.x)
 
     def in_question(self, at: Iterate) -> Mask:
         """Contacts that may open or close, (m,): those closed, their neighbours, gaps below zero."""
-        return beside(at.closed, self.stage.problem.contact_lines) | (self.gaps(at) < CLOSED)
+        return beside(at.closed, self.lines) | (self.gaps(at) < CLOSED)
 
     def tangent_at(self, at: Iterate) -> SlidingTangent | None:
-        """The factorised stage with the contacts of an iterate; None if it has no inverse."""
-        problem, solver = self.stage.problem.at(displacement=at.b), current_run().film_solver
-        constraints = constrain(problem.G, at.closed, self.stage.stops)
+        """The factorised equations with the contacts of an iterate; None if they have no inverse."""
+        problem, solver = self.equations.at(at.b), current_run().film_solver
+        constraints = constrain(problem.G, at.closed, self.equations.stops)
+        if not constraints.determinate:
+            return None
         linearized = problem.linearize(at.x)
         matrix = linearized.matrix(np.zeros(len(at.closed)))
         try:
             factor = constraints.factor(matrix, solver, problem.elimination_key)
         except SingularMatrixError:
             return None
-        plain = BorderedTangent.at(Tangent(matrix, constraints, factor), self.stage.border, linearized)
+        plain = BorderedTangent.at(Tangent(matrix, constraints, factor), self.equations.border, linearized)
         rubs = problem.G, rubbing_of(self.friction, len(at.x))
-        return SlidingTangent.about(plain, self.stage.border_stiffness, np.flatnonzero(self.in_question(at)), rubs)
+        contacts = np.flatnonzero(self.in_question(at))
+        try:
+            return SlidingTangent.about(plain, self.equations.border_stiffness, contacts, rubs)
+        except np.linalg.LinAlgError:  # nothing holds the journal
+            return None
 
     def corrected(self, at: Iterate, sliding: SlidingTangent) -> tuple[Iterate, float, bool] | None:
         """The next iterate, size of the correction, and whether all of it was taken; None without contact forces."""
-        problem, columns = self.stage.problem.at(displacement=at.b), sliding.columns
+        problem, columns = self.equations.at(at.b), sliding.columns
         settled, reactions = sliding.respond(problem.linearize(at.x).residual, problem.gaps(at.x))
-        db = np.linalg.solve(sliding.stiffness, self.stage.imbalance(at.x + settled, reactions, at.b))
+        db = np.linalg.solve(sliding.stiffness, self.equations.imbalance(at.x + settled, reactions, at.b))
         change, reactions = settled + sliding.units @ db, reactions + sliding.pushed @ db
         gaps = problem.gaps(at.x) + problem.G @ change + sliding.border.gap_derivative @ db
         slip = slips(self.friction, at.x + change) - self.before.slip
-        guess = States(at.closed[columns.contacts], at.slips[columns.rubbing])
-        found = columns.solved((change, reactions, gaps), slip, guess)
+        found = columns.solved((change, reactions, gaps), slip, self.known(at))
         if found is None:
             return None
         amounts = np.concatenate([found.unknown, found.friction])
         whole = Correction(change + columns.change @ amounts, db + sliding.moved @ amounts, np.zeros(0))
-        length = min(positive_step(problem, at.x, whole.x), self.stage.open_step((at.x, at.b), whole))
+        length = self.equations.longest_step((at.x, at.b), whole)
         return self.stepped(at, whole, length, (columns, found)), whole.size, length == 1.0
+
+    def known(self, at: Iterate) -> KnownState:
+        """Contacts and friction of an iterate."""
+        slip = slips(self.friction, at.x) - self.before.slip
+        return KnownState(at.closed, at.slips, self.gaps(at), at.lam, at.force, slip)
 
     def stepped(
         self, at: Iterate, correction: Correction, length: float, contacts: tuple[Columns, ContactForces]
@@ -196,13 +226,12 @@ class SlidingStage:
         x, b = at.x + length * correction.x, at.b + length * correction.b
         return Iterate(x, b, lam, force, closed, slipping)
 
-    def solution(self, at: Iterate, sliding: SlidingTangent) -> StageSolution:
-        """What the stage reaches."""
-        problem, friction = self.stage.problem.at(displacement=at.b), self.friction
+    def state(self, at: Iterate, sliding: SlidingTangent) -> tuple[ContactState, FrictionState]:
+        """An iterate with its residual, and its slips and friction forces."""
+        problem, friction = self.equations.at(at.b), self.friction
         linearized = problem.linearize(at.x)
         left = linearized.residual + against_slip(friction, at.force, len(at.x)) - problem.G.T @ at.lam
         residual = float(np.max(np.abs(left) / linearized.row_scale, initial=0.0))
-        constraints = sliding.constraints
-        state = ContactState(at.x, at.b, at.lam, at.closed, residual, constraints, linearized, problem.gaps(at.x))
-        after = FrictionState(slips(friction, at.x), at.force, friction.coefficient * friction.normal(at.lam))
-        return StageSolution(state, self.stage.moving(at.x, at.b), sliding, after)
+        gaps, constraints = problem.gaps(at.x), sliding.constraints
+        state = ContactState(at.x, at.b, at.lam, at.closed, residual, constraints, linearized, gaps)
+        return state, FrictionState(slips(friction, at.x), at.force, friction.coefficient * friction.normal(at.lam))

@@ -1,0 +1,38 @@
+"""Which friction forces between petals an equilibrium has: whether its path is followed, and what results say of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from petalfoil.case import Case, FrictionHistory
+from petalfoil.equilibrium.solution import Solution
+
+RELAXED = "relaxed: no friction forces between the petals, as vibrations leave the pack"
+RELEASED = "without friction forces at the start, those of the motion from there"
+RELEASED_LOADED = "assembled, loaded at rest and run up; from there those of the motion"
+ASSEMBLED = "assembled round a thinner journal that grows, then moved from point to point"
+TURNED = "assembled without friction, then moved from point to point"
+
+
+@dataclass(frozen=True)
+class FrictionTold:
+    """Path that friction forces between petals are those of, None without friction; energy lost to it [J]."""
+
+    friction_path: str | None
+    petal_friction_work: float | None = None
+
+    @classmethod
+    def of(cls, case: Case, answer: Solution) -> FrictionTold:
+        """Those of an equilibrium."""
+        if not case.surface.petal_friction > 0.0 or case.petals is None:
+            return cls(None)
+        if answer.friction is None:
+            return cls(RELAXED)
+        scales = answer.problem.layout.scales
+        return cls(answer.solution_path, answer.friction.lost * scales.force * scales.length)
+
+
+def follows_path(case: Case, *, by_default: bool = False) -> bool:
+    """Whether equilibria keep the friction forces of the path that the pack has gone."""
+    asked = case.surface.friction_history
+    return case.follows_friction and (by_default if asked is None else asked is FrictionHistory.ASSEMBLED)

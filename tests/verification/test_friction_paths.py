@@ -1,0 +1,112 @@
+"""Balances that keep the friction of their path: assembled, loaded at rest, run up, and run down again."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from petalfoil.analysis.balance import balance
+from petalfoil.analysis.impedance import elastic_and_sliding, impedance
+from petalfoil.analysis.operating_point import under_load
+from petalfoil.analysis.orbit import orbit
+from petalfoil.analysis.runup import runup
+from petalfoil.analysis.sensitivity import sensitivity
+from petalfoil.case import Case, Rotor
+from petalfoil.equilibrium.friction_under_load import PATH, LoadedPath
+from petalfoil.equilibrium.run_context import running
+from petalfoil.errors import DefinitionError, UsageError
+from petalfoil.results.record import Record
+from petalfoil.system.friction import friction_of
+from tests.cases import case
+
+LOAD = 55.6
+
+
+def rig(**changes: object) -> Case:
+    """The test rig on a coarse grid, with friction."""
+    return case("rig", **{"model.cells_per_pitch": 12, "surface.petal_friction": 0.1, **changes})
+
+
+def values(records: list[Record], name: str) -> np.ndarray:
+    """A result at each point."""
+    return np.array([float(record.scalars[name]) for record in records])
+
+
+@pytest.mark.slow
+def test_a_run_up_and_down_has_hysteresis_and_balances_at_every_point() -> None:
+    records = list(runup.records(rig(), load=(0.0, -LOAD), to=2000.0, points=4))
+    assert [record.scalars["leg"] for record in records] == ["up"] * 4 + ["down"] * 3
+    assert all(record.converged for record in records)
+    assert all(record.scalars["friction_path"] == PATH for record in records)
+    for name, within in (("residual", 1e-8), ("force_residual", 1e-9), ("reaction_balance_error", 1e-9)):
+        assert np.all(values(records, name) <= within)
+    lost, y = values(records, "petal_friction_work"), values(records, "eccentricity_y")
+    assert np.all(np.diff(lost) > 0.0)
+    assert np.all(np.abs(y[:3] - y[:3:-1]) > 5e-8)  # on the way down the journal is elsewhere at the same speed
+    relaxed = list(runup.records(rig(**{"surface.friction_history": "relaxed"}), load=(0.0, -LOAD), to=2e3, points=3))
+    smooth = list(runup.records(rig(**{"surface.petal_friction": 0.0}), load=(0.0, -LOAD), to=2e3, points=3))
+    assert_allclose(values(relaxed, "eccentricity_y"), values(smooth, "eccentricity_y"), rtol=1e-7)
+    assert "relaxed" in str(relaxed[0].scalars["friction_path"])
+
+
+@pytest.mark.slow
+def test_little_friction_is_the_relaxed_balance() -> None:
+    """At nodes: in proportion to the friction."""
+    nodes = {"model.contacts": "nodes", "operation.load": (0.0, -LOAD)}
+    (free,) = balance.records(rig(**{"surface.petal_friction": 0.0, **nodes}))
+    away = []
+    for mu in (2e-4, 1e-4):
+        (found,) = balance.records(
+            rig(**{"surface.petal_friction": mu, "surface.friction_history": "assembled", **nodes})
+        )
+        away.append(float(found.scalars["eccentricity_y"]) - float(free.scalars["eccentricity_y"]))
+    assert abs(away[0]) < 2e-8
+    assert away[0] == pytest.approx(2.0 * away[1], rel=0.1)
+
+
+@pytest.mark.slow
+def test_stiffness_of_a_pack_that_sticks_is_the_derivative_of_its_path() -> None:
+    """A small change of the load against the stuck limit of `coefficients`, with more friction than the path had."""
+    loaded = rig(**{"surface.friction_history": "assembled", "operation.load": (0.0, -LOAD)})
+    loaded = loaded.replace(**{"surface.friction_width": 1e-13})
+    with running():
+        found, _ = under_load(loaded, (0.0, -LOAD))
+        scales, friction = found.problem.layout.scales, friction_of(loaded, found.problem.layout)
+        assert friction is not None
+        assert found.load is not None
+        sticky, places = replace(friction, coefficient=1e3), []
+        for part in (1.0 + 1e-6, 1.0 - 1e-6):
+            step = LoadedPath(sticky, found.load * part).at_speed(found, found.problem.bearing_number, 0)
+            assert step is not None
+            places.append(step.problem.displacement * scales.length)
+        K = impedance(elastic_and_sliding(loaded, found)[0], 0.0, loaded.operation.speed)[0]
+    pushed = found.load * scales.force * 2e-6
+    assert_allclose(K @ (places[0] - places[1]), pushed, atol=1e-3 * np.linalg.norm(pushed))
+
+
+@pytest.mark.slow
+def test_a_motion_begins_with_the_friction_of_the_path() -> None:
+    """Released where it balances, a rotor stays; without the friction forces it would move."""
+    loaded = rig(**{"operation.load": (0.0, -LOAD)}).replace(rotor=Rotor(mass=5.0))
+    strayed = []
+    for history in ("assembled", "relaxed"):
+        record = orbit.record(
+            loaded.replace(**{"surface.friction_history": history}), revolutions=0.05, initial="balance"
+        )
+        y = np.asarray(record.fields["y"], dtype=float)
+        strayed.append(float(np.ptp(y)))
+        assert ("assembled" in str(record.scalars["friction_path"])) == (history == "assembled")
+    assert strayed[0] < 1e-10
+
+
+def test_what_has_no_path_is_refused() -> None:
+    assembled = {"surface.friction_history": "assembled"}
+    with pytest.raises(DefinitionError, match=r"surface\.friction_history: .* needs surface\.petal_friction above 0"):
+        case("rig", **assembled)
+    with pytest.raises(DefinitionError, match=r"surface\.friction_history: .*\(2-D, petals\.theory"):
+        case("paper_n8_spatial", **{"surface.petal_friction": 0.1, **assembled})
+    with pytest.raises(UsageError, match="derivatives are those of a pack without friction forces"):
+        sensitivity(rig(**assembled), "gas.viscosity", ask="balance", load=(0.0, -LOAD))
