@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import sys
 from dataclasses import asdict, dataclass
+from datetime import date
 from pathlib import Path
 
 import numpy as np
@@ -46,9 +47,9 @@ ROUNDING = 1e-9
 HEAD = """# Accuracy of the default grid in 3-D
 
 64 × 24 cells against 128 × 48, stations adapted on both, contact lines between nodes
-([decision 023](../decisions/023-contact-lines.md)). This page is written by
+([decision 023](../decisions/023-contact-lines.md)). Written on {day} by
 
-    python benchmarks/accuracy_3d.py docs/validation/accuracy-3d.md
+    python benchmarks/accuracy_3d.py docs/validation/accuracy-3d.md{names}
 
 Packs of 6, 8 and 10 petals are those of `examples/paper_n6.toml` and its neighbours, displaced downward; the rig is
 `examples/rig.toml` in 3-D at 8800 rpm under 46.4 N. Differences are those of the default grid from the fine one; of
@@ -132,7 +133,9 @@ def main(path: Path, names: list[str]) -> None:
         line, held, of = row(name, known[name])
         lines, holds, total = [*lines, line], holds + held, total + of
         err.print(line)
-    path.write_text(f"{HEAD}\n" + "\n".join(lines) + f"\n\n{holds} of {total} error bars hold.\n", encoding="utf-8")
+    named = "".join(f' "{name}"' for name in names)
+    head = HEAD.format(day=date.today().isoformat(), names=named)
+    path.write_text(f"{head}\n" + "\n".join(lines) + f"\n\n{holds} of {total} error bars hold.\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import re
 import runpy
 import sys
 from pathlib import Path
@@ -30,6 +31,7 @@ SMALL = {
     "paper_n10": (32, None, 6.713, 33.19e-3, 0.03),
     "paper_n8_spatial": (32, 16, 8.09, 25.33e-3, 0.04),
     "plain_journal": (64, 16, 80.775, 8.5949e-3, 0.008),
+    "two_plain_bearings": (64, 16, 20.0, 7.677e-3, 0.002),
     "bump_foil": (64, 32, 50.144, 7.8225e-3, 0.002),
     "single_pad_bump_foil": (64, 32, 537.0, 61.9e-3, 0.1),
     "orbit_n8": (32, None, 29.616, 27.634e-3, 0.03),
@@ -128,13 +130,15 @@ def test_the_demo_writes_tables_figures_and_data(
 
 
 @pytest.mark.slow
-def test_the_paper_s_values_are_those_of_the_script() -> None:
+@pytest.mark.parametrize(("kind", "e"), [("2d", 280), ("3d", 100)])
+def test_the_paper_s_values_are_those_of_the_script(kind: str, e: int) -> None:
     values = module(EXAMPLES / "paper_values.py")
     page = text(ROOT / "docs" / "paper-values.md")
-    assert page.startswith(values.HEAD)
-    study = values.run(values.Task(6, "2d", 280))
+    (day,) = re.findall(r"Written on\s(\d{4}-\d\d-\d\d) by", page)
+    assert page.startswith(values.HEAD.format(day=day))
+    study = values.run(values.Task(6, kind, e))
     shown = [values.text(study[name], factor) for name, factor in values.RUNNING.items()]
-    assert f"| 6 | 280 | {' | '.join(shown)} |" in page
+    assert f"| 6 | {e} | {' | '.join(shown)} |" in page
 
 
 def test_values_show_the_digits_that_their_bars_leave() -> None:

@@ -99,9 +99,13 @@ def options() -> set[str]:
     return found | {"--help"} | set(re.findall(r'"(--[a-z-]+)"', text(ROOT / "benchmarks" / "run.py")))
 
 
+OF_DASK = {"--nthreads", "--nworkers", "--port"}
+"""Options of `dask scheduler` and `dask worker`."""
+
+
 def unknown_options(page: Path) -> set[str]:
     """Options on a page that no command takes."""
-    return set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", text(page))) - options()
+    return set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", text(page))) - options() - OF_DASK
 
 
 def unknown_commands(page: Path) -> set[str]:

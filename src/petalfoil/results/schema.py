@@ -359,7 +359,7 @@ SCALARS: dict[str, Variable] = {
     "pitch": _geometry("rad", "angle between neighbouring roots", "phi_0"),
     "covered_angle": _geometry("rad", "angle over which a petal is covered by the one before", "phi_3"),
     "metric_radius": _geometry("m", "radius of the mid-surface of a petal on the bore", "r_m"),
-    "radial_clearance": _geometry("m", "radial clearance between journal and bushing", "c"),
+    "radial_clearance": _geometry("m", "radial clearance where it is narrowest", "c"),
     "pack_clearance": _geometry(
         "m", "radial clearance above the solid pack height and the contact film thickness", "c_left"
     ),

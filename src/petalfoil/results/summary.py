@@ -113,7 +113,7 @@ _SHOWN: dict[str, Shown] = {
     "pitch": Shown("pitch", "deg", _DEG),
     "covered_angle": Shown("covered angle", "deg", _DEG),
     "metric_radius": Shown("metric radius", "mm", 1e3),
-    "radial_clearance": Shown("radial clearance", "µm", 1e6),
+    "radial_clearance": Shown("least radial clearance", "µm", 1e6),
     "pack_clearance": Shown("clearance above solid pack", "µm", 1e6),
     "root_tilt": Shown("root tilt", "deg", _DEG),
     "free_petal_height": Shown("free petal height", "µm", 1e6),

@@ -1,0 +1,41 @@
+"""What pages show below a command is what it prints."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.docs.console import blocks, missing, shown
+from tests.docs.texts import DOCS, ROOT
+
+WITH_OUTPUT = [
+    pytest.param(block, id=f"{page.stem}-{number}")
+    for page in sorted(DOCS.rglob("*.md"))
+    for number, block in enumerate(block for block in blocks(page, "console") if shown(block)[1])
+    if block.startswith("$ petalfoil ") and block.count("$ ") == 1
+]
+
+
+def test_pages_show_what_commands_print() -> None:
+    assert len(WITH_OUTPUT) >= 8
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", WITH_OUTPUT)
+def test_the_command_prints_what_stands_there(block: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    assert missing(block) == []
+
+
+def test_another_line_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    block = "$ petalfoil check \\\n    examples/bump_foil.toml\nmean free path 67.26 nm\n...\nmean free path 67.26 nm\n"
+    assert missing(block) == ["mean free path 67.26 nm"]  # it is printed once
+
+
+def test_a_page_without_output_is_not_asked(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("```console\n$ petalfoil curve case.toml \\\n    --resume curve.nc\n```\n", encoding="utf-8")
+    (block,) = blocks(page, "console")
+    assert shown(block) == ("petalfoil curve case.toml      --resume curve.nc", [])
