@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.docs.console import blocks, missing, shown
+from tests.docs.console import alike, blocks, missing, shown
 from tests.docs.texts import DOCS, ROOT
 
 WITH_OUTPUT = [
@@ -32,6 +32,21 @@ def test_another_line_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     block = "$ petalfoil check \\\n    examples/bump_foil.toml\nmean free path 67.26 nm\n...\nmean free path 67.26 nm\n"
     assert missing(block) == ["mean free path 67.26 nm"]  # it is printed once
+
+
+@pytest.mark.parametrize(
+    ("other", "same"),
+    [
+        ("force  16.8607 N", True),
+        ("force    16.8608   N", True),
+        ("force  16.8609 N", False),
+        ("force  16.861 N", False),
+        ("force  16.8607 kN", False),
+        ("force  16.8607 N 1", False),
+    ],
+)
+def test_lines_are_alike_but_for_rounding(other: str, same: bool) -> None:
+    assert alike("force   16.8607  N", other) is same
 
 
 def test_a_page_without_output_is_not_asked(tmp_path: Path) -> None:
