@@ -15,6 +15,7 @@ from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.damped import DampedBalance, DampedWall
+from petalfoil.system.leaking_film import LeakingFilm
 from petalfoil.system.loaded import LoadedProblem
 from tests.contract.taylor import BEARINGS, assert_tangent, bearing, open_state
 
@@ -212,6 +213,32 @@ def test_a_damped_wall_resists_motion_and_its_gas_stores_nothing(name: str) -> N
     assert_allclose(resisted[: problem.layout.n_wall], 0.6 * change[: problem.layout.n_wall], rtol=0.0, atol=1e-7)
     assert_allclose(resisted[problem.layout.n_wall :], 0.0, atol=1e-12)
     assert_allclose(damped.slack_derivative(shift, 2.0), plain.slack_derivative(shift), rtol=0.0, atol=0.0)
+
+
+@pytest.mark.parametrize("name", ["stepped petals, 2d", "slipping stepped petals, 2d"])
+def test_a_leaking_film_is_told_its_derivatives(name: str) -> None:
+    problem, rng = build_problem(bearing(name)), np.random.default_rng(19)
+    x, shift, leaking = open_state(problem, rng), random_shift(problem, rng), LeakingFilm.through_ends(problem, 0.7)
+    along, gaps = rng.uniform(-1.0, 1.0, len(x)), rng.uniform(-1.0, 1.0, len(shift))
+    line, film = leaking.linearize(x, shift), slice(problem.layout.n_wall, None)
+    change = (line.matrix(np.zeros(len(shift))) @ along)[film]
+    assert_tangent(lambda t: leaking.linearize(x + t * along, shift).residual[film], change, largest=2.0**-8)
+    by_gaps = line.slack_derivative(gaps)
+    assert_tangent(lambda t: leaking.linearize(x, shift + t * gaps).residual, by_gaps, largest=2.0**-8)
+
+
+def test_what_leaks_adds_up_to_the_condition_of_a_film_without_ends() -> None:
+    """Every balance, the first included, with its leakage: their sum is the leakage times (F6)."""
+    problem = build_problem(bearing("stepped petals, 2d"))
+    x = open_state(problem, np.random.default_rng(20))
+    closed, leaking = (p.linearize(x) for p in (problem, LeakingFilm.through_ends(problem, 0.7)))
+    film, inventory = slice(problem.layout.n_wall, None), problem.layout.film_rows.inventory
+    assert inventory is not None
+    leaks = leaking.residual[film] - closed.residual[film]
+    P, H = problem.pressure(x), problem.film(x)
+    first = np.sum(inventory.excess(P, H)[inventory.mesh.unknown == 0])
+    assert leaks[0] == 0.0
+    assert_allclose(leaks.sum() + 0.7 * first, 0.7 * closed.residual[film][0], rtol=1e-12)
 
 
 @pytest.mark.parametrize("name", PETALS)

@@ -23,7 +23,7 @@ from petalfoil.physics.contact_points import ContactPoints
 from petalfoil.solvers.problem import Border
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.solvers.tangent import BorderedTangent, Tangent
-from tests.cases import case
+from tests.cases import FAULTS, case
 from tests.verification.shell_helpers import (
     UNIT,
     rows_of,
@@ -110,26 +110,9 @@ def test_gradient_of_a_strip_is_symmetric() -> None:
 
 # ------------------------------------------------------------------------------------------ bearings
 
-TURBOCHARGER: dict[str, object] = {
-    "title": "Turbocharger bearing, 30 mm shaft",
-    "bearing": {"journal_radius": 0.015, "bushing_radius": 0.0155, "length": 0.03},
-    "petals": {
-        "count": 8,
-        "arc_length": 0.022,
-        "thickness": 1e-4,
-        "bend_radius": 0.022,
-        "mount": "hinged",
-        "youngs_modulus": 213e9,
-        "poisson_ratio": 0.29,
-    },
-    "gas": {"viscosity": 18.5e-6, "ambient_pressure": 1e5},
-    "operation": {"speed": 6283.185307179586, "load": (0.0, -9.81)},
-    "model": {"kind": "2d"},
-}
-
 PAPER = {"operation.eccentricity": (0.0, -200e-6)}
 BEARINGS = {
-    "turbocharger": Case(**TURBOCHARGER),
+    "turbocharger": Case.load(FAULTS / "turbocharger.toml"),
     "six petals": case("paper_n6", **PAPER),
     "eight petals": case("paper_n8", **PAPER),
     "ten petals": case("paper_n10", **PAPER),

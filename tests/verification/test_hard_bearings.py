@@ -1,21 +1,15 @@
-"""Bearings that found no equilibrium, or no end, once: one file each in `hard/`."""
+"""Bearings that found no equilibrium, or no end, once."""
 
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import pytest
 
 import petalfoil
 from petalfoil.analysis.solve import point
 from petalfoil.case import Case
-
-HARD = Path(__file__).parent / "hard"
-
-
-def bearing(number: int) -> Case:
-    return Case.load(HARD / f"bearing_{number}.toml")
+from tests.cases import FAULTS
 
 
 @pytest.mark.parametrize(
@@ -32,7 +26,7 @@ def bearing(number: int) -> Case:
 )
 def test_has_an_equilibrium(number: int) -> None:
     """With contacts at nodes, which are what is looked for; contact points begin there."""
-    found = point(bearing(number).replace(**{"model.contacts": "nodes"})).scalars
+    found = point(Case.load(FAULTS / f"flat_{number}.toml").replace(**{"model.contacts": "nodes"})).scalars
     assert found["residual"] <= 1e-10  # type: ignore[operator]
     assert found["mass_balance_error"] <= 1e-9  # type: ignore[operator]
     assert found["reaction_balance_error"] <= 1e-9  # type: ignore[operator]
@@ -43,7 +37,7 @@ def test_has_an_equilibrium(number: int) -> None:
 @pytest.mark.parametrize("contacts", ["nodes", "points"])
 def test_a_threshold_speed_where_equilibria_overlap(contacts: str) -> None:
     """The bracket of the threshold lost its change of sign, and the search ended in a ValueError."""
-    found = petalfoil.stability(bearing(5000).replace(**{"model.contacts": contacts}))
+    found = petalfoil.stability(Case.load(FAULTS / "verbs_5000.toml").replace(**{"model.contacts": contacts}))
     assert found.threshold_speed.item() > 0.0
     assert math.isinf(found.critical_mass.item()) == (contacts == "nodes")
     assert "jumps" in found.status.item()

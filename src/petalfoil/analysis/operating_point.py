@@ -22,9 +22,10 @@ from petalfoil.analysis.thermal_limit import beyond_thermal_limit
 from petalfoil.case import Case, ModelKind
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.equilibrium.branches import distinct, probe
-from petalfoil.equilibrium.cold_start import BARRIERS, by_barriers, solve_cold
+from petalfoil.equilibrium.cold_start import BARRIERS, by_barriers, by_slower_ways, solve_cold
 from petalfoil.equilibrium.continuation import ascend, settle
 from petalfoil.equilibrium.heated import ThermalRunawayError
+from petalfoil.equilibrium.lengthening import lengthened
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold
@@ -264,7 +265,7 @@ def at_position(case: Case) -> OperatingPoint:
             found, rates = [risen, *found], [leading_eigenvalue(risen), *rates]
             path = ascent_text(jumps)
     if not found:
-        found = [solve_cold(problem, ())]
+        found = [last_resort(problem)]
         rates = [leading_eigenvalue(found[0])]
     if rates[0].real > 0.0:
         found, rates, path = settled(found, rates, path)
@@ -272,6 +273,19 @@ def at_position(case: Case) -> OperatingPoint:
         found = [in_heat(case, found[0], None), *found[1:]]
         rates = [leading_eigenvalue(found[0]), *rates[1:]]
     return OperatingPoint(found[0], branch(rates[0], case, max(known, distinct(found)), path or found[0].solution_path))
+
+
+def last_resort(problem: CoupledProblem) -> Solution:
+    """The equilibrium where neither a cold start nor the continuation from zero speed found one.
+
+    Raises
+    ------
+    ConvergenceError
+        Nothing was found.
+    """
+    if problem.layout.film_rows.inventory is None:
+        return solve_cold(problem, ())
+    return by_slower_ways(problem) or lengthened(problem)
 
 
 def relaxed(case: Case, problem: CoupledProblem, neighbour: Solution | None = None) -> OperatingPoint:

@@ -58,19 +58,32 @@ class GasInventory:
 
     def value(self, P: Array, H: Array) -> float:
         """Residual `sum H^3 (P^2 - 1) + 12 Kn H^2 (P - 1)` over the film (F6) [1]."""
-        return float(np.sum(self.area * H**3 * (P**2 - 1.0) + self._slip(H) * (P - 1.0)))
+        return float(np.sum(self.excess(P, H)))
 
     def row_scale(self, P: Array, H: Array) -> float:
         """Sum of the magnitudes of the terms of the residual [1]."""
-        return float(np.sum(self.area * H**3 * (P**2 + 1.0) + self._slip(H) * (P + 1.0)))
+        return float(np.sum(self.magnitude(P, H)))
+
+    def excess(self, P: Array, H: Array) -> Array:
+        """Its term of each node, (strip, node, axial) [1]."""
+        return self.area * H**3 * (P**2 - 1.0) + self._slip(H) * (P - 1.0)
+
+    def magnitude(self, P: Array, H: Array) -> Array:
+        """Sum of the magnitudes of that term's parts, (strip, node, axial) [1]."""
+        return self.area * H**3 * (P**2 + 1.0) + self._slip(H) * (P + 1.0)
+
+    def excess_derivatives(self, P: Array, H: Array) -> tuple[Array, Array]:
+        """Derivatives of each node's term by its own pressure and film thickness, (strip, node, axial) each."""
+        by_P = 2.0 * self.area * H**3 * P + self._slip(H)
+        by_H = 3.0 * self.area * H**2 * (P**2 - 1.0) + 2.0 * self._slip(H) / H * (P - 1.0)
+        return by_P, by_H
 
     def _slip(self, H: Array) -> Array:
         return 12.0 * self.knudsen * self.area * H**2
 
     def tangent(self, P: Array, H: Array) -> tuple[Array, Array]:
         """Derivatives with respect to the pressure unknowns (n_unknown,) and to the film at every node (flattened)."""
-        by_P = 2.0 * self.area * H**3 * P + self._slip(H)
-        by_H = 3.0 * self.area * H**2 * (P**2 - 1.0) + 2.0 * self._slip(H) / H * (P - 1.0)
+        by_P, by_H = self.excess_derivatives(P, H)
         return add_up(self.mesh.unknown.ravel(), by_P.ravel(), self.mesh.n_unknown), by_H.ravel()
 
     @cached_property

@@ -19,6 +19,7 @@
 `heat_network.py`        their heat balances (H3)
 `heat_rows.py`           what film and contacts do to them, and its derivatives
 `damped.py`              a march to rest: the wall resists motion, the film is steady
+`leaking_film.py`        a film without ends that leaks through those of a bearing of finite length
 `build.py`               from a case to its problem
 =======================  ========================================================================
 

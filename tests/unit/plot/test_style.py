@@ -2,7 +2,9 @@ import pytest
 import xarray as xr
 
 from petalfoil import plot
+from petalfoil.case import Case
 from petalfoil.plot import labels, style
+from tests.cases import FAULTS
 
 
 @pytest.mark.parametrize(
@@ -46,7 +48,7 @@ def test_a_long_title_is_wrapped_and_not_clipped() -> None:
     assert "rpm · e" in fig.get_suptitle()
 
 
-@pytest.mark.parametrize("title", ["cost $_$ per unit", "$\\frac{a$ $x^{$"])
+@pytest.mark.parametrize("title", [Case.load(FAULTS / "dollar_title.toml").title, "$\\frac{a$ $x^{$"])
 def test_a_title_with_dollar_signs_is_drawn_as_it_stands(title: str, flat: xr.Dataset) -> None:
     fig = plot.summary(flat.assign_attrs(title=title))
     fig.draw_without_rendering()
