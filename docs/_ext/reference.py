@@ -25,6 +25,7 @@ from petalfoil.analysis import known_verbs
 from petalfoil.analysis.arguments import Argument, Flag, Measured
 from petalfoil.analysis.declaration import Analysis
 from petalfoil.case import Case, keys
+from petalfoil.case.definition import Definition
 from petalfoil.cli.app import STUDIES, app
 from petalfoil.cli.commands import option_of
 from petalfoil.cli.show import show_command
@@ -85,7 +86,22 @@ class CaseKeys(Written):
             yield f"## `[{name}]`"
             yield ""
             yield inspect.getdoc(definition) or ""
-            yield from table(head, map(_cells, keys.keys(definition, f"{name}.")))
+            yield from table(head, map(_cells, own_keys(name, definition)))
+            if name == "rotor":
+                yield SECOND
+
+
+SECOND = """The tables `rotor.second.bearing`, `shaft`, `bushing`, `petals`, `bump_foil`, `gas`, `heat`, `surface` and
+`model` have the keys of the tables of these names on this page, and replace those of the first bearing
+([two bearings on one shaft](../how-to/running-bearing.md#two-bearings-on-one-shaft)).
+"""
+
+
+def own_keys(name: str, definition: type[Definition]) -> Iterator[keys.Key]:
+    """Keys of a table; those of the tables that a second bearing may replace are not told again."""
+    for key in keys.keys(definition, f"{name}."):
+        if not (key.name.startswith("rotor.second.") and key.name.count(".") > 2):
+            yield key
 
 
 def _cells(key: keys.Key) -> tuple[str, ...]:

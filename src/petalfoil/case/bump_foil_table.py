@@ -37,6 +37,7 @@ class Springs(Definition):
         ]
         | None
     ) = None
+    """Required, or else the strip from which it follows: pitch, half length, thickness and metal."""
     loss_factor: Annotated[
         float, Quantity(unit="1", meaning="structural loss factor", symbol="gamma", at_least=0.0, at_most=2.0)
     ] = 0.0
@@ -57,6 +58,7 @@ class Springs(Definition):
         ]
         | None
     ) = None
+    """Without it the bump is shallow, and its height unknown."""
     feet: Feet = Feet.FREE
     """What the feet of a bump do: slide freely (`free`), or stay where they are (`held`)."""
     thickness: (
@@ -66,7 +68,8 @@ class Springs(Definition):
         | None
     ) = None
     material: str | None = None
-    """Metal of the strip by name, in place of its modulus and Poisson's ratio."""
+    """Metal of the strip by name, in place of its modulus and Poisson's ratio. Only the stiffness of a strip, and a top
+    foil that bends, need one."""
     metal_temperature: Annotated[
         float, Quantity(unit="K", meaning="temperature of the foil's metal", symbol="T_m", above=0.0, at_most=2000.0)
     ] = 293.15

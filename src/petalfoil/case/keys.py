@@ -18,6 +18,9 @@ from petalfoil.case.number_fields import Count, Quantity, QuantityOrWord
 from petalfoil.case.wall_tables import registered_tables
 from petalfoil.units.writing import format_quantity
 
+DIGITS = 6
+"""Digits of values and defaults: 20 °C are 293.15 K, which 4 digits would round."""
+
 
 @dataclass(frozen=True)
 class Key:
@@ -119,7 +122,7 @@ def _plain(value: object, unit: str) -> str:
     if isinstance(value, tuple):
         return f"{len(value)} rows" if any(isinstance(v, tuple) for v in value) else _several(value, unit)
     if isinstance(value, float) and unit:
-        return format_quantity(value, unit)
+        return format_quantity(value, unit, digits=DIGITS)
     return f"{value}"
 
 
@@ -163,8 +166,8 @@ def _default(field: FieldInfo, unit: str) -> str:
     if isinstance(value, str):
         return f'`"{value}"`'
     if isinstance(value, tuple):
-        return ", ".join(format_quantity(entry, unit) for entry in value)
-    return format_quantity(value, unit) if unit else f"{value}"
+        return ", ".join(format_quantity(entry, unit, digits=DIGITS) for entry in value)
+    return format_quantity(value, unit, digits=DIGITS) if unit else f"{value}"
 
 
 def _definition(field: FieldInfo) -> type[Definition] | None:

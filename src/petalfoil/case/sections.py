@@ -107,8 +107,9 @@ class Operation(Definition):
     load: Annotated[tuple[_Force, _Force], BeforeValidator(as_load)] | None = None
     """Components `[x, y]`, or one value along -y. Give a load or an eccentricity: one follows from the other."""
     tilt: Annotated[tuple[_Slope, _Slope], BeforeValidator(as_pair)] | None = None
-    """Slopes `[x, y]` of the axis at which the journal is held; needs the 3-D model. With a `rotor.span` the bearing
-    stands askew by them to the line through both bearings, and the slopes of the shaft add to it."""
+    """Slopes `[x, y]` of the axis at which the journal is held; needs the 3-D model. Parallel to the bushing unless
+    given. With a `rotor.span` the bearing stands askew by them to the line through both bearings, and the slopes of the
+    shaft add to it."""
     moment: Annotated[tuple[_Moment, _Moment], BeforeValidator(as_pair)] | None = None
     """Components `[x, y]` about the bearing's centre. The journal is then free to tilt; give a load as well. With a
     `rotor.span` it acts on the rotor."""
@@ -166,7 +167,7 @@ class Model(Definition):
     edges: Edges = Edges.AMBIENT
     """Pressure at the edges of a petal's film: ambient, or continuous across the step."""
     cells_per_pitch: Annotated[int, Count(meaning="cells per pitch", at_least=4, at_most=4096)] | None = None
-    """128 in 2-D and 64 in 3-D unless given; of a plain bearing 128 round the circle."""
+    """128 in 2-D and 64 in 3-D unless given; without petals 128 round the circle."""
     petal_cells: Annotated[int, Count(meaning="elements of a petal per pitch", at_least=12, at_most=96)] = 32
     """Cubic elements of petals whose contacts are points; of no effect in 3-D, or with contacts at nodes. Stiffness on
     16 and 32 of them differs from that on 48 by up to 0.6 and 0.04 %; many make stretches of contact hard to find."""
@@ -174,7 +175,7 @@ class Model(Definition):
     """At points that travel between nodes, in 2-D on petals with continuous slopes, in 3-D where they are isolated; or
     at nodes of the film's grid."""
     axial_cells: Annotated[int, Count(meaning="cells over the whole length", at_least=2, at_most=512)] | None = None
-    """24 unless given, of a plain bearing 32; of no effect in 2-D."""
+    """24 unless given, of a bump foil 64, of a plain bearing 32; of no effect in 2-D."""
     axial_grading: (
         Annotated[
             float,
@@ -182,7 +183,7 @@ class Model(Definition):
         ]
         | None
     ) = None
-    """0 unless given, of a plain bearing 0.6; of no effect in 2-D or beside `axial_density`."""
+    """0 unless given, without petals 0.6; of no effect in 2-D or beside `axial_density`."""
     axial_density: (
         Annotated[
             tuple[float, ...] | str,
