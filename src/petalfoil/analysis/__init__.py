@@ -45,6 +45,8 @@ What they share:
 `crossing_derivatives.py`  the same of a quantity that keeps a result at its limit
 `liftoff_derivatives.py`  lift-off and touchdown speed as such quantities
 `capacity_derivatives.py`  the load capacity as one
+`adjoint.py`           the same from one solve for each result
+`result_gradients.py`  derivatives of results by the state
 `response_derivatives.py` stiffness, damping, critical mass, threshold speed
 `derivative_sources.py` where the results of each question have them
 `sensitivity_table.py` the rows of `sensitivity`

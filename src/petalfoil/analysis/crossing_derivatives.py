@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 
 from scipy.optimize import root_scalar
 
+from petalfoil.analysis.adjoint import AdjointDerivatives
 from petalfoil.analysis.crossings import PRECISION
 from petalfoil.analysis.derivatives import Derivative, Results
 from petalfoil.analysis.heated_derivatives import Derivatives
@@ -73,7 +74,7 @@ class CrossingDerivatives:
         Name of the quantity in results.
     value : float
         The quantity [SI].
-    balance : DerivativesOf or HeatedDerivatives
+    balance : DerivativesOf, HeatedDerivatives or AdjointDerivatives
         Derivatives at the equilibrium there.
     limited : str
         The result that is at its limit.
@@ -85,7 +86,7 @@ class CrossingDerivatives:
 
     name: str
     value: float
-    balance: Derivatives
+    balance: Derivatives | AdjointDerivatives
     limited: str
     paths: Mapping[str, float]
     by_quantity: Derivative

@@ -4,23 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from petalfoil.analysis.adjoint import TANGENT, AdjointDerivatives
 from petalfoil.analysis.capacity_derivatives import capacity_derivatives
 from petalfoil.analysis.contact_model import reported
-from petalfoil.analysis.derivatives import GROWTH, Results, equilibrium_results, results_with_growth
+from petalfoil.analysis.crossing_derivatives import CrossingDerivatives
+from petalfoil.analysis.derivatives import GROWTH, DerivativesOf, Results, equilibrium_results, results_with_growth
 from petalfoil.analysis.heated_derivatives import derivatives_of
 from petalfoil.analysis.liftoff import own_load
 from petalfoil.analysis.liftoff_derivatives import speed_derivatives
 from petalfoil.analysis.load_limit import Limits
 from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.response_derivatives import THRESHOLD, coefficient_results, stability_derivatives
-from petalfoil.analysis.sensitivity_table import Source
+from petalfoil.analysis.sensitivity_table import ALL, Source
 from petalfoil.case import Case
 from petalfoil.equilibrium.continuation import rest
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.errors import ConvergenceError
+from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.system.build import build_problem
 
 
@@ -52,6 +54,8 @@ class Asked:
         Whirl frequency of stiffness and damping [rad/s]; None for that of the speed.
     mass : float or None
         Mass of the rotor whose threshold speed is asked for [kg]; None for that of the case or its load.
+    by_adjoint : bool
+        Whether each result has a solve of its own, in place of each parameter.
     """
 
     verb: str
@@ -65,6 +69,7 @@ class Asked:
     direction: float
     frequency: float | None = None
     mass: float | None = None
+    by_adjoint: bool = False
 
 
 def sources_of(case: Case, asked: Asked) -> Sequence[Source]:
@@ -74,7 +79,32 @@ def sources_of(case: Case, asked: Asked) -> Sequence[Source]:
     ------
     ConvergenceError
         The equilibrium was not found.
+    UsageError
+        A result has no adjoint, and is asked for by one.
     """
+    found = by_tangent(case, asked)
+    return [with_adjoint(source, asked) for source in found] if asked.by_adjoint else found
+
+
+def with_adjoint(source: Source, asked: Asked) -> Source:
+    """The same by the adjoint.
+
+    Raises
+    ------
+    UsageError
+        There is none.
+    """
+    if isinstance(source, CrossingDerivatives) and isinstance(source.balance, DerivativesOf):
+        return replace(source, balance=AdjointDerivatives(source.balance, [source.limited]))
+    if isinstance(source, DerivativesOf):
+        if ALL in asked.quantities:
+            return AdjointDerivatives.of_all(source)
+        return AdjointDerivatives(source, [name for name in asked.quantities if name in source.values])
+    raise UsageError(f"no adjoint with [heat]: {TANGENT}")
+
+
+def by_tangent(case: Case, asked: Asked) -> Sequence[Source]:
+    """Where they have them by the tangent; see `sources_of`."""
     if asked.verb == "liftoff":
         return speed_derivatives(case, own_load(case), asked.contact_fraction, as_points=asked.as_points)
     if asked.verb == "capacity":

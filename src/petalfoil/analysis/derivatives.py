@@ -32,8 +32,8 @@ from petalfoil.analysis.variation import (
 from petalfoil.case import Case
 from petalfoil.case.parameters import parameter_of
 from petalfoil.dynamics.leading_mode import LeadingMode
-from petalfoil.equilibrium.element_rates import ElementRate, ElementValues, element_rate
-from petalfoil.equilibrium.element_tangent import NoPointsError
+from petalfoil.equilibrium.element_rates import ElementRate, ElementValues, element_rate, element_tangent
+from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError
 from petalfoil.equilibrium.parameter_response import (
     Equations,
     EquationValues,
@@ -134,6 +134,19 @@ class DerivativesOf:
         return HeldEquilibrium.of(self.at_nodes, self.solution.active)
 
     @cached_property
+    def held_elements(self) -> ElementTangent:
+        """The same with petals of continuous slopes.
+
+        Raises
+        ------
+        NoPointsError
+            The contacts do not determine the state.
+        """
+        if self.told.elements is None:
+            raise ValueError("the equilibrium has no petals with continuous slopes")
+        return element_tangent(self.told.elements, under_load=self.told.load is not None)
+
+    @cached_property
     def with_points(self) -> PointEquilibrium | None:
         """The same with contacts as points; None where they are asked for at nodes, or are all there."""
         return PointEquilibrium.of(self.at_nodes) if self.as_points else None
@@ -231,7 +244,7 @@ class DerivativesOf:
             return None
         weights = [weight / variation.step for _, weight in variation.stencil]
         try:
-            rate = element_rate(found, ElementValues.combined(known, weights), under_load=self.told.load is not None)
+            rate = element_rate(found, self.held_elements, ElementValues.combined(known, weights))
         except NoPointsError as failure:
             raise ConvergenceError(f"no derivative: {failure}", advice="change the case by a millionth") from None
         if min(rate.reach) <= KINK * variation.size:

@@ -61,6 +61,26 @@ def highest(field: Array, phi: Array, z: Array) -> Extreme:
     return Extreme(-low.value, low.strip, low.phi, low.z)
 
 
+def weights_at(here: Extreme, field: Array, phi: Array, z: Array) -> Array:
+    """Derivatives of an extreme of `field` by its values, the shape of the field: its place is stationary."""
+    out, values = np.zeros_like(field), field[here.strip]
+    node, axial = np.unravel_index(int(np.abs(values - here.value).argmin()), values.shape)
+    lines = Line.of(phi, values[:, axial], int(node)), Line.of(z, values[node], int(axial))
+    along, across = (line.weights(place) for line, place in zip(lines, (here.phi, here.z), strict=True))
+    out[here.strip, lines[0].window, lines[1].window] = np.outer(along, across)
+    if not abs(float(np.sum(out * field)) - here.value) <= FOLLOWED * abs(here.value):  # parabolas replace the quartic
+        out[:] = 0.0
+        three = [line.parabola_weights(place) for line, place in zip(lines, (here.phi, here.z), strict=True)]
+        out[here.strip, :, axial] += three[0]
+        out[here.strip, node, :] += three[1]
+        out[here.strip, node, axial] -= 1.0
+    return out
+
+
+FOLLOWED = 1e-12
+"""Relative difference of an extreme from the polynomial at its place by which it is known to be that of the quartic."""
+
+
 @dataclass(frozen=True)
 class Line:
     """Values along one direction through the lowest node of a strip.
@@ -124,6 +144,23 @@ class Line:
         three = slice(self.at - 1, self.at + 2)
         value, place = vertex(self.nodes[three], self.values[three])
         return float(self.values[self.at]) - value, (place - float(self.nodes[self.at])) / self.cell
+
+    def weights(self, place: float) -> Array:
+        """Weights of the nodes of the window in the polynomial at a `place`."""
+        local = (place - float(self.nodes[self.at])) / self.cell
+        powers = local ** np.arange(len(self.local))
+        return np.asarray(powers @ _interpolating(*self.local.tolist()))
+
+    def parabola_weights(self, place: float) -> Array:
+        """Weights of all nodes in the parabola through the node and its neighbours at a `place`."""
+        out = np.zeros(len(self.nodes))
+        out[self.at] = 1.0
+        if self.inside:
+            three = slice(self.at - 1, self.at + 2)
+            local = (self.nodes[three] - self.nodes[self.at]) / self.cell
+            at = (place - float(self.nodes[self.at])) / self.cell
+            out[three] = at ** np.arange(3) @ _interpolating(*local.tolist())
+        return out
 
     def place(self, local: float) -> float:
         """Coordinate of a place given in cells."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 from petalfoil.analysis.arguments import Load, Mass, Position, Quantity, Speed
@@ -17,12 +17,12 @@ from petalfoil.analysis.load_limit import Limits
 from petalfoil.analysis.operating_point import Vector, applied_load, at
 from petalfoil.analysis.records import asked_position, effort, record_of
 from petalfoil.analysis.runs import Points
-from petalfoil.analysis.sensitivity_table import LAYOUT, MATRICES, RESULTS, Line, lines_of, ordered, rounding_of
+from petalfoil.analysis.sensitivity_table import ALL, LAYOUT, MATRICES, RESULTS, Line, lines_of, ordered, rounding_of
 from petalfoil.analysis.solve import placed
 from petalfoil.analysis.words import Choice, Names, known
 from petalfoil.case import Case, FrictionHistory
 from petalfoil.case.parameters import parameter_of, parameters_of
-from petalfoil.equilibrium.run_context import Progress, running
+from petalfoil.equilibrium.run_context import Progress, RunContext, running
 from petalfoil.errors import UsageError
 from petalfoil.results.parts import AppliedLoad
 from petalfoil.results.record import Record
@@ -42,9 +42,6 @@ MAIN_RESULT = {
 
 WITHOUT_EFFECT = ("model.", "surface.friction_width", "surface.petal_friction", "petals.free_shape_tolerance")
 """Numbers of the discretisation, and friction that acts in motions alone: derivatives by them are not looked for."""
-
-ALL = "all"
-"""All results of the question, in place of their names."""
 
 ANSWERS = [
     name
@@ -105,6 +102,18 @@ WhirlFrequency = Annotated[
         at_least=0.0,
     ),
 ]
+ADJOINT = "adjoint"
+Method = Annotated[
+    str,
+    Choice(
+        metavar="METHOD",
+        words=("tangent", ADJOINT),
+        help="One solve for each parameter, which tells how far contacts hold too; adjoint: one for each result.",
+    ),
+]
+WITH_ADJOINT = ("solve", "balance", "liftoff")
+"""Questions whose results have adjoints."""
+
 Contacts = Annotated[
     str,
     Choice(
@@ -132,6 +141,7 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     frequency: WhirlFrequency = None,
     mass: Mass = None,
     contacts: Contacts = "points",
+    method: Method = "tangent",
     step: Step = 0.01,
     progress: Progress | None = None,
 ) -> Points:
@@ -166,7 +176,7 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     limits = Limits(min_film_thickness=min_film_thickness, contact_fraction=contact_fraction, max_stress=max_stress)
     fraction = CONTACT_FRACTION if contact_fraction is None else contact_fraction
     asked = Asked(verb, paths, quantities, step, vary is None, contacts == "points", fraction, limits, direction)
-    asked = replace(asked, frequency=frequency, mass=mass)
+    asked = replace(asked, frequency=frequency, mass=mass, by_adjoint=method == ADJOINT)
     refuse_limits(there, asked)
     most = len(ANSWERS) if ALL in quantities else len(quantities)
     return Points(_points(there, asked, progress), len(paths) * most, "effects")
@@ -257,6 +267,8 @@ def refuse_limits(case: Case, asked: Asked) -> None:
         raise UsageError(f"--min-film and --max-stress are limits of a load capacity: {asked.verb} has none")
     if asked.frequency is not None and asked.verb != "coefficients":
         raise UsageError(f"--frequency is that of stiffness and damping: {asked.verb} has none")
+    if asked.by_adjoint and asked.verb not in WITH_ADJOINT:
+        raise UsageError(f"no adjoint of {asked.verb}: ask {', '.join(WITH_ADJOINT)}, or leave --method out")
     if asked.mass is not None and asked.verb != "stability":
         raise UsageError(f"--mass is that of the rotor whose threshold speed is asked for: {asked.verb} has none")
 
@@ -292,21 +304,33 @@ def _points(case: Case, asked: Asked, progress: Progress | None) -> Iterator[Rec
         there = {name: source for source in sources_of(case, asked) for name in source.values if name in SCALARS}
         quantities = named(asked, list(there))
         sources = {name: there[name] for name in quantities}
-        lines: list[Line] = []
+        lines, before = [], solves_of(run)
         for number, path in enumerate(asked.paths, 1):
             lines += lines_of(path, sources, asked.step)
             if progress is not None:
                 progress(number / len(asked.paths), f"sensitivity: {path}")
         felt = [line for line in lines if not asked.all_of_them or is_felt(case, line)]
-        cost = effort(run.seconds)
+        cost = effort(run.seconds), Solves(solves_of(run) - before)
         records = [
-            record_of("sensitivity", case, line.row, *state_of(case, asked.verb), cost, line.outcome)
+            record_of("sensitivity", case, line.row, *state_of(case, asked.verb), *cost, line.outcome)
             for line in ordered(felt, quantities)
         ]
     silent = {line.row.parameter: True for line in lines if line.row.parameter not in {f.row.parameter for f in felt}}
     if records and silent:
         records[-1] = replace(records[-1], remarks=(f"without effect: {', '.join(silent)}",))
     yield from records
+
+
+@dataclass(frozen=True)
+class Solves:
+    """What the derivatives took beside the equilibrium."""
+
+    derivative_solves: int
+
+
+def solves_of(run: RunContext) -> int:
+    """Right-hand sides solved for so far."""
+    return run.film.solves + run.pack.solves + run.probes.solves
 
 
 def named(asked: Asked, there: list[str]) -> list[str]:

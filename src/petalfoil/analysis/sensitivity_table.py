@@ -58,6 +58,14 @@ RESULTS = {
     "effect": _number("change of the result by the change of the parameter, in its SI unit", "delta q"),
     "effect_text": _text("change of the result with its unit", "delta q", "effect", Role.ANSWER),
     "relative_effect": _number("change of the result over its value", "delta q/q", units="1"),
+    "derivative_solves": Variable(
+        (),
+        "1",
+        "triangular solves for all derivatives, with the factors that they share",
+        "n_s",
+        DataType.INT,
+        Role.BOOKKEEPING,
+    ),
     "contacts_hold": _number(
         "relative change of the parameter up to which no contact begins or ends", "delta p_c", units="1"
     ),
@@ -151,6 +159,9 @@ def rounding_of(case: Case, quantity: str) -> float:
     return {"N": pressed, "m": bearing.journal_radius}.get(SCALARS[quantity].units, 0.0) * LOST * ROUNDING
 
 
+ALL = "all"
+"""All results of the question, in place of their names."""
+
 LOST = 100.0
 """Digits that a difference quotient loses of a result that is zero, as a factor."""
 
@@ -165,15 +176,13 @@ class Line:
 
 def lines_of(path: str, sources: Mapping[str, Source], step: float) -> list[Line]:
     """The rows of one parameter for each result; where a result has no derivative, its row says why."""
-    lines, done = [], dict[int, Derivative | PetalfoilError]()
+    lines: list[Line] = []
+    done: dict[int, tuple[Variation, Derivative | PetalfoilError]] = {}
     for quantity, source in sources.items():
-        variation = source.variation(path)
         if id(source) not in done:
-            try:
-                done[id(source)] = source.along(variation)
-            except (ConvergenceError, DefinitionError) as failure:  # the case may not allow the change alone
-                done[id(source)] = failure
-        row, found = asked_row(variation, (quantity, source.values[quantity]), step), done[id(source)]
+            done[id(source)] = along(source, source.variation(path))
+        variation, found = done[id(source)]
+        row = asked_row(variation, (quantity, source.values[quantity]), step)
         if isinstance(found, PetalfoilError):
             lines.append(Line(row, Outcome(converged=False, status=f"not converged: {found}")))
         else:
@@ -181,6 +190,14 @@ def lines_of(path: str, sources: Mapping[str, Source], step: float) -> list[Line
                 Line(with_effect(row, found, variation), Outcome(status=in_words(found), residual=source.residual))
             )
     return lines
+
+
+def along(source: Source, variation: Variation) -> tuple[Variation, Derivative | PetalfoilError]:
+    """Derivatives along a variation, or why there are none: the case may not allow the change alone."""
+    try:
+        return variation, source.along(variation)
+    except (ConvergenceError, DefinitionError) as failure:
+        return variation, failure
 
 
 def asked_row(variation: Variation, result: tuple[str, float], step: float) -> Row:

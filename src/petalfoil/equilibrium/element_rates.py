@@ -105,8 +105,8 @@ class ElementRate:
         return moved.moved(problem, change * self.change)
 
 
-def element_rate(found: ElementEquilibrium, rates: ElementValues, *, under_load: bool) -> ElementRate:
-    """The derivative (V9) from the rates of the equations at a fixed state; one factorisation.
+def element_tangent(found: ElementEquilibrium, *, under_load: bool) -> ElementTangent:
+    """The tangent at an equilibrium, factorised; `under_load` with the journal's position bordered.
 
     Raises
     ------
@@ -114,9 +114,19 @@ def element_rate(found: ElementEquilibrium, rates: ElementValues, *, under_load:
         The contacts do not determine the state.
     """
     equations = found.equations
-    tangent = ElementTangent.at(equations, -equations.force if under_load else None, current_run().probe_solver)
+    return ElementTangent.at(equations, -equations.force if under_load else None, current_run().probe_solver)
+
+
+def element_rate(found: ElementEquilibrium, tangent: ElementTangent, rates: ElementValues) -> ElementRate:
+    """The derivative (V9) from the rates of the equations at a fixed state; one solve.
+
+    Raises
+    ------
+    NoPointsError
+        The contacts do not determine the state.
+    """
     change, move = tangent.correction(rates.residual, rates.force)
-    displacement = move if under_load else rates.displacement
+    displacement = move if tangent.units.shape[1] else rates.displacement
     rate = ElementRate(change, displacement, (0.0, 0.0))
     return replace(rate, reach=(reach(found, rates, rate, -1.0), reach(found, rates, rate, 1.0)))
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.equilibrium.parameter_response import StateWeights
 from petalfoil.equilibrium.small_motion import TangentEquations
 from petalfoil.equilibrium.under_load import FORCE_TOLERANCE
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
@@ -99,3 +100,21 @@ class ElementTangent:
         except np.linalg.LinAlgError:
             raise NoPointsError("the load does not determine the journal's position") from None
         return own + self.units @ move, move
+
+    def adjoint(self, by_state: StateWeights) -> StateWeights:
+        """Derivatives of a result along the equilibrium by the rates of the equations (V11); one transposed solve.
+
+        Raises
+        ------
+        NoPointsError
+            The journal's position is not determined.
+        """
+        by_unknowns, s = by_state.residual, np.zeros(self.units.shape[1], dtype=np.float64)
+        if len(s):
+            try:
+                s[:] = np.linalg.solve(self.gradient.T, by_unknowns @ self.units + by_state.force)
+            except np.linalg.LinAlgError:
+                raise NoPointsError("the load does not determine the journal's position") from None
+            by_unknowns = by_unknowns - s @ self.rows
+        force = -s if len(s) else np.zeros(len(by_state.force))
+        return StateWeights(-self.factor.solve_transposed(by_unknowns), np.zeros(0), force)

@@ -13,15 +13,16 @@ The derivative of (V1) along the parameter is linear in the rates of the state, 
     g_x x' + g_e e' = -g_p                                                                             (V2)
     f_x x' + f_lam lam' = -f_p - load_p
 
-One factorisation serves all parameters of an equilibrium; each of them costs a solve with it, and one more under a
-load. A contact whose reaction vanishes with its gap is at a kink: it opens on one side of `p` and stays closed on the
-other. Its rates follow from a linear complementarity problem on either side (V3).
+One factorisation serves all parameters of an equilibrium; each of them costs a solve with it. A contact whose reaction
+vanishes with its gap is at a kink: it opens on one side of `p` and stays closed on the other. Its rates follow from a
+linear complementarity problem on either side (V3).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -148,6 +149,46 @@ class StateRate:
 
 
 @dataclass(frozen=True)
+class StateWeights:
+    """Derivatives of a result by a state, or of its derivative by the rates of the equations (V11).
+
+    Attributes
+    ----------
+    residual : (n,) array
+        By the unknowns, or by the rows of film and wall.
+    gaps : (m,) array
+        By the reactions, or by the gaps; none where reactions are among the unknowns.
+    force : (d,) array
+        By the journal's position, or by its rows.
+    """
+
+    residual: Array
+    gaps: Array
+    force: Array
+
+    def of(self, rates: Rates) -> float:
+        """The result's derivative along rates of the equations."""
+        gaps = float(self.gaps @ rates.gaps) if len(self.gaps) else 0.0
+        return float(self.residual @ rates.residual) + gaps + float(self.force @ rates.force)
+
+
+class Rates(Protocol):
+    """Derivatives of equations by a parameter at a fixed state."""
+
+    @property
+    def residual(self) -> Array:
+        """Of the rows."""
+
+    @property
+    def gaps(self) -> Array:
+        """Of the gaps."""
+
+    @property
+    def force(self) -> Array:
+        """Of the journal's rows."""
+
+
+@dataclass(frozen=True)
 class HeldEquilibrium:
     """An equilibrium whose contacts are held, its tangent factorised.
 
@@ -202,6 +243,27 @@ class HeldEquilibrium:
         pushes = np.asarray(np.linalg.solve(stiffness, rate.gaps[stops]), dtype=np.float64)
         return rate.plus(reactions, -pushes)
 
+    def adjoint(self, by_state: StateWeights) -> StateWeights:
+        """Derivatives of a result along the equilibrium by the rates of the equations (V11); one transposed solve.
+
+        Raises
+        ------
+        ConvergenceError
+            Active gaps close a chain of held ones.
+        """
+        tangent, border = self.tangent, self.tangent.border
+        if len(tangent.constraints.stops):
+            raise undetermined()
+        by_x, by_lam, none = by_state.residual, by_state.gaps, np.zeros(border.size)
+        if not self.under_load:
+            return StateWeights(*tangent.adjoint(by_x, by_lam), none)
+        moved = by_x @ tangent.units + by_lam @ tangent.reaction_units + by_state.force
+        s = np.asarray(np.linalg.solve(tangent.gradient.T, moved), dtype=np.float64)
+        by_reactions = border.gap_derivative.T if border.reaction_derivative is None else border.reaction_derivative
+        by_x, by_lam = by_x.copy(), by_lam - s @ by_reactions
+        by_x[border.columns] -= s @ border.row_derivative
+        return StateWeights(*tangent.adjoint(by_x, by_lam), -s)
+
     def to_reaction(self, gap: int) -> StateRate:
         """The rate of the state by a reaction of the gap number `gap`, stops left free."""
         problem = self.solution.problem
@@ -220,8 +282,7 @@ class HeldEquilibrium:
         if self.under_load:
             unbalanced = border.rows(x, lam) + rates.force
             displacement = -np.asarray(np.linalg.solve(tangent.gradient, unbalanced), dtype=np.float64)
-            residual = rates.residual + tangent.forcing @ displacement
-            x, lam = tangent.respond(residual, rates.gaps + border.gap_derivative @ displacement)
+            x, lam = x + tangent.units @ displacement, lam + tangent.reaction_units @ displacement
         gaps = rates.gaps + border.gap_derivative @ displacement + self.solution.problem.G @ x
         return StateRate(x, lam, gaps, displacement if self.under_load else rates.displacement)
 

@@ -138,9 +138,9 @@ def slopes(phi: Array) -> sp.csr_array:
 
 def halves(n: int) -> sp.csr_array:
     """Parts of `n` nodal reactions in the cells between the nodes, shape (n - 1, n): halves, at the ends the whole."""
-    weights = sp.lil_array(sp.diags_array([0.5, 0.5], offsets=[0, 1], shape=(n - 1, n)))
-    weights[0, 0], weights[n - 2, n - 1] = 1.0, 1.0
-    return sp.csr_array(weights)
+    own, next_one = np.full(n - 1, 0.5), np.full(n - 1, 0.5)
+    own[0], next_one[-1] = 1.0, 1.0
+    return sp.csr_array(sp.diags_array([own, next_one], offsets=[0, 1], shape=(n - 1, n)))
 
 
 def equivalent_stiffness(stiffness: Array, limit: Array, amplitude: Array) -> tuple[Complex, Complex]:

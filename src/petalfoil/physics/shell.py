@@ -183,11 +183,14 @@ class PetalShell:
         along = (self._second_phi @ _neighbour_differences(len(self.phi))).toarray() / self.metric_radius**2
         along += np.diag(self._bent / self.bend_radius**2)
         seeds = [(1.0, -along[0, 0] / along[0, 1])] if self.clamped else [(1.0, 1.0), (0.0, 1.0)]
-        motions = np.array(seeds).T
-        for row in along[1:-1]:
-            i = len(motions) - 1
-            motions = np.vstack([motions, -(row[i - 1] * motions[i - 1] + row[i] * motions[i]) / row[i + 1]])
-        root_rows = np.asarray(self.stiffness[:n_z].sum(axis=0)).ravel()
+        motions = np.zeros((len(self.phi), len(seeds)))
+        motions[:2] = np.array(seeds).T
+        for i, row in enumerate(along[1:-1], 1):
+            motions[i + 1] = -(row[i - 1] * motions[i - 1] + row[i] * motions[i]) / row[i + 1]
+        root = np.zeros(len(self.phi) * n_z)
+        root[:n_z] = 1.0
+        bent = self.strain @ (self.difference @ root)
+        root_rows = self.difference.T @ (self.strain.T @ (self.rigidity_matrix.T @ bent))
         return np.repeat(motions, n_z, axis=0), np.outer(motions[0], root_rows)
 
 

@@ -69,6 +69,16 @@ class ContactConstraints:
             return np.zeros(0)
         return apply_to_parts(self._normal.solve, self.G @ residual)
 
+    def reactions_adjoint(self, by_reactions: Array) -> Array:
+        """Derivative by the residual (n,) of what has the derivative `by_reactions` (k,) by `reactions`."""
+        return (
+            np.asarray(self.G.T @ self._normal.solve(by_reactions)) if len(by_reactions) else np.zeros(len(self.group))
+        )
+
+    def close_adjoint(self, by_change: Array) -> Array:
+        """Derivative by the gaps (k,) of what has the derivative `by_change` (n,) by the change `close`."""
+        return np.asarray(-self._normal.solve(self.G @ by_change)) if self.G.shape[0] else np.zeros(0)
+
     def gather(self, full: NDArray[Any]) -> NDArray[Any]:
         """Add up the equations of unknowns that move together; shape (n_free,)."""
         inside = self.group >= 0

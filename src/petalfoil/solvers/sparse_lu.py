@@ -23,10 +23,11 @@ class SingularMatrixError(ArithmeticError):
 
 @dataclass
 class Counter:
-    """Work done: factorisations so far, and the unknowns they had."""
+    """Work done: factorisations so far, the unknowns they had, and right-hand sides solved for."""
 
     factorizations: int = 0
     largest: int = 0
+    solves: int = 0
 
 
 @dataclass(frozen=True)
@@ -37,9 +38,11 @@ class Factor:
     row: Array
     col: Array
     order: Index | None
+    counter: Counter = field(default_factory=Counter)
 
     def solve(self, rhs: NDArray[Any]) -> NDArray[Any]:
         """Solve `M x = rhs`, rhs of shape (n,) or (n, k)."""
+        self.counter.solves += 1 if rhs.ndim == 1 else rhs.shape[1]
         if rhs.ndim == 1:
             one: NDArray[Any] = self.col * self.scaled(self.row * rhs)
             return one
@@ -48,12 +51,17 @@ class Factor:
         out: NDArray[Any] = self.col[:, None] * np.concatenate([scaled[:, :0], *few], axis=1)
         return out
 
-    def scaled(self, rhs: NDArray[Any]) -> NDArray[Any]:
-        """Solve with the scaled matrix."""
+    def solve_transposed(self, rhs: Array) -> Array:
+        """Solve `M^T x = rhs`, rhs of shape (n,)."""
+        self.counter.solves += 1
+        return np.asarray(self.row * self.scaled(self.col * rhs, "T"))
+
+    def scaled(self, rhs: NDArray[Any], transposed: str = "N") -> NDArray[Any]:
+        """Solve with the scaled matrix, or with its transpose ("T")."""
         if self.order is None:
-            out: NDArray[Any] = self.lu.solve(rhs)
+            out: NDArray[Any] = self.lu.solve(rhs, transposed)
             return out
-        inner: NDArray[Any] = self.lu.solve(rhs[self.order])
+        inner: NDArray[Any] = self.lu.solve(rhs[self.order], transposed)
         spread = np.empty_like(inner)
         spread[self.order] = inner
         return spread
@@ -115,7 +123,7 @@ class LinearSolver:
         scaled, row, col = equilibrate(without_zeros(matrix))
         places = None if order is None else order.known(scaled.nnz)
         try:
-            factor = Factor(symmetric_lu(scaled, places), row, col, places)
+            factor = Factor(symmetric_lu(scaled, places), row, col, places, self.counter)
             if trusted(scaled, factor):
                 if order is not None and scaled.shape[0]:  # active contacts may hold all unknowns
                     fill = factor.lu.nnz / scaled.shape[0]
@@ -125,7 +133,9 @@ class LinearSolver:
         except RuntimeError:  # SuperLU met a zero pivot: without the diagonal it may still do
             pass
         try:
-            return Factor(spla.splu(scaled, permc_spec="COLAMD", options={"Equil": False}), row, col, None)
+            return Factor(
+                spla.splu(scaled, permc_spec="COLAMD", options={"Equil": False}), row, col, None, self.counter
+            )
         except RuntimeError as failure:  # SuperLU says "Factor is exactly singular" this way
             raise SingularMatrixError(str(failure)) from failure
 

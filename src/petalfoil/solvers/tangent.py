@@ -8,6 +8,7 @@ follows a contact set that changes by a few gaps without a new factorisation (O4
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -65,6 +66,17 @@ class Tangent:
             follow = self.constraints.close(gap_change)
             change = follow + self.step(self.matrix @ follow + residual)
         return change, self.constraints.reactions(self.matrix @ change + residual)
+
+    def adjoint(self, by_change: Array, by_reactions: Array) -> tuple[Array, Array]:
+        """Derivatives by `residual` (n,) and `gap_change` (k,) of what has these by the outcome of `respond`.
+
+        One transposed solve.
+        """
+        constraints = self.constraints
+        pushed = constraints.reactions_adjoint(by_reactions)
+        by_unknowns = by_change + self.matrix.T @ pushed
+        a = constraints.spread(self.factor.solve_transposed(constraints.gather(by_unknowns)))
+        return pushed - a, constraints.close_adjoint(by_unknowns - self.matrix.T @ a)
 
 
 @dataclass(frozen=True)
@@ -196,6 +208,26 @@ class BorderedTangent:
             change, reactions, lam[added] = self.exchange.amend(change, reactions, moved)
         lam[held] = reactions
         return change, lam
+
+    def adjoint(self, by_change: Array, by_reactions: Array) -> tuple[Array, Array]:
+        """Derivatives by `residual` (n,) and `gap_change` (m,) of what has these by the outcome of `respond`.
+
+        On the contacts of the factor; one transposed solve.
+        """
+        held = self.tangent.constraints.held
+        by_residual, by_held = self.tangent.adjoint(by_change, by_reactions[held])
+        by_gaps = np.zeros(len(held))
+        by_gaps[held] = by_held
+        return by_residual, by_gaps
+
+    @cached_property
+    def reaction_units(self) -> Array:
+        """Change of all reactions by a unit of each bordered unknown, (m, d)."""
+        own = self.tangent
+        lam = np.zeros((len(own.constraints.held), self.border.size))
+        for k in range(self.border.size):
+            lam[own.constraints.held, k] = own.constraints.reactions(own.matrix @ self.units[:, k] + self.forcing[:, k])
+        return lam
 
     def serves(self, active: Mask) -> bool:
         """Whether the gaps `active` are those held, apart from stops."""

@@ -1,0 +1,203 @@
+"""Derivatives of results by the adjoint of an equilibrium: one transposed solve for each result (V11).
+
+With the tangent `J` of the unknowns `X`, the derivatives `F_e` of the rows by the journal's position, those of the
+force on it, `R` and `R_e`, and the derivatives `q_X`, `q_e` of a result,
+
+    J^T a + R^T s = q_X ,   F_e^T a + R_e^T s = q_e                                                    (V11)
+    dq/dp = q_p - a^T F_p - s^T (f_p + load_p)
+
+`a` and `s` serve all parameters. They do not tell how the state moves, hence not where a contact opens or closes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.analysis.derivatives import Derivative, DerivativesOf, Results
+from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.analysis.result_gradients import GRADIENTS, FieldGradient, gradient
+from petalfoil.analysis.variation import EquationFamily, Variation
+from petalfoil.case import Case
+from petalfoil.equilibrium.element_rates import ElementValues, under
+from petalfoil.equilibrium.parameter_response import Equations, EquationValues, StateWeights
+from petalfoil.equilibrium.point_contacts import PointContacts
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.errors import ConvergenceError, UsageError
+from petalfoil.sparsity import add_up
+from petalfoil.system.point_equations import PointEquations
+from petalfoil.system.unknowns import DEFLECTION
+
+Array = NDArray[np.float64]
+
+TANGENT = "ask by the tangent (--method tangent)"
+
+
+@dataclass(frozen=True, eq=False)
+class AdjointDerivatives:
+    """Derivatives of some results of one equilibrium by their adjoints.
+
+    Attributes
+    ----------
+    tangent : DerivativesOf
+        The equilibrium, its results and its factorised tangent.
+    names : sequence of str
+        The results.
+    """
+
+    tangent: DerivativesOf
+    names: Sequence[str]
+    _known: dict[str, StateWeights] = field(default_factory=dict)
+
+    @classmethod
+    def of_all(cls, tangent: DerivativesOf) -> AdjointDerivatives:
+        """Of all results that have an adjoint."""
+        found = Evaluation.of(tangent.case, tangent.told)
+        return cls(tangent, [name for name in tangent.values if gradient(name, found) is not None])
+
+    @property
+    def case(self) -> Case:
+        """The bearing."""
+        return self.tangent.case
+
+    @property
+    def solution(self) -> Solution:
+        """The equilibrium."""
+        return self.tangent.solution
+
+    @property
+    def as_points(self) -> bool:
+        """Whether contacts are points; see `DerivativesOf`."""
+        return self.tangent.as_points
+
+    @property
+    def values(self) -> Results:
+        """The results."""
+        return {name: self.tangent.values[name] for name in self.names}
+
+    @property
+    def residual(self) -> float:
+        """Residual of the equilibrium."""
+        return self.tangent.residual
+
+    def variation(self, path: str) -> Variation:
+        """The case at values of the parameter `path`; see `DerivativesOf.variation`."""
+        return self.tangent.variation(path)
+
+    def by(self, path: str) -> Derivative:
+        """Derivatives by the parameter `path`; see `DerivativesOf.by`."""
+        return self.along(self.variation(path))
+
+    def along(self, variation: EquationFamily) -> Derivative:
+        """Derivatives along a variation of the case; its `reach` is not known.
+
+        Raises
+        ------
+        UsageError
+            A result has no adjoint.
+        ConvergenceError
+            The elements change with the parameter.
+        """
+        weights = [weight / variation.step for _, weight in variation.stencil]
+        there = [variation.at(steps) for steps, _ in variation.stencil]
+        moved = [self.in_place(equations) for _, equations in there]
+        rates = self.rates([equations for _, equations in there], weights)
+        sampled = [
+            {name: self.tangent.results(case, state)[name] for name in self.names}
+            for (case, _), state in zip(there, moved, strict=True)
+        ]
+        found = {}
+        for name in self.names:
+            direct = sum(weight * results[name] for weight, results in zip(weights, sampled, strict=True))
+            found[name] = float(direct) + self.weights(name).of(rates)
+        return Derivative(found, found, (math.nan, math.nan), False, variation.fineness)
+
+    def in_place(self, there: Equations) -> Solution:
+        """The state under other equations, unknowns held; under a load the position too."""
+        found, problem = self.tangent.told, there.problem
+        if found.elements is None:
+            problem = problem if there.load is None else problem.at(displacement=found.problem.displacement)
+            return replace(found, problem=problem, load=there.load)
+        elements = under(found.elements, there)
+        if elements is None:
+            raise ConvergenceError("no derivative: the elements of the petals change with the parameter")
+        return replace(found, problem=problem, elements=elements, load=there.load)
+
+    def rates(self, there: Sequence[Equations], weights: Sequence[float]) -> EquationValues | ElementValues:
+        """Derivatives of the equations at the fixed state."""
+        found = self.tangent.told
+        if found.elements is None:
+            return EquationValues.combined([equations.at_state(found) for equations in there], weights)
+        values = [ElementValues.at(found.elements, equations) for equations in there]
+        return ElementValues.combined([value for value in values if value is not None], weights)
+
+    def weights(self, name: str) -> StateWeights:
+        """`-a` and `-s` of a result; one transposed solve, once."""
+        if name not in self._known:
+            by_state = self.gradient(name)
+            held = self.tangent.held if self.tangent.told.elements is None else self.tangent.held_elements
+            self._known[name] = held.adjoint(by_state)
+        return self._known[name]
+
+    def gradient(self, name: str) -> StateWeights:
+        """Derivatives of a result by unknowns, reactions and position.
+
+        Raises
+        ------
+        UsageError
+            It has no adjoint.
+        """
+        found = self.tangent.told
+        fields = gradient(name, Evaluation.of(self.tangent.case, found))
+        if fields is None:
+            if name in GRADIENTS:
+                raise UsageError(f"no adjoint of {name}: contact keeps it, and its derivative has two sides: {TANGENT}")
+            raise UsageError(f"no adjoint of {name}; there is one of {', '.join(GRADIENTS)}: {TANGENT}")
+        if found.elements is None:
+            if self.tangent.with_points is not None or found.lines is not None:
+                raise UsageError(f"no adjoint where contacts are between nodes of the grid: {TANGENT}")
+            return by_nodes(fields, found)
+        if not isinstance(found.elements, PointContacts):
+            raise UsageError(f"no adjoint with contact pressures over asperities: {TANGENT}")
+        return by_points(fields, found.elements.equations)
+
+
+def by_nodes(fields: FieldGradient, found: Solution) -> StateWeights:
+    """Derivatives by the state of an equilibrium with contacts at nodes, from those by its fields."""
+    problem, x = found.problem, found.x
+    layout, border = problem.layout, problem.border
+    by_x, by_lam = np.zeros(len(x)), border.gap_derivative @ fields.contact_force
+    by_lam[layout.wall.contacts.journal] += fields.reactions
+    by_x[problem.positive] = at_unknowns(layout.wall.film.unknown, fields.pressure, len(x[problem.positive]))
+    by_x[border.columns] += border.row_derivative.T @ fields.film_force
+    wall = layout.unknowns[DEFLECTION]
+    by_x[wall] += at_unknowns(layout.wall.film_unknown, fields.film, layout.n_wall)
+    film, e = problem.film(x), problem.displacement
+    moved = [problem.at(displacement=e + unit).film(x) - film for unit in np.eye(len(e))]
+    by_e = fields.displacement + np.array([np.sum(fields.film * change) for change in moved])
+    return StateWeights(by_x, by_lam, by_e)
+
+
+def by_points(fields: FieldGradient, equations: PointEquations) -> StateWeights:
+    """The same with contact points; reactions and places are among the unknowns."""
+    whole, points = equations.whole, equations.state.points
+    first, last = whole.n_wall, whole.n_wall + whole.n_film
+    rows = equations.force_rows
+    by_x = fields.contact_force @ rows
+    by_x[first:last] = fields.film_force @ rows[:, first:last]
+    by_x[first:last] += at_unknowns(whole.layout.wall.film.unknown, fields.pressure, whole.n_film)
+    by_x[:first] += whole.film_by_w.T @ fields.film.ravel()
+    on_journal = points.every_curve < whole.pack.mesh.count
+    by_x[last : last + len(on_journal)] += fields.reactions * on_journal
+    by_e = fields.displacement + whole.film_by_e.T @ fields.film.ravel()
+    return StateWeights(by_x, np.zeros(0), by_e)
+
+
+def at_unknowns(unknown: NDArray[np.intp], by_node: Array, n: int) -> Array:
+    """Derivatives by unknowns from those by the nodes that read them, (n,)."""
+    there = unknown.ravel() >= 0
+    return add_up(unknown.ravel()[there], by_node.ravel()[there], n)
