@@ -152,6 +152,7 @@ def test_stiffness_of_petals_is_the_slope_of_equilibria(speed: float, load: floa
     assert_allclose(K, slope, rtol=0.0, atol=1e-5 * float(np.max(np.abs(slope))))
 
 
+@pytest.mark.slow
 def test_impedance_of_petals_solves_the_equations_linearised_by_differences() -> None:
     """`dF` of a whirl, from finite differences of the residual and of the stored mass alone.
 

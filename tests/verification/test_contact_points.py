@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from petalfoil.analysis.coefficients import coefficients
 from petalfoil.analysis.impedance import elastic, elastic_and_sliding, impedance
 from petalfoil.analysis.operating_point import operating_point
-from petalfoil.case import Case
 from petalfoil.equilibrium.asperity_contacts import AsperityContacts, with_asperities
 from petalfoil.equilibrium.element_contacts import near_nodes, start_at
 from petalfoil.equilibrium.element_response import ElementMotion
@@ -27,7 +26,7 @@ from petalfoil.system.point_equations import PointEquations, PointState
 from tests.cases import case
 from tests.contract.taylor import assert_tangent
 from tests.random_packs import random_case
-from tests.verification.test_contact_slopes import BEARINGS, TURBOCHARGER, apart, walk
+from tests.verification.test_contact_slopes import BEARINGS, apart, walk
 
 Array = NDArray[np.float64]
 
@@ -188,7 +187,7 @@ def test_petals_that_stick_stiffen_contact_points() -> None:
 
 def test_the_limit_of_the_turbocharger_bearing() -> None:
     """33.46, -0.95, -1.60, 147.88 kN/m at the eccentricity of an independent prototype, on 128 cells within 0.05 %."""
-    bearing = Case(**TURBOCHARGER).replace(**{"operation.load": None, "operation.eccentricity": (2.3e-6, -235e-6)})
+    bearing = BEARINGS["turbocharger"].replace(**{"operation.load": None, "operation.eccentricity": (2.3e-6, -235e-6)})
     with running():
         K, _ = impedance(elastic(bearing, operating_point(bearing, None).answer), 0.0, bearing.operation.speed)
     assert_allclose(K.ravel(), [33.461e3, -0.951e3, -1.599e3, 147.876e3], rtol=0.0, atol=0.07e3)

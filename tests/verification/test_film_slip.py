@@ -216,6 +216,7 @@ def test_check_tells_the_knudsen_number(plain: Case) -> None:
     assert check.record(petals).scalars["knudsen_number"] == pytest.approx(petals.gas.mean_free_path / 1e-6, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_petals_carry_less_with_slip() -> None:
     """Film and pack solved together, tangents and all, where the films are some micrometres."""
     bearing = case("paper_n8", **{"model.cells_per_pitch": 32, "operation.eccentricity": (0.0, -200e-6)})

@@ -224,6 +224,7 @@ def test_loading_carries_more_than_unloading() -> None:
     assert np.all(up[1:-1] > down[1:-1])
 
 
+@pytest.mark.slow
 def test_little_friction_is_none() -> None:
     smooth = case("paper_n8", **{"model.cells_per_pitch": 16})
     hardly = smooth.replace(**{"surface.petal_friction": 1e-9})  # contacts at nodes, as those of histories

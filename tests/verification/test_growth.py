@@ -140,6 +140,7 @@ def test_a_prediction_knows_growth(name: str) -> None:
     assert errors[1] / errors[0] == pytest.approx(4.0, rel=0.1)
 
 
+@pytest.mark.slow
 def test_a_tight_pack_starts_harder_when_it_is_hot() -> None:
     """10 µm of growth in the paper's rig, two of whose layers have 18 µm of clearance."""
     cold = case("rig", **{"model.cells_per_pitch": 48, "operation.load": (0.0, -46.4)})

@@ -39,6 +39,7 @@ def lifted() -> Record:
     return record
 
 
+@pytest.mark.slow
 def test_the_share_is_crossed_within_a_hundred_thousandth_of_the_speed(lifted: Record) -> None:
     for name in ("liftoff_speed", "touchdown_speed"):
         speed = number(lifted, name)
@@ -46,6 +47,7 @@ def test_the_share_is_crossed_within_a_hundred_thousandth_of_the_speed(lifted: R
         assert share(speed * (1.0 - half), LOAD) > CONTACT_FRACTION >= share(speed * (1.0 + half), LOAD)
 
 
+@pytest.mark.slow
 def test_a_heavier_load_lifts_off_later(lifted: Record) -> None:
     """Where load rules and not preload: above 10 N on the paper's eight petals."""
     near = BEARING.replace(**{"operation.speed": number(lifted, "liftoff_speed")})
@@ -53,6 +55,7 @@ def test_a_heavier_load_lifts_off_later(lifted: Record) -> None:
     assert lighter < number(lifted, "liftoff_speed") < heavier
 
 
+@pytest.mark.slow
 def test_from_below_and_from_above_the_same_crossings_are_found(lifted: Record) -> None:
     """The case touches at its own speed, so that `lifted` ascended first; a faster one descends first."""
     faster = BEARING.replace(**{"operation.speed": 1.3 * number(lifted, "liftoff_speed")})
@@ -73,6 +76,7 @@ def test_the_width_of_the_bracket_matters_to_no_result(lifted: Record, monkeypat
         assert number(other, name) == pytest.approx(number(lifted, name), rel=1e-4)
 
 
+@pytest.mark.slow
 def test_sensitivity_is_that_of_another_floor_and_share(lifted: Record) -> None:
     up, factor = number(lifted, "liftoff_speed"), 0.9
     near = BEARING.replace(
@@ -130,6 +134,7 @@ def legs() -> dict[str, list[Record]]:
     return found
 
 
+@pytest.mark.slow
 def test_both_legs_are_followed_through_contact(legs: dict[str, list[Record]]) -> None:
     assert [len(legs[leg]) for leg in ("up", "down")] == [9, 8]
     every = [*legs["up"], *legs["down"]]
@@ -157,6 +162,7 @@ def test_the_way_down_returns_where_nothing_snaps(legs: dict[str, list[Record]])
         assert_allclose(number(up, "eccentricity_y"), number(down, "eccentricity_y"), rtol=1e-6, atol=0.0)
 
 
+@pytest.mark.slow
 def test_a_line_of_speeds_is_warm() -> None:
     run = current_run()
     line = SpeedLine(BEARING, (0.0, -20.0))

@@ -56,6 +56,7 @@ def test_scatter_of_5_um_is_smoothed_by_its_tolerance(count: int, seed: int) -> 
     assert float(answer["eccentricity_y"]) == pytest.approx(float(arc["eccentricity_y"]), abs=4.0 * MICRON)
 
 
+@pytest.mark.slow
 def test_a_stated_bend_radius_moves_nothing_beside_a_measured_shape() -> None:
     """It moved the preload from 27 to 65 N."""
     answers = [

@@ -121,8 +121,10 @@ def test_without_a_mass_there_are_no_modes() -> None:
 
 @pytest.mark.parametrize(
     ("bearing", "load"),
-    [(plain((48, 12)), 30.0), (case("paper_n6", **{"model.cells_per_pitch": 32}), 200.0)],
-    ids=["plain", "petals"],
+    [
+        pytest.param(plain((48, 12)), 30.0, id="plain"),
+        pytest.param(case("paper_n6", **{"model.cells_per_pitch": 32}), 200.0, id="petals", marks=pytest.mark.slow),
+    ],
 )
 def test_at_the_critical_mass_a_mode_neither_grows_nor_dies_out(bearing: Case, load: float) -> None:
     """Its frequency is the whirl ratio's; a little more mass lets it grow, a little less lets it die out."""
@@ -136,6 +138,7 @@ def test_at_the_critical_mass_a_mode_neither_grows_nor_dies_out(bearing: Case, l
     assert lighter.real < 0.0 < heavier.real
 
 
+@pytest.mark.slow
 def test_without_a_reduced_model_the_equations_give_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     """A model that is not good enough is not used: many factorisations, the same onset of whirl and modes."""
     bearing = case("paper_n6", **{"model.cells_per_pitch": 16})
@@ -208,7 +211,9 @@ OPERATORS = {
 }
 
 
-@pytest.mark.parametrize("name", OPERATORS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow if name == "petals" else ()) for name in OPERATORS]
+)
 def test_modes_are_the_eigenvalues_of_the_whole_operator(name: str) -> None:
     """Each found mode is one, with its participation; and each one in which the rotor takes part is found."""
     bearing, load, masses = OPERATORS[name]

@@ -111,6 +111,7 @@ def check(solved: list[tuple[Case, Record]]) -> None:
         assert kkt_residual(drawn, record) <= 1e-7, drawn
 
 
+@pytest.mark.slow
 def test_ten_random_packs() -> None:
     solved, failed = run_random(10, SEED)
     assert not failed

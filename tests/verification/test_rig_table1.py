@@ -68,6 +68,7 @@ def test_the_page_s_residuals_are_those_of_its_numbers() -> None:
         assert_allclose(second, 100.0 * (lifted / speed - 1.0), rtol=0.0, atol=0.1)
 
 
+@pytest.mark.slow
 def test_the_example_gives_the_starting_moments_of_the_page() -> None:
     report = script("rig_report")
     found = [report.starting_moment(report.rig(), e.load) for e in report.experiments()]

@@ -52,6 +52,7 @@ def unstable() -> Case:
     return case.replace(**{"operation.speed": 1.03 * threshold})
 
 
+@pytest.mark.slow
 def test_the_default_table_tells_the_growth_rate(unstable: Case) -> None:
     speed = unstable.operation.speed
     own = petalfoil.stability(unstable)

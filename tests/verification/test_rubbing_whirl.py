@@ -95,6 +95,7 @@ def differences(rubs: Case, answer: Solution, step: float) -> Array:
     return np.column_stack(columns) * layout.scales.force / layout.scales.length
 
 
+@pytest.mark.slow
 def test_natural_modes_are_those_of_stuck_petals(monkeypatch: pytest.MonkeyPatch) -> None:
     """They solve (E7) with sticking contacts in the tangent, and are stiffer."""
     monkeypatch.setattr(threshold, "RANGE", 1.0)  # no search for a threshold speed
@@ -192,6 +193,7 @@ def slow_cycle(rubs: Case, answer: Solution, a: float, steps: int = 32) -> compl
     return complex(2j / steps * np.exp(-1j * phase[steps:]) @ np.array(forces[steps:]) / a)
 
 
+@pytest.mark.slow
 def test_small_cycles_stick_and_large_ones_do_not_feel_friction() -> None:
     rubs, free = bearing(), bearing(0.0)
     assert_near(impedances(run(rubs, amplitude=1e-15)), impedances(run(rubs)), 1e-6)
@@ -199,6 +201,7 @@ def test_small_cycles_stick_and_large_ones_do_not_feel_friction() -> None:
     assert_near(impedances(run(bearing(1e-9), amplitude=MICRON)), impedances(run(free)), 1e-6)
 
 
+@pytest.mark.slow
 def test_friction_damps_both_ways_and_most_where_it_neither_sticks_nor_is_small() -> None:
     rubs = bearing()
     none, *rubbing = (run(case_, **asked).fields["damping"][:, (0, 1), (0, 1)] for case_, asked in (
@@ -220,6 +223,7 @@ def test_a_frequency_costs_one_factorisation() -> None:
     assert counts[1] - counts[0] == 4
 
 
+@pytest.mark.slow
 def test_where_little_gives_way_newton_still_arrives() -> None:
     """Friction that is a thousand times as steep, and strong."""
     for amplitude in (0.1e-6, 1e-6, 10e-6):

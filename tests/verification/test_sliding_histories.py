@@ -147,6 +147,7 @@ def test_energy_lost_by_a_pack_is_the_area_of_its_loop() -> None:
     assert away[1] < 0.05
 
 
+@pytest.mark.slow
 def test_little_friction_loses_its_limit_times_the_slip_and_changes_little() -> None:
     """Half the friction, half the loss; and no friction between petals that slide is no friction."""
     _, few, lost = loop("rig", 2e-4, np.array([0.0, 4e-6]), **{"model.cells_per_pitch": 12})

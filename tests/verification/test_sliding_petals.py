@@ -225,6 +225,7 @@ def test_cycles_of_no_amplitude_stick() -> None:
     assert_allclose(cycle.force_gradient(), stuck, atol=1e-6 * np.max(np.abs(stuck)))
 
 
+@pytest.mark.slow
 def test_a_stiffer_membrane_holds_more_and_no_friction_holds_nothing() -> None:
     """`B L` of a hundredth: the stuck pack is softer; without friction both theories are one."""
     motion, sliding = rubbing()

@@ -140,6 +140,7 @@ TILTED = petals(**{"operation.tilt": (5e-4, -2e-4), "operation.load": (0.0, -10.
 """The ends of the journal move by 18 µm."""
 
 
+@pytest.mark.slow
 def test_symmetry_gives_no_moment() -> None:
     """And the whole length of a parallel journal is twice its half."""
     half, whole = (solve.record(of).scalars for of in (petals(), petals(**{"operation.tilt": (0.0, 0.0)})))
@@ -157,6 +158,7 @@ def count(of: Case, *load: float, moment: tuple[float, float] | None = None) -> 
     return int(found.scalars["factorizations"])
 
 
+@pytest.mark.slow
 def test_a_tilt_costs_three_factorisations_at_most() -> None:
     """More than the aligned journal on the same grid, at a position, under a load and under a moment."""
     aligned, tilted = petals(**{"operation.tilt": (0.0, 0.0)}), petals(**{"operation.tilt": (5e-4, -2e-4)})
@@ -194,6 +196,7 @@ def test_a_whole_length_costs_two_and_a_half_times_its_half_at_most(
     assert counted[1] <= 2.5 * counted[0]
 
 
+@pytest.mark.slow
 def test_the_moment_that_holds_a_tilt_balances_it() -> None:
     held = balance.record(TILTED).scalars
     moment = (-float(held["moment_x"]), -float(held["moment_y"]))

@@ -59,6 +59,7 @@ def test_coefficients_are_those_of_one_bearing() -> None:
     assert_allclose(both["stiffness"], one["stiffness"], rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_a_rotor_that_hardly_resists_tilting_is_two_masses_on_two_bearings() -> None:
     """Threshold 4415 rpm; the mass once was halved without the load, which gave 8563 rpm."""
     light = PAIR.replace(**{"rotor.transverse_inertia": 1e-4, "rotor.polar_inertia": 1e-5})
@@ -119,6 +120,7 @@ def test_growth_of_the_conical_mode(rpm: float, growth: float) -> None:
     assert modes["whirl_direction"][fastest] > 0.9
 
 
+@pytest.mark.slow
 def test_a_slow_rotor_is_stable_in_both_modes() -> None:
     modes = stable_at(2000.0).fields
     assert np.all(modes["mode_growth_rate"].astype(float) < 0.0)
@@ -155,6 +157,7 @@ def test_a_table_over_load_and_speed_counts_the_conical_mode() -> None:
     assert_allclose(float(ds["critical_mass"].squeeze()), stable_at(4000.0).scalars["critical_mass"], rtol=1e-4)
 
 
+@pytest.mark.slow
 def test_the_end_of_the_search_is_no_threshold() -> None:
     safe = PAIR.replace(**{"rotor.transverse_inertia": 1e-6, "rotor.polar_inertia": 0.0, "rotor.mass": 1e-3})
     found = stability.record(safe, speed=2000.0 * RPM).scalars

@@ -124,6 +124,7 @@ def test_the_papers_method_is_for_equal_petals() -> None:
 # ---------------------------------------------------------------------------------------------- derivatives
 
 
+@pytest.mark.slow
 def test_derivatives_by_single_petals_add_up_to_that_by_all() -> None:
     few = case("paper_n6", **{"model.cells_per_pitch": 6})
     derivatives = DerivativesOf(few, at_position(few).answer, equilibrium_results)

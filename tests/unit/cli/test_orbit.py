@@ -72,6 +72,7 @@ def stopping(monkeypatch: pytest.MonkeyPatch, after: int, error: BaseException) 
     monkeypatch.setattr(Orbit, "advance", steps)
 
 
+@pytest.mark.slow
 def test_json_gives_lists_over_time(cli: Run, rotor: str, tmp_path: Path) -> None:
     out = tmp_path / "orbit.nc"
     result = cli("orbit", rotor, "--revolutions", "1", "--json", "--out", str(out))

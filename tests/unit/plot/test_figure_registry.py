@@ -23,11 +23,13 @@ def ylabels(ds: xr.Dataset) -> list[str]:
     return [ax.get_ylabel() for ax in fig.axes if ax.get_ylabel()]
 
 
+@pytest.mark.slow
 def test_a_flat_point_gets_section_and_lines(flat: xr.Dataset, curve: xr.Dataset) -> None:
     for ds in (flat, curve.isel(point=[1])):
         assert ylabels(ds) == ["pressure  p / p$_a$", "film thickness  h [µm]", "p / p$_a$"]
 
 
+@pytest.mark.slow
 def test_a_spatial_point_gets_section_and_maps(spatial: xr.Dataset) -> None:
     assert ylabels(spatial) == ["z [mm]", "z [mm]", "p / p$_a$", "p / p$_a$", "film thickness  h [µm]"]
 

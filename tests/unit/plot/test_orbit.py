@@ -127,6 +127,7 @@ def test_the_legend_of_the_path_covers_no_point_of_it(steady: xr.Dataset) -> Non
         assert box.x1 <= ax.bbox.x1
 
 
+@pytest.mark.slow
 def test_the_overview_leaves_the_energy_balance_to_its_own_figure(steady: xr.Dataset) -> None:
     assert not [ax for ax in plot.orbit(steady).axes if "energy" in ax.get_ylabel()]
     assert [ax for ax in plot.orbit_energy(steady).axes if "energy" in ax.get_ylabel()]

@@ -76,6 +76,7 @@ def test_the_journal_surface_leaves_the_film(flat: xr.Dataset) -> None:
     np.testing.assert_allclose(film, plane["film_thickness"].values, rtol=0, atol=1e-15)
 
 
+@pytest.mark.slow
 def test_plot_loads_matplotlib_only_when_used_and_pyplot_never() -> None:
     code = (
         "import sys, petalfoil.plot as plot; assert 'matplotlib' not in sys.modules; plot.pressure_and_film; "

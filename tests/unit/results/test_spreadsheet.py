@@ -32,6 +32,7 @@ def test_a_csv_has_a_row_for_each_point(curve: xr.Dataset, tmp_path: Path) -> No
     assert [row["status"] for row in rows] == ["converged"] * 2
 
 
+@pytest.mark.slow
 def test_an_error_bar_stands_behind_its_quantity() -> None:
     point = petalfoil.solve(SMALL, error=True)
     head, row = points(point)
