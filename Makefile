@@ -1,6 +1,7 @@
 # One command a task; `make help` lists them. Everything runs in .venv, which `make setup` builds.
 
 PYTHON ?= python3
+UV ?=
 BIN := .venv/bin
 STAMP := .venv/.petalfoil-installed
 JOBS ?= 2
@@ -13,6 +14,15 @@ export MKL_NUM_THREADS := 1
 # Compiled modules are kept, those that pytest rewrites too: without them every process compiles the package anew.
 unexport PYTHONDONTWRITEBYTECODE
 
+# With pip as it comes with Python, or quicker with uv: make test UV=uv
+ifdef UV
+VENV := $(UV) venv --quiet --seed --allow-existing --python $(PYTHON) .venv
+INSTALL := $(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt
+else
+VENV := $(PYTHON) -m venv .venv
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+endif
+
 .DEFAULT_GOAL := help
 .PHONY: help setup docs package ross demo test test-all test-studio test-classic test-long fuzz fuzz-verbs check lint types layers format bench constraints clean
 
@@ -23,21 +33,21 @@ setup: $(STAMP) ## Build .venv and install petalfoil with its tools
 
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "petalfoil needs Python 3.11 or newer")'
-	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	$(VENV)
+	$(INSTALL) --editable '.[dev]'
 	@touch $@
 
 DOCS_STAMP := .venv/.petalfoil-docs-installed
 
 $(DOCS_STAMP): $(STAMP)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[docs]'
+	$(INSTALL) --editable '.[docs]'
 	@touch $@
 
 docs: $(DOCS_STAMP) ## Documentation site in build/docs, offline
 	$(BIN)/python -m sphinx -W --keep-going -q -b html -d build/doctrees docs build/docs
 
 package: setup ## Wheel and sdist: built, checked, tried in empty environments (.ci/package)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[release]'
+	$(INSTALL) --editable '.[release]'
 	.ci/package
 
 ross: setup ## The tutorial with ROSS in an environment of its own (ROSS_PYTHON: a Python from 3.12 on)
@@ -53,7 +63,7 @@ test-studio: setup ## The page of `petalfoil studio` in a browser, under attack,
 	$(BIN)/python -m pytest -n 0 tests/studio
 
 test-classic: setup ## Tests of the paper's own method, with the numba that compiles it
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[classic]'
+	$(INSTALL) --editable '.[classic]'
 	$(BIN)/python -m pytest -n 0 -m "compiled and not long" tests
 
 test-all: setup ## All tests
