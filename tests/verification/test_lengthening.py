@@ -48,7 +48,8 @@ def test_a_length_beyond_which_nothing_is_found_is_told(closed: Case, monkeypatc
 
 
 @pytest.mark.long
-def test_a_bearing_that_nothing_else_answers() -> None:
-    """Random bearing 193: neither cold starts nor marches nor central paths lead to its equilibrium."""
-    found = lengthened(build_problem(fuzz.bearing(193)))
+@pytest.mark.parametrize("number", [193, 533])
+def test_a_bearing_that_nothing_else_answers(number: int) -> None:
+    """Neither cold starts nor marches nor central paths lead to its equilibrium."""
+    found = lengthened(build_problem(fuzz.bearing(number)))
     assert found.residual <= RESIDUAL_TOLERANCE

@@ -70,11 +70,6 @@ class BumpStrip:
         return slender * 0.5 * (t0 - s * c), slender * 0.5 * s**2, slender * 0.5 * (t0 + s * c)
 
     @property
-    def shallow_stiffness(self) -> float:
-        """`6 D / l^3`, the limit of a shallow bump on free feet [N/m per m]."""
-        return 6.0 * self.rigidity / self.half_length**3
-
-    @property
     def free_stiffness(self) -> float:
         """Line load over deflection of the crown, the feet sliding freely (B1) [N/m per m]."""
         return self._stiffness(self.integrals[0])
@@ -101,15 +96,6 @@ class BumpStrip:
             )
         A, B, _ = self.integrals
         return self._stiffness(A - friction * B if loading else A + friction * B)
-
-    def loop_energy(self, friction: float) -> float:
-        """Energy lost by friction while a unit line load comes and goes, per unit of length [J/m per (N/m)^2].
-
-        The feet slide out under the growing load, stick while it begins to fall, and slide back.
-        """
-        held = 1.0 / self.held_stiffness(membrane=False)
-        out, back = (1.0 / self.sliding_stiffness(friction, loading=loading) for loading in (True, False))
-        return 0.5 * (back - out) * (out - held) / (back - held)
 
     @property
     def sticking_friction(self) -> float:

@@ -288,10 +288,6 @@ def hysteresis(ds: xr.Dataset) -> Figure:
     return fig
 
 
-def _hysteresis_facts(ds: xr.Dataset) -> tuple[str, ...]:
-    return "friction between petals", f"energy loss per cycle {cycle(ds):.3g} µJ", labels.grid_fact(ds)
-
-
 def force_along(ds: xr.Dataset, leg: str) -> tuple[Floats, Floats]:
     """Displacement [µm] and force against it [N] of one leg, the turning point before it included."""
     legs = ds["leg"].to_numpy().tolist()
