@@ -28,9 +28,9 @@ class Row(NamedTuple):
 ABSENT = "-"
 FINEST_SHARE = 1e-7
 """Share of a value below which its error bar adds no digits."""
-ROUNDING = 1e-12
+ROUNDING = 1e-10
 """Part of a vector, of ambient pressure on the bearing for a force, of the journal's radius for a displacement, below
-which a component is rounding: thousands of pressures are added."""
+which a component is rounding: thousands of pressures are added, of equations that are solved to 1e-8."""
 _VECTORS = (
     (("force_x", "force_y"), "N"),
     (("load_x", "load_y"), "N"),

@@ -95,7 +95,8 @@ SIZES = {"ambient_pressure": 1e5, "journal_radius": 0.025, "length": 0.05}
     [
         ({"force_x": 5e-16, "force_y": -3e-15, "bearing_force": 3e-15}, ["0", "0", "0"]),
         ({"force_x": -7.64e-14, "force_y": 20.0, "bearing_force": 20.0}, ["0", "20.00", "20.00"]),
-        ({"force_x": 1e-8, "force_y": 1e-6, "bearing_force": 1e-6}, ["1.00e-08", "1.00e-06", "1.00e-06"]),
+        ({"force_x": 1e-7, "force_y": 1e-6, "bearing_force": 1e-6}, ["1.00e-07", "1.00e-06", "1.00e-06"]),
+        ({"force_x": 2.7e-9, "force_y": 86.4, "bearing_force": 86.4}, ["0", "86.40", "86.40"]),
         ({"eccentricity_x": 6.1e-21, "eccentricity_y": -1e-4}, ["0", "-100.0"]),
     ],
 )
