@@ -60,7 +60,7 @@ test: setup ## Fast tests
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "not slow and not long" tests
 
 test-studio: setup ## The page of `petalfoil studio` in a browser, under attack, and its processes
-	$(BIN)/python -m pytest -n 0 tests/studio
+	$(BIN)/python -m pytest -n 0 -m "not long" tests/studio
 
 test-classic: setup ## Tests of the paper's own method, with the numba that compiles it
 	$(INSTALL) --editable '.[classic]'

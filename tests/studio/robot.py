@@ -13,6 +13,7 @@ import socketio
 
 from tests.studio.server import Studio
 
+GRID = re.compile(r"cells_per_pitch = (\d+), [\d.]+ s")
 CLIENT = re.compile(r"'client_id': '([\w-]+)'")
 
 
@@ -70,6 +71,11 @@ class Robot:
                 return {row["name"]: row["now"] for row in rows}
         return {}
 
+    def grid(self) -> int:
+        """Cells per pitch of the present results; 0 before there are any."""
+        notes = (GRID.search(str(element.get("text", ""))) for element in self.elements.values())
+        return next((int(note[1]) for note in notes if note is not None), 0)
+
     @staticmethod
     def _label(element: dict[str, Any]) -> str:
         return str(element.get("props", {}).get("aria-label", ""))
@@ -91,8 +97,8 @@ class Robot:
             await self._socket.emit("javascript_response", answer)
 
 
-async def until(holds: Any, seconds: float = 60.0) -> None:
-    """Wait until something holds.
+async def until(holds: Any, seconds: float = 60.0, pause: float = 0.2) -> None:
+    """Wait until something holds, with a pause [s] between two looks: twenty robots that look often starve the server.
 
     Raises
     ------
@@ -101,4 +107,4 @@ async def until(holds: Any, seconds: float = 60.0) -> None:
     """
     async with asyncio.timeout(seconds):
         while not holds():
-            await asyncio.sleep(0.05)
+            await asyncio.sleep(pause)

@@ -24,6 +24,8 @@ MOST_WAITING = 8
 """Jobs that one session may have waiting: two of the sliders, a question, a file, and as many again."""
 MOST_STARTS_IN_A_ROW = 3
 """Workers that may end before they were ready until no more are started."""
+SPARE_AFTER = 4.0
+"""Time after which the spare workers follow one that is ready [s]: before, the page that opens needs the cores."""
 LARGE = 1.5e9
 """Memory of an idle worker above which it is replaced: what a large grid took is not always given back [bytes]."""
 
@@ -181,7 +183,8 @@ class Engine:
 
     def _grow(self) -> None:
         """Start the workers that are missing."""
-        for _ in range(self._size - len(self._workers) - len(self._starting)):
+        missing = self._size - len(self._workers) - len(self._starting) if self._is_open else 0
+        for _ in range(missing):
             task = asyncio.get_running_loop().create_task(self._add_worker())
             self._starting.add(task)
             task.add_done_callback(self._started)
@@ -201,7 +204,7 @@ class Engine:
         """What a worker reports: its first report, None, is that it is ready."""
         if message is None:
             self._failed_starts = 0
-            self._grow()
+            asyncio.get_running_loop().call_later(SPARE_AFTER, self._grow)
         elif isinstance(message, Progress):
             if worker.job is not None and worker.job.on_progress is not None and not worker.job.outcome.done():
                 worker.job.on_progress(message.part, message.text)
@@ -222,7 +225,7 @@ class Engine:
             words = f"the worker process ended unexpectedly ({ending(code)})"
             advice = "another one takes its place: ask again; a grid too fine for the memory may have been the reason"
             job.outcome.set_result(Failure(job.task.number, words, advice))
-        if self._is_open and self._failed_starts < MOST_STARTS_IN_A_ROW:
+        if self._failed_starts < MOST_STARTS_IN_A_ROW:
             self._grow()
         elif not self._workers:
             for waiting in self._waiting:

@@ -11,8 +11,10 @@ from typing import Any
 
 import uvicorn
 from fastapi import FastAPI
+from nicegui import __version__ as nicegui_version
 from nicegui import app as nicegui_app
 from nicegui import ui
+from nicegui.dependencies import esm_modules
 
 from petalfoil.studio.address import Address
 from petalfoil.studio.design import Design
@@ -20,6 +22,7 @@ from petalfoil.studio.engine import Engine
 from petalfoil.studio.guard import Guard
 from petalfoil.studio.page import Page
 from petalfoil.studio.session import Session
+from petalfoil.studio.tasks import warm_up
 
 MOST_SESSIONS = 64
 """Tabs whose state is kept; beyond, the one that was left longest ago is forgotten."""
@@ -35,6 +38,8 @@ WIDE = 900
 """Width of a window above which the case stands beside the pictures [px]."""
 LOOK = "[matchMedia('(prefers-color-scheme: dark)').matches, innerWidth]"
 """What the browser is asked for: whether its user prefers a dark page, and the width of its window."""
+CHARTS = "nicegui-plotly"
+"""Name of the script that draws the charts, 4.6 MB."""
 KEY = "petalfoil_session"
 """Name under which a tab keeps the key of its session and its own number, which a copy of the tab does not have."""
 
@@ -111,7 +116,9 @@ async def serve(
     @contextlib.asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         told(address.url)
+        loading = asyncio.get_running_loop().run_in_executor(None, warm_up)  # while the browser loads the page
         yield
+        await loading
         await engine.stop()
 
     application = _application(lifespan, Sessions(engine, design))
@@ -134,6 +141,7 @@ def _application(lifespan: Any, sessions: Sessions) -> FastAPI:
 
     @ui.page("/", title="petalfoil studio")
     async def index() -> None:
+        ui.add_head_html(f'<link rel="modulepreload" href="{charts_script()}">')
         await show(sessions)
 
     ui.run_with(
@@ -148,6 +156,12 @@ def _application(lifespan: Any, sessions: Sessions) -> FastAPI:
         binding_refresh_interval=None,
     )
     return application
+
+
+def charts_script() -> str:
+    """Address of the script that draws the charts: a browser that knows it loads it while the page is built."""
+    key = next(key for key, module in esm_modules.items() if module.name == CHARTS)
+    return f"/_nicegui/{nicegui_version}/esm/{key}/index.js"
 
 
 async def show(sessions: Sessions) -> None:
@@ -165,8 +179,8 @@ async def show(sessions: Sessions) -> None:
         tab[KEY] = (session.key, client.tab_id)
         session.is_dark = bool(is_dark)
     page = Page(session, is_wide=width > WIDE)
+    session.go_on()  # the first answer is computed while the page is built
     async with sessions.building:
         await page.build()
     session.listener = page.changed
     client.on_delete(lambda: sessions.leave(session, page))
-    session.go_on()

@@ -20,7 +20,7 @@ from petalfoil.results.record import Record, warnings_of_all
 from petalfoil.results.summary import without_rounding
 from petalfoil.results.tables import tables_of
 from petalfoil.studio.arrays import arrays_of
-from petalfoil.studio.design import without_files
+from petalfoil.studio.design import Design, without_files
 from petalfoil.studio.protocol import Found, Mapped, Searched, Task, Work
 from petalfoil.walls import Capability, wall_kind
 
@@ -53,6 +53,13 @@ def perform(task: Task, progress: Progress) -> Found | Mapped | Searched | bytes
         refuse_huge(case)
         return (study_tasks.mapped if task.work is Work.STUDY else study_tasks.searched)(task, case, progress)
     return file_of(task, analysis)
+
+
+def warm_up() -> None:
+    """Load what an answer needs, so that the first one is as quick as the others."""
+    for verb in ("balance", "solve"):
+        found_analysis(verb)
+    Design.starting().case()
 
 
 def found_analysis(verb: str) -> Analysis:

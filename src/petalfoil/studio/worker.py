@@ -16,10 +16,9 @@ from queue import SimpleQueue
 from typing import BinaryIO
 
 from petalfoil.errors import ConvergenceError, DefinitionError, PetalfoilError
-from petalfoil.studio.design import Design
 from petalfoil.studio.protocol import Cancel, Cancelled, Done, Failure, Message, Progress, Ready, Task, read_frame
 from petalfoil.studio.protocol import frame as framed
-from petalfoil.studio.tasks import found_analysis, perform
+from petalfoil.studio.tasks import perform, warm_up
 
 PROGRESS_STEP = 0.01
 """Part of a task after which its progress is told again: a hundred messages a task."""
@@ -84,13 +83,6 @@ def outcome(task: Task, inbox: Inbox, tell: Callable[[Message], None]) -> Messag
     except Exception as error:  # told on the page as a fault of the program, with its traceback on standard error
         sys.excepthook(type(error), error, error.__traceback__)
         return Failure(task.number, f"{type(error).__name__}: {error}", is_fault=True)
-
-
-def warm_up() -> None:
-    """Load what an answer needs, so that the first one is as quick as the others."""
-    for verb in ("balance", "solve"):
-        found_analysis(verb)
-    Design.starting().case()
 
 
 def main() -> None:
