@@ -28,6 +28,9 @@ MIXED = 3.0
 """Minimum film thickness over contact film thickness below which peaks of the surfaces touch now and then: the film
 parameter of mixed lubrication."""
 
+NO_FORCE = 1e-6
+"""Force, over ambient pressure times radius times length, below which a bearing carries nothing: its journal is
+centred, and the force is what the solution leaves."""
 WIDE = 0.1
 """Error bar over the result above which the result is known to its order of magnitude only."""
 
@@ -168,6 +171,11 @@ def warnings_of_errors(scalars: Scalars, errors: Mapping[str, float]) -> list[st
         Their error bars.
     """
     wide = {name: errors[name] / abs(number(scalars, name)) for name in JUDGED if name in errors and scalars.get(name)}
+    least = NO_FORCE * math.prod(
+        number(scalars, name, 0.0) for name in ("ambient_pressure", "journal_radius", "length")
+    )
+    if errors.get("bearing_force", math.inf) < least:  # a centred journal
+        wide.pop("bearing_force", None)
     told = {name: share for name, share in wide.items() if share > WIDE}
     if not told:
         return []

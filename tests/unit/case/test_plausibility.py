@@ -133,6 +133,9 @@ def test_a_wide_error_bar_is_warned_of() -> None:
     assert told.startswith("min_film_thickness: its error bar is 25 % of it (and those of bearing_force), over 10 %")
     assert warnings_of_errors(scalars, {"bearing_force": 0.99, "force_x": 1.0, "min_film_thickness": 1e-8}) == []
     assert warnings_of_errors({"bearing_force": 0.0}, {"bearing_force": 1.0}) == []
+    sizes = {"ambient_pressure": 1e5, "journal_radius": 25e-3, "length": 50e-3}  # 125 N
+    assert warnings_of_errors(sizes | {"bearing_force": 2e-9}, {"bearing_force": 2e-6}) == []
+    assert warnings_of_errors(sizes | {"bearing_force": 2e-9}, {"bearing_force": 2e-4}) != []
 
 
 @pytest.mark.slow
