@@ -56,6 +56,10 @@ class Argument(ABC):
         """A default value for the help text."""
         return f"{value}"
 
+    def option_name(self, name: str) -> str:
+        """The option of the command line for the argument of a name."""
+        return f"--{self.option or name.replace('_', '-')}"
+
     def named(self, name: str, given: object) -> Any:
         """Read what was given; a refusal names the argument.
 

@@ -80,7 +80,7 @@ def call(analysis: Analysis, given: dict[str, Any]) -> None:
     resume = given.pop("resume", None)
     with handled(as_json):
         outputs = Outputs.checked(as_json=as_json, out=out, plot=plot, exports=chosen(analysis.exports, given))
-        known_as = {name: option_of(name, argument) for name, argument in analysis.arguments.items()}
+        known_as = {name: argument.option_name(name) for name, argument in analysis.arguments.items()}
         _refuse_overwriting(analysis, given, out)
         values = analysis.read({name: given[name] for name in known_as}, known_as)
         values = _fit_exports(analysis, given, values, known_as)
@@ -91,15 +91,10 @@ def call(analysis: Analysis, given: dict[str, Any]) -> None:
         outputs.deliver(answer, stopped=stopped)
 
 
-def option_of(name: str, argument: Argument) -> str:
-    """The option of an argument."""
-    return f"--{argument.option or name.replace('_', '-')}"
-
-
 def argument_options(analysis: Analysis) -> list[inspect.Parameter]:
     """The options of the arguments, in their order: texts and flags, absent where nothing is given."""
     options = []
-    taken = {option_of(name, argument) for name, argument in analysis.arguments.items()}
+    taken = {argument.option_name(name) for name, argument in analysis.arguments.items()}
     for name, argument in analysis.arguments.items():
         default, is_flag = analysis.default(name), isinstance(argument, Flag)
         shown = argument.text(default) if default not in (REQUIRED, None) and not is_flag else False
@@ -119,7 +114,7 @@ def _names(name: str, argument: Argument, taken: set[str]) -> list[str]:
     """The names of an option; its second one, and that of the Python argument, only where no other argument has it."""
     others = [f"--{argument.also}"] if argument.also else []
     others.append(f"--{name.replace('_', '-')}")
-    return [option_of(name, argument), *(other for other in dict.fromkeys(others) if other not in taken)]
+    return [argument.option_name(name), *(other for other in dict.fromkeys(others) if other not in taken)]
 
 
 def _refuse_overwriting(analysis: Analysis, given: dict[str, Any], out: Path | None) -> None:
@@ -129,7 +124,7 @@ def _refuse_overwriting(analysis: Analysis, given: dict[str, Any], out: Path | N
         if isinstance(argument, StoredResult) and out is not None and source is not None:
             if out.resolve() == source.resolve():
                 raise UsageError(
-                    f"--out: {out} is what {option_of(name, argument)} reads; give another name, or it would be lost"
+                    f"--out: {out} is what {argument.option_name(name)} reads; give another name, or it would be lost"
                 )
 
 

@@ -15,7 +15,7 @@ import typer
 from petalfoil.analysis.declaration import Analysis
 from petalfoil.analysis.progress_bar import bar
 from petalfoil.case import Case
-from petalfoil.cli.commands import CASE_FILE, JSON, KEYWORD, argument_options, command, option_of
+from petalfoil.cli.commands import CASE_FILE, JSON, KEYWORD, argument_options, command
 from petalfoil.cli.failures import handled
 from petalfoil.cli.signals import exit_code_of
 from petalfoil.cli.streams import say
@@ -236,7 +236,7 @@ def study_command(name: str, words: list[str]) -> Any:
     options = [inspect.Parameter("case", KEYWORD, annotation=CASE_FILE)]
     options += [inspect.Parameter(key, KEYWORD, annotation=a, default=d) for key, (a, d) in own.items()]
     for option in argument_options(analysis):
-        taken = option_of(option.name, analysis.arguments[option.name]) in known or option.name in own
+        taken = analysis.arguments[option.name].option_name(option.name) in known or option.name in own
         if not taken and option.name not in declared.hidden:
             options.append(option)
 
@@ -261,7 +261,7 @@ def call(declared: StudyCommand, analysis: Analysis, given: dict[str, Any]) -> N
     out, as_json = given["out"], given["as_json"]
     with handled(as_json):
         arguments = {name: given[name] for name in analysis.arguments if name in given and name not in declared.options}
-        known_as = {name: option_of(name, argument) for name, argument in analysis.arguments.items()}
+        known_as = {name: argument.option_name(name) for name, argument in analysis.arguments.items()}
         required = [n for n in known_as if analysis.default(n) is inspect.Parameter.empty and arguments.get(n) is None]
         if required:
             raise UsageError(f"{known_as[required[0]]} is missing: {analysis.verb} needs it")

@@ -162,7 +162,7 @@ def _analysis(verb: str) -> Analysis:
 def _option(analysis: Analysis, name: str, value: Any) -> str:
     """An argument as an option of the command line."""
     argument = analysis.arguments[name]
-    option = f"--{argument.option or name.replace('_', '-')}"
+    option = argument.option_name(name)
     if isinstance(value, bool):
         return option
     unit = getattr(argument, "unit", "")

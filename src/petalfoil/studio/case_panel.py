@@ -13,6 +13,8 @@ from petalfoil.studio.session import Session
 
 THROTTLE = 0.08
 """Time between two values of a slider that moves [s]."""
+NOT_GIVEN = "not given"
+"""What stands in the control of a key that the case leaves out and that has no value of its own then."""
 OPEN_AT_FIRST = ("petals", "operation")
 """Tables that are unfolded when the page opens."""
 
@@ -66,7 +68,7 @@ class KeyControl:
         if entry.default is not None:
             self._field.props["placeholder"] = entry.text(entry.default)
         elif not entry.is_required:
-            self._field.props["placeholder"] = "not given"
+            self._field.props["placeholder"] = NOT_GIVEN
         self._field.tooltip(tip)
         self._field.on("keydown.enter", self._typed).on("blur", self._typed)
         self._sliders = ui.element("div").classes("sliders")
@@ -126,6 +128,12 @@ class KeyControl:
         """Mark what is assumed: a default that the case does not state."""
         assumed = value is None and not self.entry.is_required
         self._field.classes(add="assumed") if assumed else self._field.classes(remove="assumed")
+        if self.entry.control is Control.CHOICE:  # a choice has no placeholder
+            if self._word(value) is None:
+                self._field.props["display-value"] = NOT_GIVEN
+            else:
+                self._field.props.pop("display-value", None)
+            self._field.update()
 
 
 class CasePanel:
@@ -135,37 +143,38 @@ class CasePanel:
     ----------
     session : Session
         Whose case is edited.
+    model : type of Case
+        Whose keys are shown: with the table of a registered wall where the design has one.
     on_toggle : callable
         Called when a table was added or taken away.
     """
 
-    def __init__(self, session: Session, on_toggle: Callable[[], None]) -> None:
+    def __init__(self, session: Session, model: type[Case], on_toggle: Callable[[], None]) -> None:
         self._session, self._on_toggle = session, on_toggle
         self._controls: dict[str, KeyControl] = {}
+        self._folds: dict[str, ui.expansion] = {}
         self._general = ui.label().classes("refusal").props("role=alert")
-        for section in sections(self._model()):
+        for section in sections(model):
             self._build(section)
         self.show_problems()
 
     def show_problems(self) -> None:
-        """Show each problem beside its control, and what belongs to none above all."""
+        """Show each problem beside its control, whose table is unfolded, and what belongs to none above all."""
         problems = self._session.problems
+        for name in {path.rpartition(".")[0] for path in problems} & self._folds.keys():
+            self._folds[name].set_value(True)
         for path, control in self._controls.items():
             control.refuse(problems.get(path, ""))
         others = [f"{key}: {text}" if key else text for key, text in problems.items() if key not in self._controls]
         self._general.set_text("; ".join(others))
         self._general.set_visibility(bool(others))
 
-    def _model(self) -> type[Case]:
-        """The type of the case, with the table of a registered wall where the design has one."""
-        case = self._session.case()
-        return Case if case is None else type(case)
-
     def _build(self, section: Section) -> None:
         """A table that is folded is built when it is opened: most pages never need it."""
         is_there = not section.name or section.name in self._session.design.tables or not section.is_optional
         opened = section.name in OPEN_AT_FIRST and is_there
-        with ui.expansion(section.name or "case", value=opened).classes("table-of-case") as fold:
+        fold = self._folds[section.name] = ui.expansion(section.name or "case", value=opened)
+        with fold.classes("table-of-case"):
             fold.props["caption"] = _short(section.title) if section.name else ""
             fold.props("dense switch-toggle-side")
             place = ui.element("div")

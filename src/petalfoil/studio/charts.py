@@ -15,7 +15,7 @@ from petalfoil.results.schema import SCALARS, VARIABLES, Shown
 from petalfoil.results.summary import shown_as
 from petalfoil.studio.motion_chart import motion_chart
 from petalfoil.studio.protocol import Found, Mapped, Searched
-from petalfoil.studio.section_chart import VIRIDIS, Chart, Floats, State, Trace
+from petalfoil.studio.section_chart import VIRIDIS, Chart, Floats, State, Trace, note_at_foot
 from petalfoil.studio.themes import Theme
 from petalfoil.units import format_quantity
 
@@ -114,8 +114,9 @@ def space_chart(found: Found, theme: Theme) -> Chart:
         f"{name}axis": {"title": {"text": text}, **quiet}
         for name, text in zip("xyz", ("z [mm]", "x", "y"), strict=True)
     }
-    scene = axes | {"aspectmode": "data", "camera": {"eye": {"x": 1.6, "y": 1.1, "z": 0.9}}}
-    layout = theme.layout(scene=scene, uirevision="space", margin={"l": 0, "r": 0, "t": 0, "b": 0})
+    scene = axes | {"aspectmode": "data", "camera": {"eye": {"x": 1.9, "y": 1.3, "z": 1.05}}}
+    note = note_at_foot(f"radial clearance drawn ×{state.stretch.scale:g}", theme)
+    layout = theme.layout(scene=scene, uirevision="space", margin={"l": 0, "r": 0, "t": 0, "b": 0}, annotations=[note])
     return {"data": traces, "layout": layout, "config": theme.config("space")}
 
 
@@ -152,6 +153,12 @@ def axes_of(found: Found) -> list[str]:
     if not found.is_series:
         return []
     return [name for name in found.arrays if name != "leg"]
+
+
+def is_drawn(found: Found) -> bool:
+    """Whether a series or a table over frequency has more than one point to draw."""
+    over = found.arrays.get("whirl_frequency", next(iter(found.arrays.values()), np.empty(0)))
+    return len(over) > 1
 
 
 def line_chart(found: Found, names: tuple[str, str], theme: Theme) -> Chart:

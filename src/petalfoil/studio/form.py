@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 import re
 import typing
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum, StrEnum
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -18,6 +18,9 @@ from petalfoil.case.definition import Definition
 from petalfoil.case.number_fields import Count, PerPetal, PerPetalOrWord, Quantity, QuantityOrWord, Range
 from petalfoil.errors import UnitError
 from petalfoil.units import format_quantity, parse_quantity
+
+if TYPE_CHECKING:
+    from petalfoil.analysis.arguments import Argument
 
 STEPS = 200
 """Steps of a slider: about one for two of its pixels."""
@@ -209,6 +212,30 @@ def _kinds(annotation: Any) -> Iterator[Any]:
     yield annotation
     for inner in typing.get_args(annotation):
         yield from _kinds(inner)
+
+
+# ---------------------------------------------------------------------------------------------- arguments
+
+
+def label_of_argument(name: str) -> str:
+    """Label of the field of an argument of an analysis."""
+    return name.replace("_", " ")
+
+
+def with_labels(text: str, arguments: Mapping[str, Argument]) -> str:
+    """A text of the program, such as a refusal, in which arguments are called as their fields are.
+
+    Parameters
+    ----------
+    text : str
+        Text that names options of the command line, ``--min-film``, or arguments of Python, ``min_film_thickness``.
+    arguments : mapping
+        Arguments of the analysis by name.
+    """
+    labels = {name: label_of_argument(name) for name in arguments if "_" in name}
+    labels |= {one.option_name(name): f"'{label_of_argument(name)}'" for name, one in arguments.items()}
+    known = "|".join(sorted(map(re.escape, labels), key=len, reverse=True))
+    return re.sub(rf"(?<![\w-])({known})(?![\w-])", lambda found: labels[found[1]], text) if known else text
 
 
 # ---------------------------------------------------------------------------------------------- sliders

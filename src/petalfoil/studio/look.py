@@ -30,10 +30,10 @@ body { background: var(--ground); color: var(--ink); }
 .key { padding: 2px 2px 6px; width: 100%; }
 .key .q-field { width: 100%; }
 .key .q-field { font-size: 14px; }
-.key .q-field--dense .q-field__bottom { min-height: 0; padding-top: 2px; }
+.key .q-field--dense .q-field__bottom { min-height: 0; padding: 2px 0 6px; }
 .key .q-field__messages { line-height: 1.25; color: var(--failed); }
 .key .assumed .q-field__label { color: var(--assumed); font-style: italic; }
-.key .assumed .q-field__label::after { content: " · assumed"; }
+.key .assumed .q-field__label::after { content: " · assumed"; padding-right: 3px; }
 .key .q-slider { margin: 0 6px; width: calc(100% - 12px); }
 .board { display: grid; gap: 12px; padding: 12px; grid-template-columns: minmax(0, 1.15fr) minmax(330px, 1fr);
          align-items: start; }
@@ -53,6 +53,8 @@ body { background: var(--ground); color: var(--ink); }
                            font-variant-numeric: tabular-nums; border-color: var(--line) !important;
                            white-space: pre-wrap !important; }
 .results th { color: var(--faint); }
+.results.list { max-width: 560px; }
+.results .figure { white-space: nowrap !important; }
 .results tbody tr { cursor: default; } .history tbody tr { cursor: pointer; }
 .results .warned { color: var(--warned); font-weight: 600; }
 .results .failed { color: var(--failed); font-weight: 600; }
@@ -72,6 +74,7 @@ body { background: var(--ground); color: var(--ink); }
 :focus-visible { outline: 2px solid var(--link); outline-offset: 2px; }
 @media (max-width: 1100px) { .board { grid-template-columns: minmax(0, 1fr); } .title { max-width: 50vw; } }
 @media (max-width: 600px) { .board { padding: 6px; gap: 8px; } .section-chart { height: 340px; }
-                            .title { max-width: 100%; } }
+                            .title { max-width: 100%; }
+                            .results th, .results td { padding: 2px 3px !important; font-size: 12px; } }
 """
 """Rules for the page; colours that stand on panels have a contrast of at least 4.5 to 1."""

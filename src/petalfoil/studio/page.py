@@ -8,6 +8,7 @@ from typing import Any
 
 from nicegui import events, ui
 
+from petalfoil.case import Case
 from petalfoil.errors import DefinitionError
 from petalfoil.results.summary import cell
 from petalfoil.studio.case_panel import CasePanel
@@ -172,9 +173,10 @@ class Page:
         return DARK if self.session.is_dark else LIGHT
 
     def _rebuild_case(self) -> None:
+        case = self.session.case()  # what is wrong is told to the panel that is still there
         self._case_column.clear()
         with self._case_column:
-            self._case_panel = CasePanel(self.session, self._rebuild_case)
+            self._case_panel = CasePanel(self.session, Case if case is None else type(case), self._rebuild_case)
 
     def _case_panel_problems(self) -> None:
         self._case_panel.show_problems()

@@ -12,8 +12,9 @@ from petalfoil.analysis import known_verbs
 from petalfoil.analysis.arguments import Argument, Flag, StoredResult
 from petalfoil.analysis.declaration import Analysis
 from petalfoil.results.tables import TextTable
-from petalfoil.studio.charts import axes_of, chart_of, titled, usual_axes
+from petalfoil.studio.charts import axes_of, chart_of, is_drawn, titled, usual_axes
 from petalfoil.studio.downloads import download_menu
+from petalfoil.studio.form import label_of_argument, with_labels
 from petalfoil.studio.protocol import Found
 from petalfoil.studio.session import Session
 from petalfoil.studio.state import Shown
@@ -62,7 +63,7 @@ class Question:
 
     def show(self) -> None:
         """Show the answer, or why there is none."""
-        failure = self._session.failures.get(self.verb, "")
+        failure = with_labels(self._session.failures.get(self.verb, ""), self._analysis.arguments)
         self._failure.set_text(failure)
         self._failure.set_visibility(bool(failure))
         shown = self._session.answers.get(self.verb)
@@ -85,13 +86,13 @@ class Question:
 
     def _field(self, name: str, argument: Argument) -> Any:
         default = self._analysis.default(name)
-        label = name.replace("_", " ")
+        label, help_text = label_of_argument(name), with_labels(argument.help, self._analysis.arguments)
         if isinstance(argument, Flag):
-            return ui.switch(label, value=False).props("dense").tooltip(argument.help)
+            return ui.switch(label, value=False).props("dense").tooltip(help_text)
         must = default is inspect.Parameter.empty
         example = EXAMPLES.search(argument.help)
         field = ui.input(label, value=example[1] if example and must else "").props("dense stack-label")
-        field.tooltip(argument.help)
+        field.tooltip(help_text)
         hint = f"such as {example[1]}" if example else argument.metavar.lower()
         field.props["placeholder"] = hint if must or default is None else argument.text(default)
         field.props["aria-label"] = f"{self.verb} {label}"
@@ -101,6 +102,7 @@ class Question:
         self._answer.clear()
         with self._answer:
             names = ["stiffness", "damping"] if "stiffness" in found.arrays else axes_of(found)
+            names = names if is_drawn(found) else []
             self._axes = names[:1] if "stiffness" in found.arrays else list(usual_axes(names)) if len(names) > 1 else []
             self._choices(names)
             if self._axes or "time" in found.arrays:
@@ -119,7 +121,8 @@ class Question:
         with ui.row().classes("axes"):
             for number, name in enumerate(self._axes):
                 label = "draw" if number == len(self._axes) - 1 else "over"
-                choice = ui.select({one: titled(one) for one in names}, value=name, label=label).props("dense")
+                words = {one: one if one in ("stiffness", "damping") else titled(one) for one in names}
+                choice = ui.select(words, value=name, label=label).props("dense")
                 choice.on_value_change(lambda event, number=number: self._choose(number, event.value))
 
     def _choose(self, number: int, name: str) -> None:
@@ -146,7 +149,7 @@ def show_table(content: TextTable) -> None:
     table = ui.table(columns=columns, rows=rows, row_key="id").classes("results").props("dense hide-pagination")
     table.props["rows-per-page-options"] = [0]
     if not headings:
-        table.props("hide-header")
+        table.props("hide-header").classes("list")
 
 
 class Questions:

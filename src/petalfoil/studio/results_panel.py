@@ -8,26 +8,36 @@ from typing import Any
 
 from nicegui import ui
 
-from petalfoil.results.summary import cell, in_order, with_bar
+from petalfoil.results.summary import cell, in_order, shown_as, with_bar
 from petalfoil.studio.downloads import quiet_button
 from petalfoil.studio.protocol import Found
 from petalfoil.studio.session import Session
 from petalfoil.studio.state import Shown
 
-HIDDEN = {"solution_path", "known_equilibria", "factorizations", "iterations", "wall_time", "force_residual"}
+HIDDEN = {
+    "solution_path", "known_equilibria", "factorizations", "iterations", "wall_time", "force_residual",
+    "contact_model", "nodal_force_difference",
+}  # fmt: skip
 """How the state was computed: shown where it is asked for."""
+ANGLES = ("deg",)
+"""Units of what differs by an amount, not by a part: an angle has no zero of its own."""
+FIGURE = {"classes": "figure"}
 COLUMNS = (
     {"name": "label", "label": "result", "field": "label", "align": "left"},
-    {"name": "pinned", "label": "A", "field": "pinned", "align": "right"},
-    {"name": "now", "label": "now", "field": "now", "align": "right"},
-    {"name": "bar", "label": "±", "field": "bar", "align": "right"},
-    {"name": "difference", "label": "difference", "field": "difference", "align": "right"},
+    {"name": "pinned", "label": "A", "field": "pinned", "align": "right", **FIGURE},
+    {"name": "now", "label": "now", "field": "now", "align": "right", **FIGURE},
+    {"name": "bar", "label": "±", "field": "bar", "align": "right", **FIGURE},
+    {"name": "difference", "label": "difference", "field": "difference", "align": "right", **FIGURE},
     {"name": "unit", "label": "", "field": "unit", "align": "left"},
 )
 LEVELS = '<q-td :props="props" :class="props.row.level">{{ props.value }}</q-td>'
 """A cell whose colour is that of its row; its text is text, whatever it holds."""
+JUDGED_ALONE = {"residual"}
+"""Results whose difference from A says nothing: both are below their limit or not."""
 LEAST_DIFFERENCE = 1e-4
 """Difference over the pinned value that is shown as none."""
+LEAST_TURN = 1e-3
+"""Difference of two angles that is shown as none [deg]."""
 
 
 class ResultsPanel:
@@ -107,7 +117,7 @@ def rows_of(found: Found, pinned: Found | None) -> list[dict[str, Any]]:
                 "bar": bar,
                 "unit": shown.unit,
                 "pinned": cell(name, before[name]).value if name in before else "",
-                "difference": _difference(before.get(name), value, _size(name, before)),
+                "difference": "" if name in HIDDEN | JUDGED_ALONE else _difference(name, before, value),
                 "level": level_of(name, value, warned),
             }
         )
@@ -128,12 +138,18 @@ def _size(name: str, before: Mapping[str, Any]) -> float:
     return math.hypot(*(float(value) for value in pair if isinstance(value, float | int)))
 
 
-def _difference(before: Any, now: Any, size: float) -> str:
-    """Difference from A in percent of a size; words where they differ."""
+def _difference(name: str, pinned: Mapping[str, Any], now: Any) -> str:
+    """Difference from A in percent, of an angle in degrees; a word where words differ."""
+    before = pinned.get(name)
     if before is None or isinstance(before, bool | str) or isinstance(now, bool | str):
         return "changed" if before is not None and before != now else ""
     if not (math.isfinite(before) and math.isfinite(now)) or before == now:
         return ""
+    shown = shown_as(name)
+    if shown.unit in ANGLES:
+        turned = math.remainder(shown.factor * (now - before), 360.0)
+        return "" if abs(turned) < LEAST_TURN else f"{turned:+.3g} {shown.unit}"
+    size = _size(name, pinned)
     if size == 0.0:
         return "from 0"
     part = (now - before) / size

@@ -42,6 +42,8 @@ CONTACTS = {
     "petal_contact_pressure": ("petal on petal", "#CC79A7"),
     "bushing_contact_pressure": ("petal on bushing", "#E69F00"),
 }
+NO_FORCE = 1e-6
+"""Force, over ambient pressure times the square of the radius, below which none is drawn: that of a centred journal."""
 CIRCLE = np.linspace(0.0, 2.0 * np.pi, 181)
 
 
@@ -74,6 +76,10 @@ class State:
     def scalar(self, name: str) -> float:
         """A result; NaN where there is none."""
         return float(self.found.scalars.get(name, math.nan))
+
+    def vector(self, name: str) -> Floats:
+        """Both components of a vector [SI]."""
+        return np.array([self.scalar(f"{name}_x"), self.scalar(f"{name}_y")])
 
     def array(self, name: str) -> Floats:
         """An array."""
@@ -113,14 +119,16 @@ def section_chart(found: Found, theme: Theme) -> Chart:
         Colours.
     """
     state = State.of(found)
-    traces = [*_solids(state, theme), *_petals(state, theme), *_film(state), *_foil(state, theme), *_contacts(state)]
+    solids = (*_solids(state, theme), *_petals(state, theme), *_film(state), *_foil(state, theme))
+    arrows = list(_arrows(state, theme))
+    traces = [*solids, *_contacts(state), *(_named(words, colour) for words, colour, _ in arrows)]
     bore, reach = state.stretch.bushing, 1.2 * state.stretch.bushing
     axis = {"visible": False, "range": [-reach, reach], "fixedrange": False}
-    note = f"radial clearance drawn ×{state.stretch.scale:g}"
+    note = note_at_foot(f"radial clearance drawn ×{state.stretch.scale:g}", theme)
     layout = theme.layout(
         xaxis=axis,
         yaxis=axis | {"scaleanchor": "x"},
-        annotations=[*_arrows(state, theme), *_angles(bore, theme), _note(note, theme)],
+        annotations=[*(arrow for _, _, arrow in arrows), *_rotation(state, theme), *_angles(bore, theme), note],
         legend={"orientation": "h", "y": -0.02, "x": 0.5, "xanchor": "center", "yanchor": "top"},
         margin={"l": 8, "r": 8, "t": 8, "b": 44},
         uirevision="section",
@@ -270,26 +278,39 @@ def _contacts(state: State) -> Iterator[Trace]:
         }  # fmt: skip
 
 
-def _arrows(state: State, theme: Theme) -> Iterator[Mapping[str, Any]]:
-    """Displacement (to the scale of the drawing) and force on the journal, at its centre; the direction of rotation."""
-    e = state.stretch.scale * np.array([state.scalar("eccentricity_x"), state.scalar("eccentricity_y")])
-    force = np.array([state.scalar("force_x"), state.scalar("force_y")])
+def _arrows(state: State, theme: Theme) -> Iterator[tuple[str, str, Mapping[str, Any]]]:
+    """Displacement (to the scale of the drawing) and force on the journal: words, colour, arrow.
+
+    The arrow of the displacement is broad, so that a force along it does not hide it.
+    """
+    e = state.stretch.scale * state.vector("eccentricity")
+    force = state.vector("force")
     size = float(np.hypot(*force))
     if np.hypot(*e) > 0.01 * state.stretch.bore:
-        yield _arrow(np.zeros(2), e, theme.ink)
-    if math.isfinite(size) and size > 0.0:
+        yield "displacement of the journal", theme.faint, _arrow(np.zeros(2), e, theme.faint, 5.0)
+    if size > NO_FORCE * state.scalar("ambient_pressure") * state.stretch.bore**2:
         drawn = float(state.stretch.radius(np.array(state.scalar("journal_radius"))))
-        along = 0.42 * drawn * force / size
-        yield _arrow(e, e + along, theme.accent)
+        yield "force on it", theme.accent, _arrow(e, e + 0.42 * drawn * force / size, theme.accent, 2.0)
+
+
+def _named(words: str, colour: str) -> Trace:
+    """An entry of the legend for an arrow, which has none of its own."""
+    look = {"line": {"color": colour, "width": 3}, "hoverinfo": "skip"}
+    return {"type": "scatter", "mode": "lines", "x": [None], "y": [None], "name": words, **look}
+
+
+def _rotation(state: State, theme: Theme) -> Iterator[Mapping[str, Any]]:
     if state.scalar("speed") > 0.0:
+        x, y = state.stretch.scale * state.vector("eccentricity")
         spot = {"xref": "x", "yref": "y", "showarrow": False, "font": {"size": 20, "color": theme.ink}}
-        yield {"x": float(e[0]), "y": float(e[1] - 0.14 * state.stretch.bore), "text": "↺ ω", **spot}
+        yield {"x": float(x), "y": float(y - 0.14 * state.stretch.bore), "text": "↺ ω", **spot}
 
 
-def _arrow(tail: Floats, tip: Floats, colour: str) -> dict[str, Any]:
-    base = {"xref": "x", "yref": "y", "axref": "x", "ayref": "y", "showarrow": True, "arrowhead": 2, "arrowsize": 1.2}
+def _arrow(tail: Floats, tip: Floats, colour: str, width: float) -> dict[str, Any]:
+    head = {"showarrow": True, "arrowhead": 2, "arrowsize": 1.2 if width < 3.0 else 0.6}
+    base = {"xref": "x", "yref": "y", "axref": "x", "ayref": "y", **head}
     places = {"x": float(tip[0]), "y": float(tip[1]), "ax": float(tail[0]), "ay": float(tail[1])}
-    return base | places | {"arrowcolor": colour, "arrowwidth": 2, "text": ""}
+    return base | places | {"arrowcolor": colour, "arrowwidth": width, "text": ""}
 
 
 def _angles(bore: float, theme: Theme) -> Iterator[dict[str, Any]]:
@@ -299,6 +320,7 @@ def _angles(bore: float, theme: Theme) -> Iterator[dict[str, Any]]:
         yield place | {"showarrow": False, "font": {"size": 11, "color": theme.faint}}
 
 
-def _note(text: str, theme: Theme) -> dict[str, Any]:
+def note_at_foot(text: str, theme: Theme) -> dict[str, Any]:
+    """A small text at the lower left."""
     place = {"xref": "paper", "yref": "paper", "x": 0.0, "y": 0.0, "xanchor": "left", "yanchor": "bottom"}
     return place | {"text": text, "showarrow": False, "font": {"size": 11, "color": theme.faint}}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -14,7 +15,7 @@ from petalfoil.analysis import known_verbs
 from petalfoil.case import Case, ModelKind
 from petalfoil.case import toml as case_toml
 from petalfoil.errors import DefinitionError, UsageError
-from petalfoil.studio.charts import chart_of, film_chart, map_chart, space_chart, unit_of, usual_axes
+from petalfoil.studio.charts import chart_of, film_chart, is_drawn, map_chart, space_chart, unit_of, usual_axes
 from petalfoil.studio.downloads import csv_of
 from petalfoil.studio.protocol import Found, Mapped, Task, Work
 from petalfoil.studio.results_panel import rows_of
@@ -120,6 +121,13 @@ def test_the_difference_from_a_pinned_design_is_in_percent(state: Found) -> None
     assert rows_of(state, None)[0]["pinned"] == ""
 
 
+def test_the_difference_of_an_angle_is_an_angle(state: Found) -> None:
+    name = "min_film_thickness_angle"
+    turned = dict(state.scalars) | {name: float(state.scalars[name]) - math.radians(2.0), "residual": 1.0}
+    rows = {row["name"]: row["difference"] for row in rows_of(state, Found(verb="balance", tables=(), scalars=turned))}
+    assert (rows[name], rows["residual"]) == ("+2 deg", "")
+
+
 def test_warnings_colour_their_rows() -> None:
     warned = Found(verb="solve", tables=(), scalars={"max_bending_stress": 3e9}, warnings=("max_bending_stress: high",))
     assert rows_of(warned, None)[0]["level"] == "warned"
@@ -195,3 +203,22 @@ def test_a_foil_that_deflects_stands_inside_the_bushing() -> None:
         return float(np.max(np.hypot(shapes[name]["x"], shapes[name]["y"])))
 
     assert answer.scalars["bushing_radius"] < reach("foil") < reach("bushing") / 1.05
+
+
+def test_no_force_is_drawn_on_a_centred_journal(state: Found) -> None:
+    names = {trace["name"] for trace in section_chart(state, LIGHT)["data"] if "name" in trace}
+    assert {"displacement of the journal", "force on it"} <= names
+    centred = dict(state.scalars) | {"force_x": 1e-9, "force_y": 2e-9, "eccentricity_x": 0.0, "eccentricity_y": 0.0}
+    names = {
+        trace["name"] for trace in section_chart(replace(state, scalars=centred), LIGHT)["data"] if "name" in trace
+    }
+    assert not {"displacement of the journal", "force on it"} & names
+
+
+def test_a_single_frequency_is_a_table() -> None:
+    one = Found(
+        verb="coefficients", tables=(), scalars={}, arrays={"whirl_frequency": np.ones(1), "stiffness": np.ones(1)}
+    )
+    assert not is_drawn(one)
+    assert is_drawn(replace(one, arrays={"whirl_frequency": np.ones(2)}))
+    assert not is_drawn(replace(one, arrays={}))
