@@ -75,9 +75,10 @@ def test_the_targets_of_make_exist() -> None:
     assert {"demo", "docs"} <= named <= targets
 
 
-def test_it_is_short_and_has_one_picture() -> None:
+def test_it_is_short_and_has_a_picture_of_the_bearing_and_one_of_the_studio() -> None:
     assert len(text(README).splitlines()) <= LONGEST
-    assert len(re.findall(r"^!\[", text(README), re.MULTILINE)) == 1
+    pictures = re.findall(r"^!\[.*\]\((.*)\)$", text(README), re.MULTILINE)
+    assert pictures == ["docs/images/petal_bearing.png", "docs/images/studio.png"]
 
 
 def test_the_pictures_are_small() -> None:
