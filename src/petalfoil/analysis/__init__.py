@@ -38,6 +38,7 @@ What they share:
 `hysteresis.py`        the same at rest, with friction between petals
 `speeds.py`            a load followed over speed
 `load_limit.py`        the largest load in one direction that keeps to limits
+`load_ray.py`          balances of loads of one direction, and how far they are from limits
 `crossings.py`         speeds at which the contact fraction crosses a limit
 `variation.py`         a case at values of one of its parameters
 `derivatives.py`       exact derivatives of the results of an equilibrium

@@ -16,7 +16,8 @@ from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.fields import all_fields
 from petalfoil.analysis.heat_results import heat_results
-from petalfoil.analysis.load_limit import Capacity, Limits, LoadRay, largest_load
+from petalfoil.analysis.load_limit import Capacity, largest_load
+from petalfoil.analysis.load_ray import Limits, LoadRay
 from petalfoil.analysis.operating_point import at
 from petalfoil.analysis.other_bearing import rotor_parts
 from petalfoil.analysis.records import asked_position, effort, geometry, position, record_of
@@ -191,7 +192,7 @@ class Search:
         for angle in map(float, self.asked.directions):
             start = (self.guess(angle, speed), self.known[angle]) if angle in self.known else beside
             direction = (round(math.cos(angle), 15), round(math.sin(angle), 15))
-            ray = LoadRay(here, direction, self.asked.limits, None if start is None else start[1])
+            ray = LoadRay(here, direction, self.asked.limits, None if start is None else start[1], points_alone=True)
             capacity = largest_load(ray, FIRST * ray.unit if start is None else start[0])
             if capacity.at is not None:
                 beside = capacity.at.size, capacity.at.found.answer
@@ -325,7 +326,7 @@ def point(search: Search, speed: float) -> Record:
         ended = Outcome(converged=False, status=f"not converged: {first.status}", residual=math.nan)
         parts += (asked_position(here), ended)
     else:
-        parts += (*carried(here, first), Outcome(status=first.status, residual=first.at.found.answer.residual))
+        parts += (*carried(here, first), Outcome(status=first.status, residual=first.at.found.answer.reported_residual))
     return record_of(
         "capacity",
         here,

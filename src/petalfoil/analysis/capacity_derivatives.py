@@ -17,7 +17,8 @@ from petalfoil.analysis.capacity import FIRST
 from petalfoil.analysis.crossing_derivatives import AlongWith, CrossingDerivatives
 from petalfoil.analysis.derivatives import Derivative, equilibrium_results
 from petalfoil.analysis.heated_derivatives import Derivatives, derivatives_of
-from petalfoil.analysis.load_limit import Limits, LoadRay, largest_load
+from petalfoil.analysis.load_limit import largest_load
+from petalfoil.analysis.load_ray import Limits, LoadRay
 from petalfoil.case import Case
 from petalfoil.errors import ConvergenceError
 

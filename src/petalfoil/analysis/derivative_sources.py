@@ -14,7 +14,7 @@ from petalfoil.analysis.derivatives import GROWTH, DerivativesOf, Results, equil
 from petalfoil.analysis.heated_derivatives import derivatives_of
 from petalfoil.analysis.liftoff import own_load
 from petalfoil.analysis.liftoff_derivatives import speed_derivatives
-from petalfoil.analysis.load_limit import Limits
+from petalfoil.analysis.load_ray import Limits
 from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.response_derivatives import THRESHOLD, coefficient_results, stability_derivatives
 from petalfoil.analysis.sensitivity_table import ALL, Source

@@ -13,7 +13,7 @@ from petalfoil.analysis.crossings import CONTACT_FRACTION
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.derivative_sources import Asked, sources_of
 from petalfoil.analysis.liftoff import own_load
-from petalfoil.analysis.load_limit import Limits
+from petalfoil.analysis.load_ray import Limits
 from petalfoil.analysis.operating_point import Vector, applied_load, at
 from petalfoil.analysis.records import asked_position, effort, record_of
 from petalfoil.analysis.runs import Points

@@ -178,21 +178,28 @@ def renewed(equations: AsperityEquations) -> AsperityEquations:
 
 def stepped(equations: AsperityEquations, change: tuple[Array, Array]) -> AsperityEquations:
     """The equations after as much of `change` (of unknowns and position) as film and contact pressures allow."""
+    return changed(equations, *change, admitted(equations, change, FARTHEST_MOVE))
+
+
+def admitted(equations: AsperityEquations, change: tuple[Array, Array], most: float) -> float:
+    """The part of a change (of unknowns and position) that film and contact pressures allow [1].
+
+    The journal moves by `most` reference films at most.
+    """
     smooth, (dX, move) = equations.smooth, change
     state, whole = smooth.state, smooth.whole
     dw, dP = dX[: whole.n_wall], dX[whole.n_wall :]
     grown = growth(equations, dw, move)
     farthest = float(np.max(np.abs(grown) * (equations.pressure > MATTERS), initial=0.0))
     closing = whole.film_by_w @ dw + whole.film_by_e @ move
-    length = min(
+    return min(
         1.0,
         POSITIVE_FRACTION * fraction_to_boundary(state.P, dP),
         fraction_to_boundary(MOST_GROWTH * state.P, -dP),
         POSITIVE_FRACTION * fraction_to_boundary(smooth.film_thickness.ravel(), closing),
         max(FARTHEST / max(farthest, FARTHEST), SHORTEST),
-        FARTHEST_MOVE / max(float(np.linalg.norm(move)), FARTHEST_MOVE),
+        most / max(float(np.linalg.norm(move)), most),
     )
-    return changed(equations, dX, move, length)
 
 
 def growth(equations: AsperityEquations, dw: Array, move: Array) -> Array:

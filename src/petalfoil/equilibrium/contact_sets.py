@@ -113,13 +113,24 @@ def merged(points: ContactPoints) -> ContactPoints:
 # ------------------------------------------------------------------------------------------ corrected by signs
 
 
-def revised(equations: PointEquations) -> ContactPoints | None:
-    """Other contacts, where the signs ask for them; None where they are right."""
+def revised(equations: PointEquations, error: float = 0.0, *, one_by_one: bool = False) -> ContactPoints | None:
+    """Other contacts, where the signs ask for them; None where they are right.
+
+    Parameters
+    ----------
+    equations : PointEquations
+        The equations at a state.
+    error : float
+        Gaps and slopes up to this may still close or open by themselves; so may what a pull opens.
+    one_by_one : bool
+        Only the lowest gap of each curve gains a contact: it often opens the others.
+    """
     points = equations.state.points
     inward = np.where(points.position > 0.0, 1.0, -1.0) * equations.gaps.slope[points.ends]
-    released = (equations.travels == 0.0) & (inward > RESIDUAL_TOLERANCE) & (equations.idle[points.ends] == 0.0)
-    fresh = overlapping(equations)
-    pulling = points.reaction < -least_pull(equations)
+    leaving = inward > max(RESIDUAL_TOLERANCE, error)
+    released = (equations.travels == 0.0) & leaving & (equations.idle[points.ends] == 0.0)
+    fresh = overlapping(equations, max(OVERLAP, error), one_by_one=one_by_one)
+    pulling = points.reaction < -least_pull(equations, max(PULL, error))
     if not released.any() and not fresh and not pulling.any():
         return None
     contacts = listed(replace(points, reaction=np.where(pulling, points.reaction, np.maximum(points.reaction, 0.0))))
@@ -128,11 +139,11 @@ def revised(equations: PointEquations) -> ContactPoints | None:
     return packed(without_pulling(with_fresh(contacts, fresh)))
 
 
-def least_pull(equations: PointEquations) -> Array:
-    """Pull of each point below which it is zero, (j,)."""
+def least_pull(equations: PointEquations, opening: float) -> Array:
+    """Pull of each point without which the gap would open by `opening` [1], (j,)."""
     points, curves = equations.state.points, equations.whole.curves
     element, _ = curves.locate(points.every_curve, points.every_position)
-    return np.asarray(PULL / (SPANS * curves.compliance[element]))
+    return np.asarray(opening / (SPANS * curves.compliance[element]))
 
 
 def without_pulling(contacts: list[Contact]) -> list[Contact]:
@@ -231,24 +242,31 @@ def bridges(contacts: list[Contact], k: int) -> bool:
     return bool(contacts[k].inner) or contacts[k + 1].position - contacts[k].position <= 2.0 * BRIDGED
 
 
-def overlapping(equations: PointEquations) -> list[tuple[int, float, int]]:
-    """Lowest places where gaps are below zero: curve, position, number of the travelling point before it or -1."""
+def overlapping(
+    equations: PointEquations, depth: float = OVERLAP, *, one_by_one: bool = False
+) -> list[tuple[int, float, int]]:
+    """Lowest places where gaps are below zero by `depth`: curve, position, number of the travelling point before or -1.
+
+    One between two travelling points, or where `one_by_one` the lowest of each curve.
+    """
     points, curves = equations.state.points, equations.whole.curves
     curve, position, gap = sampled(curves, points, equations.nodal_gaps, SAMPLES)
     gap = gap + sagging(equations, curve, position)
     bushing = np.array([facing is Facing.BUSHING for facing in curves.facing])
-    low = (gap < -OVERLAP) & ~(bushing[curve] & (position < 0.5))
+    low = (gap < -depth) & ~(bushing[curve] & (position < 0.5))
     before = np.concatenate([[np.inf], np.where(np.diff(curve) == 0, gap[:-1], np.inf)])
     after = np.concatenate([np.where(np.diff(curve) == 0, gap[1:], np.inf), [np.inf]])
     found: dict[tuple[int, int], tuple[int, float, int]] = {}
-    for k in np.flatnonzero(low & (gap <= before) & (gap <= after)):
+    lowest = np.flatnonzero(low & (gap <= before) & (gap <= after))
+    for k in lowest[np.argsort(gap[lowest], kind="stable")] if one_by_one else lowest:
         on, at = int(curve[k]), float(position[k])
         near = np.abs(points.every_position[points.every_curve == on] - at)
         if len(near) and near.min() < 0.5 / SAMPLES:
             continue
         mine = np.flatnonzero((points.curve == on) & (points.position < at))
         last = int(mine[-1]) if len(mine) else -1
-        found.setdefault((last, on) if last >= 0 else (-1 - int(k), on), (on, at, last))
+        between = last if last >= 0 else -1 - int(k)
+        found.setdefault((0 if one_by_one else between, on), (on, at, last))
     return list(found.values())
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +21,10 @@ from petalfoil.solvers.constraints import constrain
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.point_equations import PointState
 from petalfoil.system.point_layout import PointLayout
+from petalfoil.units import format_percent
 
 Array = NDArray[np.float64]
+Found = TypeVar("Found", bound=ElementEquilibrium)
 
 TOUCHING = 2e-5
 """A node with a gap below this belongs to a run of active nodes, in units of the reference film (0.2 nm)."""
@@ -115,9 +118,19 @@ def agreeing(found: ElementEquilibrium, solution: Solution) -> ElementEquilibriu
     apart = force_apart(found, solution)
     current_run().note(found.contact_model.split(" on ")[0], force_apart=apart)
     if not apart <= FORCE_APART:
-        raise NoPointsError(f"the force differs by {100.0 * apart:.2g} % from that with contacts at nodes")
-    layout = solution.problem.layout
-    floor = found.pack.floor / layout.scales.length
+        raise NoPointsError(f"the force differs by {format_percent(apart)} from that with contacts at nodes")
+    return clear_of_journal(found)
+
+
+def clear_of_journal(found: Found) -> Found:
+    """`found`, if no petal lies in the journal by more than `DEEPEST`.
+
+    Raises
+    ------
+    NoPointsError
+        One does.
+    """
+    floor = found.pack.floor / found.equations.problem.layout.scales.length
     deep = float(np.max(floor - found.equations.film_thickness))
     if deep > DEEPEST:
         raise NoPointsError(f"a petal lies in the journal by {deep:.2g} of the reference film")

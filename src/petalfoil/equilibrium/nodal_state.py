@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.small_motion import ElementEquilibrium, LineEquilibrium
-from petalfoil.equilibrium.solution import Solution
+from petalfoil.equilibrium.solution import RefinedState, Solution
 from petalfoil.mesh import hermite
 from petalfoil.physics.gap_curves import Facing
 from petalfoil.physics.petal_elements import clamped_beam, clamped_beam_bend
@@ -86,6 +86,22 @@ class NodalState:
         deflection, lam = sampled_deflection(found), shared_reactions(found)
         by_contact = equations.force - by_film
         return cls(problem, equations.film, deflection, lam, by_film, by_contact, placed_contacts(found))
+
+
+FOLLOWED = "followed from a neighbour with contact points"
+"""How a solution was reached whose state at the nodes is only sampled."""
+
+
+def sampled_solution(found: ElementEquilibrium, load: Array) -> Solution:
+    """The solution of an equilibrium with contact points under a load, no equilibrium with contacts at nodes beside it.
+
+    The state at its nodes is that of its elements: a start for others.
+    """
+    problem, state = found.equations.problem, NodalState.of_elements(found)
+    x = np.zeros(problem.layout.n)
+    x[problem.layout.unknowns[DEFLECTION]], x[problem.positive] = state.deflection, found.equations.pressures
+    nodal = RefinedState(x, np.zeros(problem.layout.n_wall), state.lam)
+    return Solution(problem, nodal, found.residual, FOLLOWED, load=load, elements=found, elements_sought=True)
 
 
 def shared_reactions(found: ElementEquilibrium) -> Array:

@@ -219,17 +219,8 @@ def stepped(
 
     A `whole_step` is only shortened where pressures or the film would vanish, or the journal goes too far.
     """
-    (before, _), (dX, move), whole = norm(equations, load), change, equations.whole
-    dw, dP = dX[: whole.n_wall], dX[whole.n_wall : whole.n_wall + whole.n_film]
-    closing = whole.film_by_w @ dw + whole.film_by_e @ move
-    state = equations.state
-    length = min(
-        1.0,
-        POSITIVE_FRACTION * fraction_to_boundary(state.P, dP),
-        fraction_to_boundary(MOST_GROWTH * state.P, -dP),
-        POSITIVE_FRACTION * fraction_to_boundary(equations.film_thickness.ravel(), closing),
-        FARTHEST_MOVE / max(float(np.linalg.norm(move)), FARTHEST_MOVE),
-    )
+    (before, _), (dX, move) = norm(equations, load), change
+    length = admitted(equations, change, FARTHEST_MOVE)
     while True:
         problem = equations.problem.at(displacement=equations.problem.displacement + length * move)
         ahead = replace(equations, problem=problem, state=changed(equations, length * dX))
@@ -239,11 +230,31 @@ def stepped(
         length = max(0.5 * length, SHORTEST)
 
 
-def changed(equations: PointEquations, change: Array) -> PointState:
-    """The state after a change of the unknowns, points on their curves and merged where they meet."""
+def admitted(equations: PointEquations, change: tuple[Array, Array], farthest: float) -> float:
+    """The part of a change (of unknowns and position) after which film and pressures are positive [1].
+
+    The journal moves by `farthest` reference films at most.
+    """
+    (dX, move), whole, state = change, equations.whole, equations.state
+    dw, dP = dX[: whole.n_wall], dX[whole.n_wall : whole.n_wall + whole.n_film]
+    closing = whole.film_by_w @ dw + whole.film_by_e @ move
+    return min(
+        1.0,
+        POSITIVE_FRACTION * fraction_to_boundary(state.P, dP),
+        fraction_to_boundary(MOST_GROWTH * state.P, -dP),
+        POSITIVE_FRACTION * fraction_to_boundary(equations.film_thickness.ravel(), closing),
+        farthest / max(float(np.linalg.norm(move)), farthest),
+    )
+
+
+def changed(equations: PointEquations, change: Array, farthest: float = TRUST) -> PointState:
+    """The state after a change of the unknowns, points on their curves and merged where they meet.
+
+    Points travel by `farthest` elements at most.
+    """
     state, whole = equations.state, equations.whole
     dw, dP, dlam, dt = np.split(change, np.cumsum([whole.n_wall, whole.n_film, len(state.points.reaction)]))
-    place = state.points.position + np.clip(dt, -TRUST, TRUST)
+    place = state.points.position + np.clip(dt, -farthest, farthest)
     points = replace(
         state.points,
         position=np.clip(place, 0.0, whole.curves.elements[state.points.curve]),

@@ -10,6 +10,6 @@ Inside the package every number is a float in SI units; text is read here and no
 
 from petalfoil.units.ramp import parse_ramp
 from petalfoil.units.reading import parse_pair, parse_quantity, parse_range
-from petalfoil.units.writing import format_quantity
+from petalfoil.units.writing import format_percent, format_quantity
 
-__all__ = ["format_quantity", "parse_pair", "parse_quantity", "parse_ramp", "parse_range"]
+__all__ = ["format_percent", "format_quantity", "parse_pair", "parse_quantity", "parse_ramp", "parse_range"]

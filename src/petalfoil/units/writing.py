@@ -50,6 +50,17 @@ def format_quantity(value: float, unit: str, *, digits: int = 4) -> str:
     return number + symbol if symbol == "°" else f"{number} {prefix}{symbol}".rstrip()
 
 
+def format_percent(fraction: float, *, digits: int = 2) -> str:
+    """Write a fraction for a reader as per cent, without an exponent below a million.
+
+    Examples
+    --------
+    >>> format_percent(1.304)
+    '130 %'
+    """
+    return f"{_plain(100.0 * float(fraction), digits)} %"
+
+
 def _plain(value: float, digits: int) -> str:
     """Shortest text of `digits` significant digits, without an exponent where a reader needs none."""
     text = f"{value:.{digits}g}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -17,6 +18,9 @@ from tests.random_packs import random_case
 PLAIN = case("plain_journal", **{"model.cells_per_pitch": 24, "model.axial_cells": 6})
 BUMPS = case("bump_foil", **{"model.cells_per_pitch": 24, "model.axial_cells": 6})
 PETALS = case("paper_n8", **{"model.cells_per_pitch": 16})
+
+WITHOUT = (0, 11, 28, 46, 70)
+"""Random bearings none of whose loads keeps a film of 1.5 um."""
 
 LIMITS = {
     "film of a plain bore": (PLAIN, {"min_film_thickness": 5e-6}, "min_film_thickness", 5e-6),
@@ -55,19 +59,18 @@ def test_the_first_limit_counts() -> None:
 
 
 @pytest.mark.parametrize(
-    ("bearing", "most"),
+    "bearing",
     [
-        pytest.param(PLAIN, 6, id="plain"),
-        pytest.param(BUMPS, 6, id="bumps"),
-        pytest.param(PETALS, 16, id="petals", marks=pytest.mark.slow),
+        pytest.param(PLAIN, id="plain"),
+        pytest.param(BUMPS, id="bumps"),
+        pytest.param(PETALS, id="petals", marks=pytest.mark.slow),
     ],
 )
-def test_warm_speeds_take_few_factorisations(bearing: Case, most: int) -> None:
-    """Six; of petals up to three more for the contact points of each balance."""
+def test_warm_speeds_take_few_factorisations(bearing: Case) -> None:
     speed = bearing.operation.speed
     found = petalfoil.capacity(bearing, min_film_thickness=4e-6, speeds=list(speed * np.linspace(0.9, 1.0, 5)))
     assert np.all(np.diff(found["load_capacity"]) > 0.0)
-    assert int(found["factorizations"][1:].max()) <= most
+    assert int(found["factorizations"][1:].max()) <= 6
     assert plot.capacity(found).axes
     assert set(str(name) for name in found["limited_by"].to_numpy()) == {"min_film_thickness"}
 
@@ -82,6 +85,31 @@ def test_speeds_a_tenth_apart_take_six_factorisations_at_most(bearing: Case) -> 
     for k in (1, 4):
         cold = petalfoil.capacity(bearing, min_film_thickness=4e-6, speed=speeds[k])
         assert float(cold["load_capacity"]) == pytest.approx(float(found["load_capacity"][k]), rel=1e-5)
+
+
+@pytest.mark.slow
+def test_contact_points_are_followed_over_tenths_of_the_speed() -> None:
+    """Three, three, five, and eight at the last speed, where petals come to lie on each other."""
+    petals = case("paper_n8", **{"model.cells_per_pitch": 32})
+    speeds = list(petals.operation.speed * np.linspace(0.6, 1.0, 5))
+    found = petalfoil.capacity(petals, min_film_thickness=4e-6, speeds=speeds)
+    warm = found["factorizations"].to_numpy()[1:]
+    assert np.all(warm[:3] <= 6)
+    assert warm[3] <= 8
+    assert np.all(found["probe_factorizations"].to_numpy()[1:] == 0)
+    assert float(found["residual"].max()) <= 1e-8
+    for k in (1, 4):
+        cold = petalfoil.capacity(petals, min_film_thickness=4e-6, speed=speeds[k])
+        assert float(cold["load_capacity"]) == pytest.approx(float(found["load_capacity"][k]), rel=1e-6)
+
+
+@pytest.mark.slow
+def test_asperities_are_followed_too() -> None:
+    stiff = case("paper_n10", **{"model.cells_per_pitch": 32})
+    speeds = list(stiff.operation.speed * np.array([0.9, 0.925]))
+    found = petalfoil.capacity(stiff, min_film_thickness=3e-6, speeds=speeds)
+    assert np.all(found["factorizations"][1:] <= 6)
+    assert found["min_film_thickness"].to_numpy() == pytest.approx(3e-6, rel=1e-6)
 
 
 def test_the_load_coefficient_is_the_load_over_projected_area_and_surface_speed() -> None:
@@ -152,8 +180,8 @@ def found_or_bounded(seed: int, least: float = 1.5e-6) -> str:
     bearing = random_case(np.random.default_rng(seed), **{"model.cells_per_pitch": 16})
     (record,) = petalfoil.capacity.records(bearing, min_film_thickness=least, speeds=[bearing.operation.speed])
     if not record.converged:
-        assert "no load keeps to the limits" in str(record.scalars["status"])
-        return "none"
+        assert re.search("no load keeps to the limits|undecided", str(record.scalars["status"]))
+        return "none" if "no load keeps" in str(record.scalars["status"]) else "undecided"
     film = float(record.scalars["min_film_thickness"])
     assert film >= least * (1.0 - 1.1e-6)
     assert float(record.scalars["residual"]) <= 1e-8
@@ -165,5 +193,19 @@ def found_or_bounded(seed: int, least: float = 1.5e-6) -> str:
 
 @pytest.mark.long
 def test_random_bearings_are_found_or_bounded() -> None:
-    ended = [found_or_bounded(seed) for seed in range(20)]
-    assert ended.count("found") >= 4
+    """Of a hundred, how many: recorded in docs/how-to/load-capacity.md."""
+    ended = [found_or_bounded(seed) for seed in range(100)]
+    assert ended.count("found") >= 35
+    assert ended.count("undecided") <= 5
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", WITHOUT)
+def test_where_no_load_keeps_the_film_none_of_a_scan_does(seed: int) -> None:
+    """Balances from nothing, one by one: no search, no neighbour."""
+    bearing = random_case(np.random.default_rng(seed), **{"model.cells_per_pitch": 16})
+    assert found_or_bounded(seed) == "none"
+    unit = bearing.gas.ambient_pressure * 2.0 * bearing.bearing.journal_radius * bearing.bearing.length
+    for part in np.geomspace(1e-5, 0.3, 9):
+        at = petalfoil.balance(bearing, part * unit)
+        assert float(at["min_film_thickness"]) < 1.5e-6

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from petalfoil.units import format_quantity, parse_quantity
+from petalfoil.units import format_percent, format_quantity, parse_quantity
 
 
 @pytest.mark.parametrize(
@@ -31,6 +31,14 @@ from petalfoil.units import format_quantity, parse_quantity
 )
 def test_a_reader_gets_a_handy_unit(value: float, unit: str, text: str) -> None:
     assert format_quantity(value, unit) == text
+
+
+@pytest.mark.parametrize(
+    ("fraction", "text"),
+    [(1.0, "100 %"), (1.3, "130 %"), (0.999, "100 %"), (0.0314, "3.1 %"), (12.34, "1200 %"), (1e-7, "1e-05 %")],
+)
+def test_a_fraction_is_read_as_per_cent(fraction: float, text: str) -> None:
+    assert format_percent(fraction) == text
 
 
 @given(st.floats(1e-12, 1e6), st.sampled_from(["m", "Pa", "N", "rad", "rad/s", "Pa*s"]))

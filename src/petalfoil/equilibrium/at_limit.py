@@ -1,0 +1,279 @@
+"""The load under which a result reaches its limit, as one more unknown beside contact points, film and position.
+
+A load of size `W` in a fixed direction `d` is followed from a neighbour. With `q` the distance of the result from its
+limit, and `J`, `F`, `F_e`, `R`, `R_e` those of (C10),
+
+    J dX + F_e de = -F ,   R dX + R_e de + d dW = -(force + W d) ,   q_X dX + q_e de = -q               (C13)
+
+One factorisation of `J` serves all three. It serves on for as long as its steps halve the error, and contacts are
+looked at whenever it is renewed: what has closed by more than the error gains a contact at once.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Protocol, Self, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.equilibrium.asperity_contacts import AsperityContacts, renewed
+from petalfoil.equilibrium.asperity_contacts import admitted as asperities_admitted
+from petalfoil.equilibrium.asperity_contacts import changed as asperities_changed
+from petalfoil.equilibrium.contact_sets import revised
+from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError, scaled_force, unbalanced
+from petalfoil.equilibrium.point_contacts import FARTHEST_STATE, PointContacts, admitted, changed
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.small_motion import ElementEquilibrium
+from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
+from petalfoil.system.asperity_equations import AsperityEquations
+from petalfoil.system.coupled import CoupledProblem
+from petalfoil.system.point_equations import PointEquations
+
+Array = NDArray[np.float64]
+Change: TypeAlias = tuple[Array, Array]
+"""Change of the unknowns (n,) and of the journal's position (n_position,)."""
+LoadedEquations: TypeAlias = PointEquations | AsperityEquations
+
+REACHED = 1e-6
+"""Relative distance from a limit at which it counts as reached."""
+
+TANGENTS = 12
+"""Most factorisations of one search: two or three between speeds 3 % apart, eight where a petal comes to lie on another
+one between speeds a tenth apart."""
+
+STEPS = 60
+"""Most steps of one search; those with a factor at hand cost a tenth of a factorisation."""
+
+FARTHEST_MOVE = 4.0
+"""Longest move of the journal in a step, in units of the reference film (40 um): with 10 the first step between speeds
+a sixth apart leads astray, and 13 factorisations follow in place of 3."""
+
+FARTHEST_TRAVEL = 3.0
+"""Farthest that a contact point travels in a step, in elements: from speed to speed points travel by one or two."""
+
+MOST_LOAD = 0.5
+"""Largest relative change of the load in a step."""
+
+CHORD = 0.5
+"""Error after a step over that before it, up to which the factor at hand serves on: 0.2 took a quarter more of them."""
+
+SETTLING = 1e-4
+"""Error below which two steps together may take as long: its last digits fall unevenly."""
+
+SETTLED = 1e-3
+"""Residual below which all signs are looked at."""
+
+CERTAIN = 0.3
+"""Part of the residual that a gap below zero must exceed to gain a contact at once. With 0.1 and less contacts came and
+went."""
+
+PROBE = 1e-5
+"""Part of a change by which the distance from the limit is differentiated along it."""
+
+
+class Loaded(Protocol):
+    """A state under a load of some size, solved or not."""
+
+    @property
+    def equations(self) -> LoadedEquations:
+        """The equations at the state."""
+
+    @property
+    def size(self) -> float:
+        """Size of the load."""
+
+    @property
+    def positioned(self) -> ElementEquilibrium:
+        """The state as an equilibrium."""
+
+    def moved(self, change: Change, more: float = 0.0, length: float = 1.0) -> Self:
+        """After a part `length` of a change of unknowns and position, and of `more` load, relative to the present."""
+
+    def admitted(self, change: Change) -> float:
+        """The part of a change after which film and pressures are positive."""
+
+    def revised(self, error: float = 0.0) -> Self | None:
+        """With other contacts, where the signs ask for them by more than `error`; None where they are right."""
+
+
+@dataclass(frozen=True)
+class LoadedPoints:
+    """Contact points under a load; members as of `Loaded`."""
+
+    equations: PointEquations
+    size: float
+
+    @property
+    def positioned(self) -> PointContacts:
+        """The state as an equilibrium."""
+        return PointContacts(self.equations, largest(self.equations))
+
+    def moved(self, change: Change, more: float = 0.0, length: float = 1.0) -> LoadedPoints:
+        """After a part of a change; points that meet are one."""
+        equations, (dX, move) = self.equations, change
+        problem = equations.problem.at(displacement=equations.problem.displacement + length * move)
+        state = changed(equations, length * dX, FARTHEST_TRAVEL)
+        return LoadedPoints(replace(equations, problem=problem, state=state), self.size * (1.0 + length * more))
+
+    def admitted(self, change: Change) -> float:
+        """The part of a change that is taken."""
+        return admitted(self.equations, change, FARTHEST_MOVE)
+
+    def revised(self, error: float = 0.0) -> LoadedPoints | None:
+        """With other contacts."""
+        points = revised(self.equations, error, one_by_one=True)
+        if points is None:
+            return None
+        return replace(self, equations=replace(self.equations, state=replace(self.equations.state, points=points)))
+
+
+@dataclass(frozen=True)
+class LoadedAsperities:
+    """Contact pressures over asperities under a load; members as of `Loaded`."""
+
+    equations: AsperityEquations
+    size: float
+
+    @property
+    def positioned(self) -> AsperityContacts:
+        """The state as an equilibrium."""
+        return AsperityContacts(self.equations, largest(self.equations))
+
+    def moved(self, change: Change, more: float = 0.0, length: float = 1.0) -> LoadedAsperities:
+        """After a part of a change, open gaps with the pressure of their law."""
+        equations = renewed(asperities_changed(self.equations, *change, length))
+        return LoadedAsperities(equations, self.size * (1.0 + length * more))
+
+    def admitted(self, change: Change) -> float:
+        """The part of a change that is taken."""
+        return asperities_admitted(self.equations, change, FARTHEST_MOVE)
+
+    def revised(self, error: float = 0.0) -> None:
+        """There are no contacts to choose."""
+
+
+def loaded(found: ElementEquilibrium, problem: CoupledProblem, size: float) -> Loaded:
+    """The state of an equilibrium under the equations of `problem` and another load, unsolved."""
+    here = problem.at(displacement=found.equations.problem.displacement)
+    if isinstance(found, AsperityContacts):
+        equations = found.equations
+        return LoadedAsperities(replace(equations, smooth=replace(equations.smooth, problem=here)), size)
+    if isinstance(found, PointContacts):
+        return LoadedPoints(replace(found.equations, problem=here), size)
+    raise TypeError(f"neither contact points nor asperities: {type(found)}")
+
+
+def largest(equations: LoadedEquations) -> float:
+    """Largest scaled residual."""
+    return float(np.max(np.abs(equations.scaled)))
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A limit, and the direction of the load that shall reach it.
+
+    Attributes
+    ----------
+    direction : (n_position,) array
+        Load of size one over the unit of force [1].
+    distance : callable
+        Distance of a state from the limit, relative to it, negative beyond it; by contacts and size of the load.
+    """
+
+    direction: Array
+    distance: Callable[[ElementEquilibrium, float], float]
+
+    def of(self, at: Loaded) -> float:
+        """Distance of a state from the limit."""
+        return self.distance(at.positioned, at.size)
+
+    def residual(self, at: Loaded) -> float:
+        """Largest scaled residual of a state, the unbalanced force among them."""
+        force = scaled_force(at.equations, at.size * self.direction)
+        return max(largest(at.equations), float(np.max(np.abs(force))))
+
+    def along(self, at: Loaded, change: Change) -> float:
+        """Derivative of the distance along a change of unknowns and position."""
+        return (self.of(at.moved(change, length=PROBE)) - self.of(at)) / PROBE
+
+
+@dataclass(frozen=True)
+class LimitTangent:
+    """The tangent at one state, and what the load changes there.
+
+    Attributes
+    ----------
+    tangent : ElementTangent
+        That of state and position.
+    by_load : (array, array)
+        Change of unknowns and position by the logarithm of the load.
+    slope : float
+        Derivative of the distance from the limit by the same.
+    """
+
+    tangent: ElementTangent
+    by_load: Change
+    slope: float
+
+    @classmethod
+    def at(cls, at: Loaded, limit: Limit) -> LimitTangent:
+        """Factorise at a state.
+
+        Raises
+        ------
+        NoPointsError
+            A larger load does not lead nearer to the limit.
+        """
+        load = at.size * limit.direction
+        tangent = ElementTangent.at(at.equations, load, current_run().film_solver)
+        move = np.asarray(np.linalg.solve(tangent.gradient, -load), dtype=np.float64)
+        by_load = tangent.units @ move, move
+        slope = limit.along(at, by_load)
+        if not slope < 0.0:
+            raise NoPointsError("more load does not lead nearer to the limit")
+        return cls(tangent, by_load, slope)
+
+    def stepped(self, at: Loaded, limit: Limit) -> Loaded:
+        """The state after a step, shortened where film or pressures would vanish or the journal goes too far."""
+        tangent, (dX, move) = self.tangent, self.by_load
+        own = tangent.correction(at.equations.newton_residual, unbalanced(at.equations, at.size * limit.direction))
+        more = -(limit.of(at) + limit.along(at, own)) / self.slope
+        more = min(max(more, -MOST_LOAD), MOST_LOAD)
+        change = own[0] + more * dX, own[1] + more * move
+        return at.moved(change, more, at.admitted(change))
+
+
+def at_limit(start: Loaded, limit: Limit) -> Loaded:
+    """The state and the size of the load at the limit, followed from a neighbour.
+
+    Raises
+    ------
+    NoPointsError
+        The limit was not reached.
+    """
+    at, errors, left = start, [math.inf, math.inf], TANGENTS
+    tangent: LimitTangent | None = None
+    for _ in range(STEPS):
+        residual, distance = limit.residual(at), abs(limit.of(at))
+        error = max(residual, distance)
+        if tangent is not None and residual <= SETTLED:
+            other = at.revised()
+            if other is None and residual <= RESIDUAL_TOLERANCE and distance <= REACHED:
+                current_run().note("limit", residual=largest(at.equations), factorizations=TANGENTS - left)
+                return at
+            at, tangent = (at, tangent) if other is None else (other, None)
+        if tangent is None or tangent.tangent.n != at.equations.n or slow(error, errors):
+            at = at if tangent is None else at.revised(CERTAIN * residual) or at
+            if left == 0 or limit.residual(at) > FARTHEST_STATE:
+                break
+            tangent, left, errors = LimitTangent.at(at, limit), left - 1, [math.inf, math.inf]
+        at, errors = tangent.stepped(at, limit), [errors[1], error]
+    raise NoPointsError(f"the limit was not reached with {TANGENTS - left} factorisations")
+
+
+def slow(error: float, before: list[float]) -> bool:
+    """Whether the factor at hand serves no longer, by the error now and at the last two steps."""
+    return error > CHORD * before[1] and (error > SETTLING or error > CHORD * before[0])
