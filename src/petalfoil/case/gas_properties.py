@@ -15,7 +15,7 @@ from typing import Any
 from petalfoil.case.hints import nearest
 from petalfoil.case.number_fields import VALUE_PROBLEM, refuse
 from petalfoil.units.reading import shown
-from petalfoil.units.writing import format_quantity
+from petalfoil.units.writing import format_percent, format_quantity
 
 COMMON = {
     "air": "Air",
@@ -77,7 +77,7 @@ def unlike_ideal(name: str, T: float, p: float) -> str:
         ends = "condenses at" if T < state.T_critical() else "is known up to"
         return f"{name} at {_K(T)} {ends} {_Pa(dew)}, below {_Pa(p)}"
     if _departure(state, T, p) > IDEAL:
-        return f"{name} at {_K(T)} and {_Pa(p)} is {100.0 * _departure(state, T, p):.2g} % off the ideal-gas law"
+        return f"{name} at {_K(T)} and {_Pa(p)} is {format_percent(_departure(state, T, p))} off the ideal-gas law"
     return ""
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from petalfoil.case import gas_properties
 from petalfoil.case.definitions import Case
-from petalfoil.units.writing import format_quantity
+from petalfoil.units.writing import format_percent, format_quantity
 
 Scalars = Mapping[str, float | int | bool | str]
 
@@ -68,9 +68,9 @@ def of_answer(case: Case, scalars: Scalars) -> Iterator[str]:
     apart = number(scalars, "nodal_force_difference")
     if apart > NODES_APART:
         yield (
-            f"nodal_force_difference: the force is {100.0 * apart:.2g} % from that with contacts at nodes of the same "
-            "grid, which in stiff packs miss it; that the equilibrium is the same one is known to so much only: refine "
-            "model.cells_per_pitch until it falls"
+            f"nodal_force_difference: the force is {format_percent(apart)} from that with contacts at nodes of the "
+            "same grid, which in stiff packs miss it; that the equilibrium is the same one is known to so much only: "
+            "refine model.cells_per_pitch until it falls"
         )
 
 
@@ -132,8 +132,8 @@ def _contact(case: Case, scalars: Scalars) -> Iterator[str]:
     fraction, speed = number(scalars, "contact_fraction"), number(scalars, "speed", case.operation.speed)
     if fraction > MIN_CONTACT and 0.0 < case.operation.speed <= speed:
         yield (
-            f"contact_fraction: at operating speed solid contact carries {100.0 * fraction:.2g} % of the force on the "
-            "journal: it would heat up, and wear, which is not modelled; reduce the load, or raise the speed"
+            f"contact_fraction: at operating speed solid contact carries {format_percent(fraction)} of the force on "
+            "the journal: it would heat up, and wear, which is not modelled; reduce the load, or raise the speed"
         )
 
 
@@ -182,8 +182,8 @@ def warnings_of_errors(scalars: Scalars, errors: Mapping[str, float]) -> list[st
     worst = max(told, key=lambda name: told[name])
     more = f" (and those of {', '.join(name for name in told if name != worst)})" if len(told) > 1 else ""
     return [
-        f"{worst}: its error bar is {100.0 * told[worst]:.2g} % of it{more}, over {100.0 * WIDE:g} %: the grid is too "
-        "coarse for it; raise model.cells_per_pitch and, in 3-D, model.axial_cells, or see `converge`"
+        f"{worst}: its error bar is {format_percent(told[worst])} of it{more}, over {format_percent(WIDE)}: the grid "
+        "is too coarse for it; raise model.cells_per_pitch and, in 3-D, model.axial_cells, or see `converge`"
     ]
 
 

@@ -60,6 +60,12 @@ class Metal:
         below, beyond = NEAR if first > 0.0 else 0.0, NEAR if len(self.modulus) == 1 else 0.0
         return first - below + CELSIUS, last + beyond + CELSIUS
 
+    @property
+    def known_at(self) -> str:
+        """The temperatures of the source, for people."""
+        first, last = self.modulus[0][0], self.modulus[-1][0]
+        return f"{first:.0f} °C only" if first == last else f"{first:.0f} to {last:.0f} °C"
+
     def youngs_modulus(self, temperature: float) -> float:
         """Young's modulus at a temperature [K], outside its range that of the nearest end [Pa]."""
         at, values = np.array(self.modulus).T

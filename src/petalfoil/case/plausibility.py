@@ -190,6 +190,12 @@ def _metal(case: Case) -> Iterator[str]:
                 f"{high - 273.15:.0f} °C, not at {temperature - 273.15:.0f} °C: that of the nearer end is taken; give "
                 f"{table.section}.youngs_modulus and {table.section}.poisson_ratio instead of a material"
             )
+        elif case.heat is None and not low <= case.gas.temperature <= high:
+            yield (
+                f"{table.section}.metal_temperature: the gas is at {case.gas.temperature - 273.15:.0f} °C, where the "
+                f"modulus of {metal.name} is not known ({metal.known_at}), and that at {temperature - 273.15:.0f} °C "
+                f"is taken; give {table.section}.youngs_modulus and {table.section}.poisson_ratio instead of a material"
+            )
 
 
 def _measured_shape(case: Case) -> Iterator[str]:

@@ -37,13 +37,14 @@ def strip(height: float) -> dict[str, Any]:
             "bump_half_angle": 2.0 * math.atan(height / half), "thickness": "60 um", "material": "x-750"}  # fmt: skip
 
 
-def cold_metal(temperature: str) -> Told:
-    """Warnings of petals of a named metal at a temperature."""
+def cold_metal(temperature: str, gas: str = "20 degC") -> Told:
+    """Warnings of petals of a named metal at a temperature, in a gas of another."""
     named = {"petals.material": "x-750", "petals.metal_temperature": temperature}
     petals = case(PETALS).petals
     assert petals is not None
     table = {name: value for name, value in petals.entries().items() if name not in ("youngs_modulus", "poisson_ratio")}
-    return warnings_of(case(PETALS, petals=table | {key.partition(".")[2]: value for key, value in named.items()}), {})
+    made = table | {key.partition(".")[2]: value for key, value in named.items()}
+    return warnings_of(case(PETALS, petals=made, **{"gas.temperature": gas}), {})
 
 
 def named_gas(name: str, pressure: str, **scalars: float) -> Told:
@@ -113,6 +114,11 @@ EVERY: dict[str, tuple[str, Callable[[], Told], Callable[[], Told]]] = {
         lambda: warnings_of(measured(rows_of(12)), {}),
     ),
     "_metal": ("petals.metal_temperature", lambda: cold_metal("545 degC"), lambda: cold_metal("530 degC")),
+    "_metal gas": (
+        "petals.metal_temperature",
+        lambda: cold_metal("20 degC", "540 degC"),
+        lambda: cold_metal("20 degC", "535 degC"),
+    ),
     "_stress": (
         "max_bending_stress",
         lambda: of(scalars={"max_bending_stress": 2.01e9}),

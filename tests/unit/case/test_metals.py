@@ -81,6 +81,15 @@ def test_a_temperature_beyond_the_data_is_warned_of() -> None:
     assert warnings_of(warm, {}) == []
 
 
+@pytest.mark.parametrize(("material", "warm", "near"), [("titanium", 55.0, 45.0), ("x-750", 540.0, 530.0)])
+def test_a_gas_at_which_the_modulus_is_not_known_is_warned_of(material: str, warm: float, near: float) -> None:
+    petals = made_of(material)
+    (told,) = warnings_of(petals.replace(**{"gas.temperature": 273.15 + warm}), {})
+    assert told.startswith(f"petals.metal_temperature: the gas is at {warm:.0f} °C, where the modulus of")
+    assert "and that at 20 °C is taken; give petals.youngs_modulus" in told
+    assert warnings_of(petals.replace(**{"gas.temperature": 273.15 + near}), {}) == []
+
+
 @pytest.mark.parametrize(
     ("material", "petals", "words"),
     [
@@ -99,7 +108,9 @@ def test_the_page_lists_the_table() -> None:
     for metal in METALS.values():
         E = metal.youngs_modulus(293.15)
         sigma = "–" if metal.yield_strength is None else f"{1e-6 * metal.yield_strength:.0f}"
-        row = f"| `{metal.name}` | {1e-9 * E:.1f} | {metal.poisson_ratio:.2f} | {metal.density:.0f} | "
+        row = (
+            f"| `{metal.name}` | {1e-9 * E:.1f} | {metal.known_at} | {metal.poisson_ratio:.2f} | {metal.density:.0f} | "
+        )
         assert f"{row}{1e6 * metal.expansion:.1f} | {sigma} | {metal.temper} |" in page
 
 
