@@ -17,6 +17,7 @@ from petalfoil.case import Case, ModelKind
 from petalfoil.results.record import Record
 from petalfoil.results.schema import FIELDS, SCALARS
 from petalfoil.results.summary import in_order, shown_as
+from petalfoil.units import format_percent
 
 LARGEST = {ModelKind.TWO_D: 1024, ModelKind.THREE_D: 128 * 48}
 """Cells per pitch, times those over the length, up to which grids are refined. A point takes a second or half a minute
@@ -98,6 +99,6 @@ def remark_on(record: Record, accuracy: float) -> Record:
     missed = shortfalls([record], accuracy)
     if not missed:
         return record
-    named = ", ".join(f"{name} (± {100.0 * bar:.2g} %)" for name, bar in sorted(missed.items()))
+    named = ", ".join(f"{name} (± {format_percent(bar)})" for name, bar in sorted(missed.items()))
     text = f"an accuracy of {100.0 * accuracy:g} % is not reached on the finest grid that is tried: {named}"
     return replace(record, remarks=(*record.remarks, text))

@@ -35,6 +35,7 @@ from petalfoil.results.parts import AppliedLoad, Branch
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.loaded import load_of
+from petalfoil.units import format_percent
 from petalfoil.walls import Capability, wall_kind
 
 Vector = tuple[float, float]
@@ -227,7 +228,7 @@ def beyond_capacity(problem: CoupledProblem, load: Vector, failure: ConvergenceE
         size = float(np.hypot(*load))
         return ConvergenceError(
             f"a load of {size:g} N is beyond the capacity of the bearing: at {fraction * size:g} N solid contact "
-            f"carries {100.0 * carried:.4g} % already, and the film the rest",
+            f"carries {format_percent(carried, digits=4)} already, and the film the rest",
             history=failure.history,
             advice="reduce the load; how much the film carries tells contact_fraction at smaller ones",
         )

@@ -141,8 +141,8 @@ class Row:
 
         `rounding` is what is nothing but rounding of the result, in its unit.
         """
-        if math.isnan(self.effect):
-            return True
+        if math.isnan(self.effect):  # a failure; an angle of no force has no effects
+            return not math.isnan(self.quantity_value)
         least = FELT * abs(self.parameter_change / self.parameter_size * self.quantity_value)
         return abs(self.effect) > max(least, rounding)
 
@@ -152,6 +152,17 @@ class Row:
         return abs(self.parameter_value) or abs(self.parameter_change)
 
 
+LOST = 100.0
+"""Digits that a difference quotient loses of a result that is zero, as a factor."""
+
+POINTS_LOST = 2e5
+"""The same of a force with contact points: places of contacts are known to 1e-8 of the residuals only, and
+derivatives of forces that cancel all around the journal keep 1e-7 of ambient pressure on it (2e-5 N of 125 N)."""
+
+TENFOLD = 10.0
+"""Relative change of a parameter past which no derivative tells when a contact begins or ends."""
+
+
 def rounding_of(case: Case, quantity: str) -> float:
     """Forces and displacements below this are rounding: that of ambient pressure on the bearing, and of its radius."""
     bearing = case.bearing
@@ -159,11 +170,14 @@ def rounding_of(case: Case, quantity: str) -> float:
     return {"N": pressed, "m": bearing.journal_radius}.get(SCALARS[quantity].units, 0.0) * LOST * ROUNDING
 
 
+def noise_of(case: Case, quantity: str) -> float:
+    """Effects on a result that is zero below this are rounding."""
+    points = case.has_contact_points and SCALARS[quantity].units == "N"
+    return rounding_of(case, quantity) * (POINTS_LOST / LOST if points else 1.0)
+
+
 ALL = "all"
 """All results of the question, in place of their names."""
-
-LOST = 100.0
-"""Digits that a difference quotient loses of a result that is zero, as a factor."""
 
 
 @dataclass(frozen=True)
@@ -228,16 +242,18 @@ def with_effect(row: Row, found: Derivative, variation: Variation) -> Row:
     quantity, value, change = row.quantity, row.quantity_value, row.parameter_change
     side = found.above if change > 0.0 else found.below
     effect = side[quantity] * change
+    if value == 0.0 and abs(effect) <= noise_of(variation.case, quantity):  # zero by symmetry, whatever the parameter
+        effect = 0.0
     shown = cell(quantity, effect)
     return replace(
         row,
-        derivative=side[quantity],
+        derivative=side[quantity] if effect else 0.0,
         derivative_below=found.below[quantity],
         derivative_above=found.above[quantity],
         effect=effect,
         effect_text=f"{'+' if effect > 0.0 else ''}{shown.value} {shown.unit}".rstrip(),
         relative_effect=effect / abs(value) if value else math.nan,
-        contacts_hold=min(found.reach) / variation.size,
+        contacts_hold=reach if (reach := min(found.reach) / variation.size) <= TENFOLD else math.inf,
     )
 
 

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from petalfoil.plot import labels, style
 from petalfoil.plot.labels import MICRO, QUANTITIES, RPM
 from petalfoil.plot.views import Flags, Floats, array, number, unconverged
+from petalfoil.units import format_percent
 
 _RUNUP = ("friction_torque", "contact_fraction", "min_film_thickness", "eccentricity")
 _HOT = ("shaft_temperature", "pack_temperature")
@@ -122,7 +123,7 @@ def liftoff(ds: xr.Dataset) -> Figure:
     else:
         _draw_over_load(ax, load, speeds)
     fraction = float(np.nanmax(array(ds, "contact_fraction_limit")))
-    criterion = f"lift-off: contact fraction below {100.0 * fraction:.3g} %"
+    criterion = f"lift-off: contact fraction below {format_percent(fraction, digits=3)}"
     style.set_title(fig, ds, f"load {load[0]:.4g} N" if single else "", criterion)
     return fig
 
