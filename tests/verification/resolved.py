@@ -151,6 +151,8 @@ def scale_of(derivatives: DerivativesOf, name: str, gap_change: float) -> float:
     largest = max(abs(value) for other, value in values.items() if SCALARS[other].units == "N")
     if unit == "N":
         return largest
+    if name == "attitude_angle":  # the direction of a force that may be a small part of those it is left from
+        return largest / values["bearing_force"]
     if name.startswith("moment"):
         return largest * derivatives.case.bearing.length
     if unit == "m":

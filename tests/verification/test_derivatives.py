@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from petalfoil.analysis.contact_model import reported
 from petalfoil.analysis.derivatives import DerivativesOf, Results, equilibrium_results, results_with_growth
 from petalfoil.analysis.liftoff_derivatives import fraction_of, refined, speed_derivatives
 from petalfoil.analysis.operating_point import at_position, under_load
@@ -20,6 +21,7 @@ from petalfoil.case.parameters import with_values
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.dynamics.leading_mode import LeadingMode
 from petalfoil.equilibrium.run_context import RunContext
+from petalfoil.equilibrium.small_motion import AT_POINTS
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError, DefinitionError, UsageError
 from petalfoil.walls import register, unregister
@@ -31,6 +33,13 @@ from tests.walls.slider import Slider
 
 EXACT = 1e-6
 """Agreement of a derivative with the difference quotient of equilibria solved again."""
+
+EXACT_WITH_POINTS = 2e-6
+"""The same of contact points with stretches on every petal: deflections of two millimetres are rounded beside the film.
+One of thirty random bearings has 1.7e-6, the others at most 1e-6."""
+
+ALLOWED = {"max_bending_stress": 1e-5}
+"""The same of results that are rounded more: bending stress is a second difference of deflections."""
 
 SMOOTH_SHARE = 0.4
 """Least share of the parameters that no contact keeps from being compared."""
@@ -52,13 +61,15 @@ FEW = ("bearing.bushing_radius", "petals.thickness", "petals.bend_radius", "gas.
 """Parameters that change films, petals, forces at rest, the units of the unknowns, and the film alone."""
 
 
-def assert_exact(derivatives: DerivativesOf, paths: Sequence[str] = ()) -> None:
+def assert_exact(derivatives: DerivativesOf, paths: Sequence[str] = (), exact: float = EXACT) -> None:
     """Where no contact opens or closes within the quotient, it agrees with the derivative; by default by all paths."""
     paths = paths or parameters_with_effect(derivatives.case, under_load=derivatives.solution.load is not None)
     comparisons = [compared(derivatives, path) for path in paths]
     clear = [comparison for comparison in comparisons if comparison.clear]
     assert len(clear) >= SMOOTH_SHARE * len(paths)
-    assert [comparison for comparison in clear if comparison.error > EXACT] == []
+    assert [
+        comparison for comparison in clear if comparison.error > max(exact, ALLOWED.get(comparison.worst, 0.0))
+    ] == []
 
 
 # ---------------------------------------------------------------------------------------------- exact derivatives
@@ -153,6 +164,28 @@ def test_other_walls_and_shafts_under_a_load(name: str) -> None:
 def test_thirty_random_bearings(number: int) -> None:
     draw = wide_case if number % 2 else random_case
     assert_exact(derivatives_of(draw(np.random.default_rng(number), **{"model.cells_per_pitch": 8})))
+
+
+WITH_POINTS = (
+    *(1, 3, 6, 8, 16, 18, 20, 22, 26, 32, 36, 37, 38, 39, 41),
+    *(42, 43, 48, 50, 55, 56, 60, 62, 63, 64, 65, 68, 70, 72, 77),
+)
+"""The first thirty of the random bearings above that have contact points on 16 cells per pitch."""
+
+OFTEN = (3, 38, 50)
+"""Some of them: of the whole domain, with a force that cancels, with stretches on every petal."""
+
+
+@pytest.mark.parametrize(
+    "number",
+    [pytest.param(number, marks=pytest.mark.slow if number in OFTEN else pytest.mark.long) for number in WITH_POINTS],
+)
+def test_thirty_random_bearings_with_contact_points(number: int) -> None:
+    draw = wide_case if number % 2 else random_case
+    derivatives = derivatives_of(draw(np.random.default_rng(number), **{"model.cells_per_pitch": 16}))
+    found = reported(derivatives.case, derivatives.solution)
+    assert found.contact_model == AT_POINTS
+    assert_exact(replace(derivatives, solution=found, as_points=True), exact=EXACT_WITH_POINTS)
 
 
 def test_one_factorisation_serves_all_parameters(run: RunContext) -> None:

@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.analysis.derivatives import Derivative, DerivativesOf, Results
+from petalfoil.analysis.derivatives import ByParameters, Derivative, DerivativesOf, Results
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.result_gradients import GRADIENTS, FieldGradient, gradient
 from petalfoil.analysis.variation import EquationFamily, Variation
@@ -38,7 +38,7 @@ TANGENT = "ask by the tangent (--method tangent)"
 
 
 @dataclass(frozen=True, eq=False)
-class AdjointDerivatives:
+class AdjointDerivatives(ByParameters):
     """Derivatives of some results of one equilibrium by their adjoints.
 
     Attributes
@@ -87,10 +87,6 @@ class AdjointDerivatives:
     def variation(self, path: str) -> Variation:
         """The case at values of the parameter `path`; see `DerivativesOf.variation`."""
         return self.tangent.variation(path)
-
-    def by(self, path: str) -> Derivative:
-        """Derivatives by the parameter `path`; see `DerivativesOf.by`."""
-        return self.along(self.variation(path))
 
     def along(self, variation: EquationFamily) -> Derivative:
         """Derivatives along a variation of the case; its `reach` is not known.

@@ -15,7 +15,7 @@ from scipy.optimize import root_scalar
 
 from petalfoil.analysis.adjoint import AdjointDerivatives
 from petalfoil.analysis.crossings import PRECISION
-from petalfoil.analysis.derivatives import Derivative, Results
+from petalfoil.analysis.derivatives import ByParameters, Derivative, Results
 from petalfoil.analysis.heated_derivatives import Derivatives
 from petalfoil.analysis.variation import Variation
 from petalfoil.case.parameters import parameter_of
@@ -65,7 +65,7 @@ class AlongWith(Variation):
 
 
 @dataclass(frozen=True, eq=False)
-class CrossingDerivatives:
+class CrossingDerivatives(ByParameters):
     """Derivatives of a quantity that keeps a result at its limit.
 
     Attributes
@@ -104,10 +104,6 @@ class CrossingDerivatives:
     def variation(self, path: str) -> Variation:
         """The case at values of the parameter `path`; see `DerivativesOf.variation`."""
         return self.balance.variation(path)
-
-    def by(self, path: str) -> Derivative:
-        """Derivative of the quantity by the parameter `path`; see `DerivativesOf.by`."""
-        return self.along(self.variation(path))
 
     def along(self, variation: Variation) -> Derivative:
         """Derivative of the quantity along a variation of the case.

@@ -8,6 +8,7 @@ or to close, the derivative has two values, one on either side.
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -42,7 +43,7 @@ from petalfoil.equilibrium.parameter_response import (
     StateRate,
 )
 from petalfoil.equilibrium.point_rates import PointEquilibrium, point_response
-from petalfoil.equilibrium.small_motion import ElementEquilibrium
+from petalfoil.equilibrium.small_motion import AT_ASPERITIES, ElementEquilibrium
 from petalfoil.equilibrium.solution import Solution, total_residual
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.parts import scalars_of
@@ -76,6 +77,8 @@ class Derivative:
         Whether the two sides differ.
     fineness : float
         Steps in which the results were differentiated, see `Variation`.
+    remark : str
+        What they are not known to the last digits by, for people.
     """
 
     below: Results
@@ -83,10 +86,39 @@ class Derivative:
     reach: tuple[float, float]
     at_kink: bool
     fineness: float = 1.0
+    remark: str = ""
+
+
+POINT_CHANGES = "a contact point begins or ends here: derivatives with contacts at nodes"
+OVER_ASPERITIES = "contact pressures over asperities: known to some 1e-4 of the largest force"
+
+
+class ByParameters(ABC):
+    """Something with derivatives along variations of its case, hence by its parameters."""
+
+    @abstractmethod
+    def variation(self, path: str) -> Variation:
+        """The case at values of the parameter `path`."""
+
+    @abstractmethod
+    def along(self, variation: Variation) -> Derivative:
+        """Derivatives along a variation of the case."""
+
+    def by(self, path: str) -> Derivative:
+        """Derivatives by the parameter `path`.
+
+        Raises
+        ------
+        DefinitionError, UsageError
+            The case has no such parameter, or none that it could be differentiated by.
+        ConvergenceError
+            The contacts do not determine the state.
+        """
+        return self.along(self.variation(path))
 
 
 @dataclass(frozen=True, eq=False)
-class DerivativesOf:
+class DerivativesOf(ByParameters):
     """Derivatives of the results of one equilibrium.
 
     Attributes
@@ -192,18 +224,6 @@ class DerivativesOf:
             raise UsageError(f"no derivative by {path}: it is {why}")
         return Variation(self.case, parameter, self.own, self.thinnest)
 
-    def by(self, path: str) -> Derivative:
-        """Derivatives by the parameter `path`.
-
-        Raises
-        ------
-        DefinitionError, UsageError
-            The case has no such parameter, or none that it could be differentiated by.
-        ConvergenceError
-            The contacts do not determine the state.
-        """
-        return self.along(self.variation(path))
-
     def response(self, rates: EquationValues, nearest: float) -> ParameterResponse:
         """How the state follows; contacts that change within `nearest` of the parameter make a kink."""
         return point_response(self.with_points, self.held, rates, nearest)
@@ -212,8 +232,11 @@ class DerivativesOf:
         """Derivatives along a variation of the case."""
         if self.told.elements is not None:
             smooth = self._on_elements(self.told.elements, variation)
-            if smooth is not None:
-                return smooth
+            return replace(self._at_nodes(variation), remark=POINT_CHANGES) if smooth is None else smooth
+        return self._at_nodes(variation)
+
+    def _at_nodes(self, variation: EquationFamily) -> Derivative:
+        """The derivative with contacts at nodes, isolated ones moved between them where they are `as_points`."""
         response = self.response(variation.rates(self.at_nodes), KINK * variation.size)
         finer = self._small_beside_the_film(variation, response)
         if not response.at_kink:
@@ -255,7 +278,8 @@ class DerivativesOf:
         change = float(np.max(np.abs(ahead.film_thickness * unit / own - 1.0))) / abs(steps)
         finer = variation if change <= FILM_CHANGE else variation.finer(variation.fineness * FILM_CHANGE / change)
         along = self._quotients(finer, finer.stencil, rate)
-        return Derivative(along, along, rate.reach, False, finer.fineness)
+        remark = OVER_ASPERITIES if found.contact_model == AT_ASPERITIES else ""
+        return Derivative(along, along, rate.reach, False, finer.fineness, remark)
 
     def _quotients(self, variation: EquationFamily, points: Stencil, rate: ElementRate) -> Results:
         """Derivatives of the results along the line of the state."""

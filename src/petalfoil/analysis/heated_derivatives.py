@@ -18,7 +18,7 @@ from typing import Self, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.analysis.derivatives import KINK, Derivative, DerivativesOf, Results, ResultsOf
+from petalfoil.analysis.derivatives import KINK, ByParameters, Derivative, DerivativesOf, Results, ResultsOf
 from petalfoil.analysis.variation import CENTRAL, EquationFamily, Stencil, Variation
 from petalfoil.case import Case
 from petalfoil.equilibrium.parameter_response import Equations, EquationValues
@@ -95,7 +95,7 @@ class TemperatureVariation(EquationFamily):
 
 
 @dataclass(frozen=True, eq=False)
-class HeatedDerivatives:
+class HeatedDerivatives(ByParameters):
     """Derivatives of the results of one equilibrium whose temperatures follow.
 
     Attributes
@@ -134,10 +134,6 @@ class HeatedDerivatives:
     def variation(self, path: str) -> Variation:
         """The case at values of the parameter `path`; see `DerivativesOf.variation`."""
         return self.frozen.variation(path)
-
-    def by(self, path: str) -> Derivative:
-        """Derivatives by the parameter `path`; see `DerivativesOf.by`."""
-        return self.along(self.variation(path))
 
     @cached_property
     def by_temperatures(self) -> list[tuple[EquationFamily, Derivative]]:

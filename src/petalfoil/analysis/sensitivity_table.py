@@ -258,8 +258,9 @@ def with_effect(row: Row, found: Derivative, variation: Variation) -> Row:
 
 
 def in_words(found: Derivative) -> str:
-    """Whether the derivative has two sides."""
-    return "converged; a contact opens or closes here: the sides differ" if found.at_kink else "converged"
+    """Whether the derivative has two sides, and what it is not exact by."""
+    sides = "a contact opens or closes here: the sides differ" if found.at_kink else ""
+    return "; ".join(filter(None, ["converged", found.remark, sides]))
 
 
 def ordered(lines: Sequence[Line], quantities: Sequence[str]) -> list[Line]:

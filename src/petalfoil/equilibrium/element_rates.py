@@ -15,10 +15,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.equilibrium.contact_sets import OVERLAP, least_pull
 from petalfoil.equilibrium.element_tangent import ElementTangent
 from petalfoil.equilibrium.parameter_response import Equations
+from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.equilibrium.run_context import current_run
-from petalfoil.equilibrium.small_motion import AT_POINTS, ElementEquilibrium
+from petalfoil.equilibrium.small_motion import ElementEquilibrium
 from petalfoil.equilibrium.solution import Solution
 
 Array = NDArray[np.float64]
@@ -132,21 +134,22 @@ def element_rate(found: ElementEquilibrium, tangent: ElementTangent, rates: Elem
 
 
 def reach(found: ElementEquilibrium, rates: ElementValues, rate: ElementRate, sign: float) -> float:
-    """Change of the parameter at which, as it moves by `sign`, a reaction vanishes or a gap closes; infinite for never.
+    """Change of the parameter at which, as it moves by `sign`, a contact ends or begins; infinite for never.
 
-    Contact pressures over asperities do neither.
+    Reactions that pull and gaps below zero count as Newton's method counts them: what is smaller decides nothing.
+    Contact pressures over asperities neither end nor begin.
     """
-    if found.contact_model != AT_POINTS:
+    if not isinstance(found, PointContacts):
         return math.inf
     equations, points = found.equations, found.points
     first = len(equations.deflection) + len(equations.pressures)
-    ends = falling(points.reaction, sign * rate.change[first : first + len(points.reaction)])
+    ends = falling(points.reaction + least_pull(equations), sign * rate.change[first : first + len(points.reaction)])
     part = SMALL / max(float(np.max(np.abs(rate.change), initial=0.0)), SMALL)
     problem = equations.problem
     ahead = found.moved(problem.at(displacement=problem.displacement + part * rate.displacement), part * rate.change)
     (gaps, beside), (moved, _) = found.gaps, ahead.gaps
     closing = rates.gaps + (moved - gaps) / part
-    return min(ends, falling(gaps[~beside], sign * closing[~beside]))
+    return min(ends, falling(gaps[~beside] + OVERLAP, sign * closing[~beside]))
 
 
 def falling(value: Array, change: Array) -> float:
