@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.contact_sets import OVERLAP, least_pull
+from petalfoil.equilibrium.contact_sets import OVERLAP, PULL, least_pull
 from petalfoil.equilibrium.element_tangent import ElementTangent
 from petalfoil.equilibrium.parameter_response import Equations
 from petalfoil.equilibrium.point_contacts import PointContacts
@@ -143,7 +143,9 @@ def reach(found: ElementEquilibrium, rates: ElementValues, rate: ElementRate, si
         return math.inf
     equations, points = found.equations, found.points
     first = len(equations.deflection) + len(equations.pressures)
-    ends = falling(points.reaction + least_pull(equations), sign * rate.change[first : first + len(points.reaction)])
+    ends = falling(
+        points.reaction + least_pull(equations, PULL), sign * rate.change[first : first + len(points.reaction)]
+    )
     part = SMALL / max(float(np.max(np.abs(rate.change), initial=0.0)), SMALL)
     problem = equations.problem
     ahead = found.moved(problem.at(displacement=problem.displacement + part * rate.displacement), part * rate.change)
