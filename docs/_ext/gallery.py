@@ -18,8 +18,16 @@ def scraper(block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, Any]
     """Write the figures that a block of a script has made, and the names of the results it holds.
 
     Figures of petalfoil are not those of pyplot, which sphinx-gallery looks for: they are the variables of a script.
+
+    Raises
+    ------
+    ValueError
+        The variable `result` of the script holds a state that did not converge: the build ends.
     """
     names = block_vars["example_globals"]
+    result = names.get("result")
+    if isinstance(result, xr.Dataset) and "converged" in result and not bool(result["converged"].all()):
+        raise ValueError(f"{block_vars['src_file']}: a result that did not converge is not shown")
     seen = names.setdefault("__shown__", [])
     figures = [value for value in names.values() if isinstance(value, Figure) and value not in seen]
     seen.extend(figures)

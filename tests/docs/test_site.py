@@ -5,12 +5,9 @@ from __future__ import annotations
 import math
 import re
 import runpy
-from pathlib import Path
 from typing import Any
 
 import pytest
-import xarray as xr
-from matplotlib.figure import Figure
 
 import petalfoil
 from petalfoil import plot
@@ -83,15 +80,3 @@ def test_the_tutorial_of_whirl_tells_what_it_says(monkeypatch: pytest.MonkeyPatc
     masses = [float(mass) for mass in re.findall(r"N: critical mass (\S+) kg", capsys.readouterr().out)]
     assert masses == sorted(masses)
     assert len(masses) == 3
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("path", GALLERY, ids=lambda path: path.stem)
-def test_a_script_of_the_gallery_draws_converged_results(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(path.parent)
-    names = runpy.run_path(str(path))
-    result = names["result"]
-    assert isinstance(result, xr.Dataset)
-    assert path.stem in {f"plot_{result.attrs['analysis']}", "plot_campbell", "plot_maps", "plot_samples", "plot_sobol"}
-    assert "converged" not in result or bool(result["converged"].all())
-    assert any(isinstance(value, Figure) for value in names.values())
