@@ -47,6 +47,12 @@ LEAST_ELEMENTS, MOST_ELEMENTS = 12, 96
 
 POSITION = ("eccentricity_x", "eccentricity_y")
 
+BALANCED = {
+    **dict.fromkeys(("bearing_force", "force_x", "force_y"), "load_x"),
+    **dict.fromkeys(("moment_x", "moment_y"), "load_moment_x"),
+}
+"""Forces and moments that a balance is given, by the result that tells it."""
+
 PLACES = ("min_film_thickness_angle", "min_film_thickness_z")
 """Where the film is thinnest: no single place where contact holds it at its least thickness along a stretch."""
 
@@ -136,7 +142,7 @@ def table(records: Sequence[Record]) -> list[Estimate]:
     first, good = records[answered.index(True)], [record for record in records if record.converged]
     in_contact = any(float(record.scalars.get("contact_fraction", 0.0)) > 0.0 for record in good)
     results = [name for name in SCALARS if _is_result(name, first) and not (in_contact and name in PLACES)]
-    names = [name for name in results if all(_known(name, record) for record in good)]
+    names = [name for name in results if all(_known(name, record) for record in good) and not _is_held(name, good)]
     scale = resolution(first)
     return [_estimate(name, records, scale.get(SCALARS[name].units, 0.0)) for name in names]
 
@@ -244,10 +250,21 @@ def _part(progress: Progress | None, start: float, end: float, text: str) -> Pro
 
 
 def _is_result(name: str, record: Record) -> bool:
-    """Whether a number answers the question; under a load the position of the journal does."""
+    """Whether a number answers the question; under a load the position of the journal does, and no force or moment.
+
+    Of two unequal bearings each carries a part of the load that is an answer.
+    """
     if name in POSITION:
         return "load_x" in record.scalars
+    if name in BALANCED and BALANCED[name] in record.scalars and "other_force_x" not in record.scalars:
+        return False
     return SCALARS[name].role is Role.ANSWER and SCALARS[name].kind is DataType.FLOAT
+
+
+def _is_held(name: str, records: Sequence[Record]) -> bool:
+    """Whether the minimum film thickness is that of contact on every grid: a constant of the case."""
+    pairs = [(record.scalars.get(name), record.scalars.get("contact_film_thickness")) for record in records]
+    return name == "min_film_thickness" and all(found == held for found, held in pairs)
 
 
 def _known(name: str, record: Record) -> bool:

@@ -182,7 +182,21 @@ def test_a_grid_study_balances_the_load_on_every_grid() -> None:
         assert 0.0 < float(ds["eccentricity_y_error"]) < 1e-6
     bars = solve.record(LOADED, error=True).errors
     assert bars is not None
-    assert bars["bearing_force"] < 1e-4
+    assert bars["eccentricity_y"] > 0.0
+    assert not {"bearing_force", "force_x", "force_y"} & {*bars}  # given
+
+
+@pytest.mark.slow
+def test_a_film_that_is_held_at_contact_has_no_error_bar() -> None:
+    """At a hundredth of the speed the journal touches on every grid: the minimum film thickness is a constant."""
+    touching = case(
+        "paper_n8", **{"model.cells_per_pitch": 32, "operation.speed": 10.0, "operation.load": (0.0, -15.0)}
+    )
+    record = solve.record(touching.replace(**{"operation.eccentricity": (0.0, 0.0)}), error=True)
+    assert record.scalars["min_film_thickness"] == touching.surface.contact_film_thickness
+    assert record.errors is not None
+    assert "min_film_thickness" not in record.errors
+    assert record.errors["contact_fraction"] > 0.0
 
 
 def test_which_of_load_and_eccentricity_is_meant_is_asked() -> None:
