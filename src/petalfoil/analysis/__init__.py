@@ -53,6 +53,7 @@ What they share:
 `sensitivity_table.py` the rows of `sensitivity`
 `impedance.py`         small motions of the journal
 `rotor_balance.py`     a rotor in two bearings that do not share its load evenly
+`support.py`           one of these bearings, where the shaft moves its journal
 `other_bearing.py`     what results tell of the second of them
 `rotor_on_bearings.py` a rigid rotor on its bearing, or in two of them
 `tilt_coefficients.py` stiffness and damping of a journal that tilts

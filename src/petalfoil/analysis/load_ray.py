@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -217,7 +218,12 @@ class LoadRay:
     def _rotor(self, size: float) -> RotorInBearings:
         """The rotor under a load [N], where its bearings do not share it evenly."""
         x, y = self.direction
-        return RotorInBearings.of(self.case, (size * x, size * y))
+        return replace(self._bearings, load=(size * x, size * y))
+
+    @cached_property
+    def _bearings(self) -> RotorInBearings:
+        """The rotor without load: its bearings are discretised once for all loads."""
+        return RotorInBearings.of(self.case, (0.0, 0.0))
 
     def _neighbour(self, known: Solution, load: Array) -> Solution | None:
         if self.case.heat is not None:
