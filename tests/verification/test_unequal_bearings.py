@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
@@ -11,7 +12,23 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.interpolate import CubicSpline
 
-from petalfoil import Case, balance, capacity, coefficients, curve, liftoff, orbit, runup, sensitivity, solve, stability
+from petalfoil import (
+    Case,
+    balance,
+    capacity,
+    check,
+    coefficients,
+    converge,
+    curve,
+    liftoff,
+    orbit,
+    runup,
+    sensitivity,
+    solve,
+    stability,
+    static,
+)
+from petalfoil.analysis.known_verbs import summaries
 from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.cli.tables import render
 from petalfoil.equilibrium.run_context import running
@@ -208,33 +225,59 @@ def test_a_motion_in_unequal_bearings_grows_as_the_modes_say() -> None:
 # ---------------------------------------------------------------------------------------------- one convention
 
 
+LOADED = case(
+    "rig",
+    rotor={"mass": 6.0, "span": 0.2},
+    **{"model.cells_per_pitch": 12, "operation.eccentricity": (0.0, 0.0), "operation.speed": 12000.0 * RPM},
+    **{"operation.load": (0.0, -60.0)},
+)
+HALF = LOADED.replace(rotor={"mass": 3.0}, **{"operation.load": (0.0, -30.0)})
+UNLOADED = {"operation.load": None}
+
+
+def of_one(case: Case) -> float:
+    """A load or mass of one bearing, from that of the rotor."""
+    return 1.0 / case.bearings
+
+
+MEANT: dict[str, Callable[[Case], object]] = {
+    "check": lambda c: check(c)["radial_clearance"],
+    "balance": lambda c: [balance.record(c).scalars[name] for name in ("eccentricity_y", "min_film_thickness")],
+    "solve": lambda c: [solve.record(c).scalars[name] for name in ("eccentricity_y", "min_film_thickness")],
+    "curve": lambda c: curve(c.replace(**UNLOADED), [5e-6])["force_y"].values,
+    "static": lambda c: static(c.replace(**UNLOADED), [5e-6])["force_y"].values,
+    "coefficients": lambda c: coefficients.record(c, [1500.0]).fields["stiffness"],
+    "runup": lambda c: runup(c, to=9000.0 * RPM, points=3)["friction_torque"].values[:3],
+    "liftoff": lambda c: liftoff(c, [30.0 * c.bearings])["liftoff_speed"].values,
+    "orbit": lambda c: orbit(c, revolutions=0.01, initial="balance")["y"].values[0],
+    "stability": lambda c: [of_one(c) * float(stability.record(c).scalars[name]) for name in ("critical_mass",)],
+    "converge": lambda c: converge(c, levels=2, coarsest=16)["min_film_thickness"].values,
+    "capacity": lambda c: of_one(c) * capacity_at(c),
+    "sensitivity": lambda c: sensitivity(c, "surface.contact_film_thickness", of="min_film_thickness")["derivative"],
+}
+"""What each analysis is asked of a rotor under its load, or with its mass."""
+
+OF_ONE_BEARING = {"sensitivity"}
+"""Analyses that are refused of two bearings that are told apart."""
+
+
+def capacity_at(case: Case) -> float:
+    """Load capacity at a high speed [N]."""
+    fast = case.replace(**{"operation.speed": 40000.0 * RPM, "rotor.second": None})
+    return float(capacity.record(fast, contact_fraction=0.1).scalars["load_capacity"])
+
+
 @pytest.mark.slow
 def test_load_and_mass_mean_the_same_in_every_verb() -> None:
     """The whole rotor's in every verb: as an even pair, as two bearings, and as one bearing with half of both."""
-    grid = {"model.cells_per_pitch": 12, "operation.eccentricity": (0.0, 0.0), "operation.speed": 12000.0 * RPM}
-    even = case("rig", rotor={"mass": 6.0, "span": 0.2}, **grid, **{"operation.load": (0.0, -60.0)})
-    half = case("rig", rotor={"mass": 3.0}, **grid, **{"operation.load": (0.0, -30.0)})
-    both = even.replace(**{"rotor.second": {}})
-
-    def same(of, rtol: float = 1e-6) -> None:
-        one, other, alone = (np.asarray(of(where), dtype=float) for where in (even, both, half))
-        assert_allclose(other, one, rtol=rtol)
-        assert_allclose(alone, one, rtol=rtol)
-
-    for verb in (balance, solve):
-        same(lambda c, verb=verb: [verb.record(c).scalars[name] for name in ("eccentricity_y", "min_film_thickness")])
-    same(lambda c: coefficients.record(c, [1500.0]).fields["stiffness"])
-    same(lambda c: runup(c, to=9000.0 * RPM, points=3)["friction_torque"].values[:3])
-    same(lambda c: liftoff(c, [60.0 if c.bearings == 2 else 30.0])["liftoff_speed"].values)
-    fast = {"operation.speed": 40000.0 * RPM}
-    largest = [
-        float(capacity.record(c.replace(**fast), contact_fraction=0.1).scalars["load_capacity"]) for c in (even, half)
-    ]
-    assert_allclose(largest[0], 2.0 * largest[1], rtol=1e-5)
-    same(lambda c: orbit(c, revolutions=0.01, initial="balance")["y"].values[0])
-    same(lambda c: curve(c.replace(**{"operation.load": None}), [5e-6])["force_y"].values)
-    same(lambda c: stability.record(c).scalars["critical_mass"] / c.bearings)
-    assert [stability.record(c).scalars["rotor_mass"] for c in (even, both)] == [6.0, 6.0]
+    assert set(MEANT) == set(summaries())
+    both = LOADED.replace(**{"rotor.second": {}})
+    for verb, asked in MEANT.items():
+        one, alone = (np.asarray(asked(where), dtype=float) for where in (LOADED, HALF))
+        assert_allclose(alone, one, rtol=1e-5 if verb == "capacity" else 1e-6, err_msg=verb)
+        if verb not in OF_ONE_BEARING:
+            assert_allclose(np.asarray(asked(both), dtype=float), one, rtol=1e-6, err_msg=verb)
+    assert [stability.record(c).scalars["rotor_mass"] for c in (LOADED, both)] == [6.0, 6.0]
 
 
 # ---------------------------------------------------------------------------------------------- in and out

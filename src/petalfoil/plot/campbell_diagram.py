@@ -99,6 +99,10 @@ def _draw_speed_lines(ax: Axes, ds: xr.Dataset) -> None:
         ax.plot(ends * RPM, order * ends * HERTZ, line, color=style.GREY, linewidth=1.2, label=name)
 
 
+BESIDE = (((8.0, -14.0), "left"), ((-8.0, 9.0), "right"))
+"""Where labels of critical speeds stand in turn [points]."""
+
+
 def _mark_crossings(ax: Axes, ds: xr.Dataset) -> None:
     critical = array(ds, "critical_speed")
     critical = np.sort(critical[np.isfinite(critical)])
@@ -108,13 +112,15 @@ def _mark_crossings(ax: Axes, ds: xr.Dataset) -> None:
         critical * RPM, critical * HERTZ, "x", color=style.INK, markersize=9, markeredgewidth=2.0, gid="critical",
         label="critical speed", zorder=5,
     )  # fmt: skip
+    near_end = 0.85 * float(array(ds, "speed").max())  # a label to the right would cross the axis there
     for place, speed in enumerate(critical):
+        place_at, side = ((34.0, -22.0), "right") if speed > near_end else BESIDE[place % 2]
         ax.annotate(
             f"{labels.grouped(speed * RPM)} rpm",
             (speed * RPM, speed * HERTZ),
-            xytext=(8.0, -14.0) if place % 2 == 0 else (-8.0, 9.0),
+            xytext=place_at,
             textcoords="offset points",
-            ha="left" if place % 2 == 0 else "right",
+            ha=side,
             fontsize=style.TICK,
             color=style.INK,
         )
