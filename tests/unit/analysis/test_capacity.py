@@ -195,8 +195,8 @@ def found_or_bounded(seed: int, least: float = 1.5e-6) -> str:
 def test_random_bearings_are_found_or_bounded() -> None:
     """Of a hundred, how many: recorded in docs/how-to/load-capacity.md."""
     ended = [found_or_bounded(seed) for seed in range(100)]
-    assert ended.count("found") >= 35
-    assert ended.count("undecided") <= 5
+    assert ended.count("found") >= 40
+    assert ended.count("undecided") == 0
 
 
 @pytest.mark.long
