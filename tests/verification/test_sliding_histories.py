@@ -27,7 +27,7 @@ from petalfoil.solvers.contact_newton import solve_contacts
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.friction import FrictionState
 from petalfoil.walls.elasticity import Elasticity
-from petalfoil.walls.sliding import stretching
+from petalfoil.walls.sliding import membrane_force, stretching
 from tests.cases import case
 from tests.verification.shell_helpers import UNIT, ElasticProblem, strip_shell, uniform_grid, uniform_load
 from tests.verification.sliding_helpers import HalfArch
@@ -111,6 +111,18 @@ def test_loop_of_an_arc_leaf_on_its_tip() -> None:
         errors.append(lost / exact_loss(mu) - 1.0)
     assert abs(errors[-1]) < 2e-3
     assert abs(errors[-1]) < 0.5 * abs(errors[0])
+
+
+def test_the_membrane_carries_what_friction_pulls() -> None:
+    """Along a leaf that is held at its root and rubs at its tip the membrane force is the friction there."""
+    cells = 32
+    problem, unit, friction = leaf(cells, 0.2)
+    (_, state) = led(problem, unit, friction, np.array([LOW, HIGH]))
+    mesh = PackMesh(1, cells, uniform_grid(ARC, cells), np.zeros(1), axis_2d(1.0))
+    faces = Faces(np.zeros(1), np.ones(1), np.ones(1), np.full(1, 12.0 * SLENDER**2))
+    force = membrane_force(mesh, faces, state.x * UNIT)
+    assert state.friction.force[0] != 0.0
+    assert_allclose(force, np.full(force.shape, state.friction.force[0] * ARC / cells), rtol=1e-6)
 
 
 def test_an_arc_leaf_whose_tip_sticks_loses_nothing() -> None:

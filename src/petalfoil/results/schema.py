@@ -162,6 +162,9 @@ FIELDS: dict[str, Variable] = {
     "bending_stress": Variable(
         _PETAL, "Pa", "bending stress of the petal's metal along phi, assembly included", "sigma_phi"
     ),
+    "membrane_stress": Variable(
+        _PETAL, "Pa", "mean stress over the petal's metal along phi, by friction that stretches it", "sigma_m"
+    ),
 }
 
 HISTORIES: dict[str, Variable] = {
@@ -267,6 +270,7 @@ SCALARS: dict[str, Variable] = {
     "side_leakage": _answer("kg s-1", "mass flow of gas that leaves at both ends", "m_dot"),
     "max_backing_deflection": _answer("m", "largest deflection of the backing springs", "max V"),
     "max_deflection": _answer("m", "largest deflection of a bump foil", "max W"),
+    "max_membrane_stress": _answer("Pa", "maximum magnitude of the membrane stress of the petals", "max sigma_m"),
     "max_bending_stress": _answer("Pa", "maximum magnitude of the bending stress of the petals", "sigma_max"),
     "shaft_slope_x": _answer("rad", "slope of the shaft in two bearings along x", "a_x"),
     "shaft_slope_y": _answer("rad", "slope of the shaft in two bearings along y", "a_y"),

@@ -93,6 +93,7 @@ _SHOWN: dict[str, Shown] = {
     "max_backing_deflection": Shown("maximum backing deflection", "µm", 1e6),
     "max_deflection": Shown("maximum deflection", "µm", 1e6),
     "max_bending_stress": Shown("maximum bending stress", "MPa", 1e-6),
+    "max_membrane_stress": Shown("maximum membrane stress", "MPa", 1e-6),
     "shaft_slope_x": Shown("slope of the shaft x", "µrad", 1e6),
     "shaft_slope_y": Shown("slope of the shaft y", "µrad", 1e6),
     "other_eccentricity_x": Shown("other bearing: displacement x", "µm", 1e6),

@@ -6,9 +6,8 @@ For gaps `g`, reactions `lam`, slips `sigma` since the step began and friction f
     0 <= g _|_ lam >= 0 ,      |T| <= mu lam ,      T = mu lam sign(sigma) where sigma != 0                  (M6)
 
 Every state of the contacts (open; closed and sticking, slipping forward or backward) makes (M6) linear. States of wrong
-sign change all at once, then one by one (Murty 1974). Where that returns to former ones, the constants are led from
-those that the known forces solve to those that are asked for, and contacts change their state one after another where
-they must (Katzenelson 1965).
+sign change all at once. Where that returns to former ones, the constants are led from those that the known forces solve
+to those that are asked for, and contacts change their state one after another where they must (Katzenelson 1965).
 """
 
 from __future__ import annotations
@@ -22,11 +21,11 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
-AT_ONCE, ONE_BY_ONE = 20, 60
-"""Most changes of all wrong states at once, and of single ones: five to ten are typical."""
+AT_ONCE = 20
+"""Most changes of all wrong states at once: five to ten are typical."""
 
-EVENTS = 800
-"""Most changes of state along the way from known forces: some ten to a hundred are typical."""
+EVENTS = 120
+"""Most changes of state along the way from known forces: some ten are typical, for more a shorter step is cheaper."""
 
 ROUNDING = 1e-10
 """A quantity of wrong sign this small over the largest of its kind is zero."""
@@ -147,11 +146,15 @@ def led(space: ContactSpace, constant: tuple[Array, Array], known: KnownForces) 
     answer = np.where(space.held, known.reaction, known.gap)
     start = answer - space.answer @ z, known.slip - space.slip @ z
     ahead = constant[0] - start[0], constant[1] - start[1]
-    states, part, flipped = known.states, 0.0, -1
+    states, part, flipped, seen = known.states, 0.0, -1, set[bytes]()
     for _ in range(EVENTS):
-        here, rate = of_states(space, start, states), of_states(space, ahead, states)
-        if here is None or rate is None:
+        if states.key in seen:
+            return None  # rounding leads round in a circle: the way passes each combination of states once
+        seen.add(states.key)
+        both = of_each(space, [start, ahead], states)
+        if both is None:
             return None
+        here, rate = both
         at, by = margins(space, here), margins(space, rate)
         way = 1.0 if flipped < 0 else float(np.sign(by[flipped]))
         falls = np.isfinite(at) & (by * way < 0.0)
@@ -211,9 +214,9 @@ SLIP = 2
 
 
 def by_states(space: ContactSpace, constant: tuple[Array, Array], guess: States) -> ContactForces | None:
-    """Change all wrong states at once, where that returns to former ones the first of them; None after many."""
+    """Change all wrong states at once; None where that returns to former ones."""
     states, seen = guess, set[bytes]()
-    for count in range(AT_ONCE + ONE_BY_ONE):
+    for _ in range(AT_ONCE):
         found = of_states(space, constant, states)
         if found is None:
             return None
@@ -221,43 +224,47 @@ def by_states(space: ContactSpace, constant: tuple[Array, Array], guess: States)
         wrong_slips = slips != states.slips
         if not wrong_contacts.any() and not wrong_slips.any():
             return found
-        if count >= AT_ONCE or states.key in seen:
-            wrong_contacts, wrong_slips = first_of(wrong_contacts, wrong_slips)
         seen.add(states.key)
         states = States(states.closed ^ wrong_contacts, np.where(wrong_slips, slips, states.slips))
+        if states.key in seen:
+            return None
     return None
-
-
-def first_of(wrong_contacts: Mask, wrong_slips: Mask) -> tuple[Mask, Mask]:
-    """The first wrong state alone."""
-    both = np.concatenate([wrong_contacts, wrong_slips])
-    first = np.zeros_like(both)
-    first[np.argmax(both)] = True
-    return first[: len(wrong_contacts)], first[len(wrong_contacts) :]
 
 
 def of_states(space: ContactSpace, constant: tuple[Array, Array], states: States) -> ContactForces | None:
     """Unknowns of contacts in given states; None if these do not determine them."""
+    found = of_each(space, [constant], states)
+    return None if found is None else found[0]
+
+
+def of_each(space: ContactSpace, constants: list[tuple[Array, Array]], states: States) -> list[ContactForces] | None:
+    """The same for several constants at once."""
     m, f = len(space.held), len(space.rubs)
     moves = space.held != states.closed  # an opening of what was held, or a reaction of what was open
     touching = states.closed[space.rubs]
     sticks, slides = touching & (states.slips == 0), touching & (states.slips != 0)
+    at = space.rubs[slides]
     # reactions in terms of all unknowns: an answer of a held contact, an unknown of an open one
-    by_unknowns = np.where(space.held[:, None], space.answer, np.eye(m, m + f))
-    limit = (space.coefficient * states.slips)[:, None] * by_unknowns[space.rubs]
-    limit_0 = space.coefficient * states.slips * np.where(space.held, constant[0], 0.0)[space.rubs]
-    rows = np.vstack([
-        space.answer[moves], space.slip[sticks], (np.eye(f, m + f, m) - limit)[slides]
-    ])  # fmt: skip
-    right = -np.concatenate([constant[0][moves], constant[1][sticks], -limit_0[slides]])
+    by_unknowns = np.where(space.held[at, None], space.answer[at], np.eye(m, m + f)[at])
+    grip = space.coefficient * states.slips[slides]
+    rows = np.vstack(
+        [space.answer[moves], space.slip[sticks], np.eye(f, m + f, m)[slides] - grip[:, None] * by_unknowns]
+    )
+    right = [
+        -np.concatenate([answer[moves], slip[sticks], -grip * np.where(space.held, answer, 0.0)[at]])
+        for answer, slip in constants
+    ]
     free = np.concatenate([moves, touching])
-    z = np.zeros(m + f)
+    z = np.zeros((m + f, len(constants)))
     try:
-        z[free] = np.linalg.solve(rows[:, free], right)
+        z[free] = np.linalg.solve(rows[:, free], np.column_stack(right))
     except np.linalg.LinAlgError:
         return None
-    answer, slip = space.answer @ z + constant[0], space.slip @ z + constant[1]
-    return ContactForces(z[:m], answer, z[m:], slip, states)
+    answers, slips = space.answer @ z, space.slip @ z
+    return [
+        ContactForces(z[:m, k], answers[:, k] + answer, z[m:, k], slips[:, k] + slip, states)
+        for k, (answer, slip) in enumerate(constants)
+    ]
 
 
 def wrong(space: ContactSpace, found: ContactForces) -> tuple[Mask, Index]:

@@ -25,7 +25,7 @@ from petalfoil.walls.bump_foil import foundation_stiffness
 from petalfoil.walls.elasticity import Elasticity
 from petalfoil.walls.element_pack import ElementPack, element_pack
 from petalfoil.walls.kind import Capability, Fields, Scalars, WallKind
-from petalfoil.walls.sliding import sliding
+from petalfoil.walls.sliding import membrane_force, sliding
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -186,6 +186,7 @@ class PetalWall(WallKind):
         placed = {} if state.placed is None else self._placed(case, state.placed)
         return {
             **placed,
+            **self._stretched(case, mesh, state.deflection),
             "journal_contact_pressure": whole(pressure[rows.journal].reshape(mesh.count, -1, mesh.n_z)),
             "deflection": whole(W),
             **self.cross_section(case, state.deflection),
@@ -193,6 +194,14 @@ class PetalWall(WallKind):
             "petal_contact_pressure": whole(on_neighbour),
             "bending_stress": whole(stress),
         }
+
+    def _stretched(self, case: Case, mesh: PackMesh, displacement: Array) -> Fields:
+        """Stress of the membranes, where friction stretches petals: they have tangential displacements."""
+        if not slides(case) or len(displacement) == mesh.count * (mesh.n_node - 1) * mesh.n_z:
+            return {}
+        thickness = np.array([petal.thickness for petal in petals_of(case)[0].each])
+        stress = membrane_force(mesh, petal_faces(case), displacement) / thickness[:, None, None]
+        return {"membrane_stress": mesh.axial.whole(stress)}
 
     def _placed(self, case: Case, contacts: PlacedContacts) -> Fields:
         """Contacts between nodes; their bending stress is the larger one of the two petals."""
@@ -234,6 +243,8 @@ class PetalWall(WallKind):
         at_contacts = np.max(np.abs(fields.get("contact_bending_stress", np.zeros(0))), initial=0.0)
         stress = max(float(np.max(np.abs(fields["bending_stress"]))), float(at_contacts))
         found: Scalars = {"max_bending_stress": stress}
+        if "membrane_stress" in fields:
+            found["max_membrane_stress"] = float(np.max(np.abs(fields["membrane_stress"])))
         if "backing_deflection" in fields:
             found["max_backing_deflection"] = float(np.max(fields["backing_deflection"]))
         return found

@@ -92,6 +92,19 @@ def stretching(bending: Elasticity, mesh: PackMesh, faces: Faces) -> Elasticity:
     )
 
 
+def membrane_force(mesh: PackMesh, faces: Faces, displacement: Array) -> Array:
+    """Membrane force over the width at all nodes, of the cells beside each the larger one, (petal, node, axial) [N/m].
+
+    `displacement` are deflections and tangential displacements of all nodes but the roots [m].
+    """
+    sums, differences = (of_each(mesh, along_petal(mesh, signs)) for signs in ((1.0, 1.0), (-1.0, 1.0)))
+    W, V = np.split(displacement, 2)
+    strain = over_cells(mesh, 0.5 / faces.bend_radius) * (sums @ W) + (differences @ V) / cell_lengths(mesh, faces)
+    force = (over_cells(mesh, faces.membrane) * strain).reshape(mesh.count, mesh.n_node - 1, mesh.n_z)
+    before, after = (np.concatenate(pair, axis=1) for pair in ((force[:, :1], force), (force, force[:, -1:])))
+    return np.where(np.abs(before) > np.abs(after), before, after)
+
+
 def slip_at_gaps(mesh: PackMesh, faces: Faces) -> sp.csr_array:
     """Slip at every gap on the bushing and between petals, from deflections and tangential displacements (M4)."""
     count, n_z = mesh.count, mesh.n_z

@@ -1,0 +1,50 @@
+"""Random packs with friction between petals that slide along themselves: assembled at rest, then loaded."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from petalfoil.analysis.speeds import SpeedLine
+from petalfoil.case import Case
+from petalfoil.equilibrium.run_context import running
+from petalfoil.errors import ConvergenceError
+from tests.random_packs import random_case
+
+PRESSURE = 0.1
+"""Load over ambient pressure on the projected area of the bearing."""
+
+
+def rubbing(seed: int, cells: int) -> Case:
+    """A random steel pack with friction 0.1, its journal free."""
+    changes = {"model.cells_per_pitch": cells, "surface.petal_friction": 0.1, "operation.eccentricity": (0.0, 0.0)}
+    return random_case(np.random.default_rng(seed), **changes)
+
+
+def loaded(case: Case) -> tuple[bool, int, int]:
+    """Whether the pack was assembled and loaded, its factorisations, and the steps that they were for."""
+    load = PRESSURE * case.gas.ambient_pressure * 2.0 * case.bearing.journal_radius * case.bearing.length
+    with running() as run:
+        try:
+            found = SpeedLine(case, (0.0, -load), from_rest=True).at(0.0)
+        except ConvergenceError:
+            return False, 0, 0
+        assert found.residual < 1e-8
+        assert found.force_residual < 1e-9
+        steps = sum(event["phase"] == "friction" for event in run.history)
+        return True, run.film.factorizations, steps
+
+
+@pytest.mark.long
+def test_a_hundred_random_packs_are_assembled_and_loaded() -> None:
+    """At least 98 of 100; the rest ends in a typed error."""
+    assert sum(loaded(rubbing(seed, 12))[0] for seed in range(100)) >= 98
+
+
+@pytest.mark.long
+def test_factorisations_a_step_do_not_grow_with_the_grid() -> None:
+    for seed in range(3):
+        coarse, fine = (loaded(rubbing(seed, cells)) for cells in (12, 24))
+        assert coarse[0]
+        assert fine[0]
+        assert fine[1] / fine[2] < 1.5 * coarse[1] / coarse[2]
