@@ -8,6 +8,7 @@ import numpy as np
 
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import nothing_found
+from petalfoil.equilibrium.line_sets import with_lines
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution, from_contacts
 from petalfoil.solvers.contact_newton import solve_contacts
@@ -32,8 +33,11 @@ def free_to_tilt(case: Case, answer: Solution) -> Solution:
         return answer
     problem = build_tilting(case)
     e = problem.displacement.copy()
-    e[:2] = answer.problem.displacement
-    return at_same_state(problem.at(displacement=e), answer)
+    e[:2] = answer.position
+    found = at_same_state(problem.at(displacement=e), answer)
+    if answer.lines is None:
+        return found
+    return replace(with_lines(replace(found, load=None)), load=found.load)  # at this position, whatever holds it
 
 
 def held(case: Case, answer: Solution) -> Solution:
@@ -46,10 +50,11 @@ def held(case: Case, answer: Solution) -> Solution:
     """
     if answer.problem.layout.n_position == len(case.operation.eccentricity):
         return answer
-    e = answer.problem.displacement * answer.problem.layout.scales.length
+    e = answer.position * answer.problem.layout.scales.length
     slopes = tuple(map(float, e[2:] / lever_of(case)))
     problem = build_problem(case.replace(**{"operation.tilt": slopes, "operation.moment": None}))
-    return at_same_state(problem.at(displacement=answer.problem.displacement[:2]), answer)
+    found = at_same_state(problem.at(displacement=answer.position[:2]), answer)
+    return found if answer.lines is None else with_lines(found)
 
 
 def at_same_state(problem: CoupledProblem, answer: Solution) -> Solution:
