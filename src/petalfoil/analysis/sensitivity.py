@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Annotated
@@ -309,7 +310,7 @@ def _points(case: Case, asked: Asked, progress: Progress | None) -> Iterator[Rec
             lines += lines_of(path, sources, asked.step)
             if progress is not None:
                 progress(number / len(asked.paths), f"sensitivity: {path}")
-        felt = [line for line in lines if not asked.all_of_them or is_felt(case, line)]
+        felt = [line for line in lines if not asked.all_of_them or is_felt(case, line)] or lines
         cost = effort(run.seconds), Solves(solves_of(run) - before)
         records = [
             record_of("sensitivity", case, line.row, *state_of(case, asked.verb), *cost, line.outcome)
@@ -347,7 +348,9 @@ def named(asked: Asked, there: list[str]) -> list[str]:
 
 
 def is_felt(case: Case, line: Line) -> bool:
-    """Whether a line tells of an effect beyond rounding."""
+    """Whether a line tells of an effect beyond rounding, or why it tells none; the angle of no force has no effects."""
+    if math.isnan(line.row.effect):
+        return not line.outcome.converged
     return line.row.is_felt(rounding_of(case, line.row.quantity))
 
 

@@ -141,8 +141,8 @@ class Row:
 
         `rounding` is what is nothing but rounding of the result, in its unit.
         """
-        if math.isnan(self.effect):  # a failure; an angle of no force has no effects
-            return not math.isnan(self.quantity_value)
+        if math.isnan(self.effect):
+            return True
         least = FELT * abs(self.parameter_change / self.parameter_size * self.quantity_value)
         return abs(self.effect) > max(least, rounding)
 
