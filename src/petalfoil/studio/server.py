@@ -32,6 +32,11 @@ LARGEST_MESSAGE = 256 * 1024
 """Largest message of a browser on the web socket [bytes]: a long text in a field."""
 RECONNECT = 20.0
 """Time after which a page whose connection broke is taken for left [s]: a busy machine may answer late."""
+FROZEN = 40.0
+"""Time that a browser may be silent while it draws until its connection is closed, and with it what it says next is
+lost [s]: a 3-D view drawn by software on a busy machine took 13."""
+PART_OF_RECONNECT = 0.4
+"""NiceGUI's share of the time to reconnect, as an application has it, that is given to a silent browser."""
 RESENT = 30
 """Messages that are kept for a connection that breaks: a picture has 100 kB, and a page that missed more reloads."""
 WIDE = 900
@@ -139,7 +144,7 @@ def _application(lifespan: Any, sessions: Sessions) -> FastAPI:
     """The application behind the guard."""
     application = FastAPI(lifespan=lifespan, docs_url=None, redoc_url=None, openapi_url=None)
 
-    @ui.page("/", title="petalfoil studio")
+    @ui.page("/", title="petalfoil studio", reconnect_timeout=RECONNECT)
     async def index() -> None:
         ui.add_head_html(f'<link rel="modulepreload" href="{charts_script()}">')
         await show(sessions)
@@ -151,7 +156,7 @@ def _application(lifespan: Any, sessions: Sessions) -> FastAPI:
         dark=None,
         tailwind=False,
         show_welcome_message=False,
-        reconnect_timeout=RECONNECT,
+        reconnect_timeout=FROZEN / PART_OF_RECONNECT,
         message_history_length=RESENT,
         binding_refresh_interval=None,
     )
