@@ -91,6 +91,8 @@ def folder() -> Iterator[Path]:
 def growth(rows: list[tuple[int, float, float]]) -> str:
     """How memory changes from the warm-up to the end."""
     settled = [row for row in rows if row[0] >= WARM_UP]
+    if not settled:
+        return f"memory is looked at from {WARM_UP} cases on"
     told = []
     for column, name in ((1, "driver"), (2, "largest worker")):
         values = [row[column] for row in settled]
