@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from petalfoil.case import Case, FrictionHistory
+from petalfoil.equilibrium.friction_under_load import PATH
 from petalfoil.equilibrium.solution import Solution
 
 RELAXED = "relaxed: no friction forces between the petals, as vibrations leave the pack"
@@ -20,6 +21,13 @@ class FrictionTold:
 
     friction_path: str | None
     petal_friction_work: float | None = None
+
+    @classmethod
+    def under_load(cls, case: Case) -> FrictionTold:
+        """Those of balances of a case, wherever they are."""
+        if not case.surface.petal_friction > 0.0 or case.petals is None:
+            return cls(None)
+        return cls(PATH if follows_path(case) else RELAXED)
 
     @classmethod
     def of(cls, case: Case, answer: Solution) -> FrictionTold:

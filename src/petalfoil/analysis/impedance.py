@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,7 +14,7 @@ from petalfoil.equilibrium.element_contacts import near_nodes
 from petalfoil.equilibrium.element_response import ElementMotion
 from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.equilibrium.run_context import current_run
-from petalfoil.equilibrium.small_motion import ElementEquilibrium, Motion
+from petalfoil.equilibrium.small_motion import HELD_AT_NODES, ElementEquilibrium, Motion
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 from petalfoil.system.friction import friction_at_points, friction_of
@@ -53,7 +55,8 @@ def elastic_and_sliding(case: Case, answer: Solution) -> tuple[Motion, SlidingCo
         return on_elements(case, found)
     sliding = sliding_at(case, answer)
     if answer.friction is not None and sliding is not None:  # a contact that sticks does not travel
-        return SmallMotion.at_nodes(answer, sliding.sticking(len(answer.x))), sliding
+        stuck = SmallMotion.at_nodes(answer, sliding.sticking(len(answer.x)))
+        return replace(stuck, contact_model=HELD_AT_NODES), sliding
     if sliding is None and answer.lines is not None:
         return answer.lines.motion, None
     motion = SmallMotion.about(answer, None if sliding is None else sliding.sticking(len(answer.x)))

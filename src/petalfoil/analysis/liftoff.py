@@ -17,6 +17,7 @@ from petalfoil.analysis.arguments import Quantity, Values
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.crossings import CONTACT_FRACTION, LiftoffSpeeds, crossings, fastest, sensitivity
 from petalfoil.analysis.declaration import analysis
+from petalfoil.analysis.friction_told import FrictionTold
 from petalfoil.analysis.records import effort, geometry, record_of
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
@@ -70,7 +71,7 @@ class FractionLimit:
 LAYOUT = Columns(
     columns=TABLE,
     heads={"loads": load_of},
-    names=(*SPEEDS, "contact_fraction_limit", "converged", "status", "factorizations", "wall_time"),
+    names=(*SPEEDS, "contact_fraction_limit", "friction_path", "converged", "status", "factorizations", "wall_time"),
     at=of_load,
 )
 
@@ -132,7 +133,8 @@ def _points(
                 ended = Outcome(status=in_words(case, up))
             except ConvergenceError as failure:
                 found, ended = (), Outcome(converged=False, status=f"not converged: {failure}")
-            asked = (*geometry(case), AppliedLoad.of((0.0, -load)), FractionLimit(limit))
+            told = FractionLimit(limit), FrictionTold.under_load(case)
+            asked = (*geometry(case), AppliedLoad.of((0.0, -load)), *told)
             record = record_of("liftoff", case, *asked, *found, effort(run.seconds), ended)
         yield record
 
