@@ -65,7 +65,6 @@ Orientations = Annotated[
     Whole(metavar="COUNT", help="Directions of the load over one pitch, from --direction on.", at_least=1),
 ]
 
-_GIVEN = {"role": Role.GIVEN}
 RESULTS = {
     "load_capacity": Variable((), "N", "largest load within the limits", "W_c", shown=Shown("load capacity", "N")),
     "load_direction": Variable(
