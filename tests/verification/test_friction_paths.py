@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from petalfoil.analysis.balance import balance
+from petalfoil.analysis.capacity import capacity
 from petalfoil.analysis.impedance import elastic_and_sliding, impedance
 from petalfoil.analysis.operating_point import under_load
 from petalfoil.analysis.orbit import orbit
@@ -110,3 +111,5 @@ def test_what_has_no_path_is_refused() -> None:
         case("paper_n8_spatial", **{"surface.petal_friction": 0.1, **assembled})
     with pytest.raises(UsageError, match="derivatives are those of a pack without friction forces"):
         sensitivity(rig(**assembled), "gas.viscosity", ask="balance", load=(0.0, -LOAD))
+    with pytest.raises(UsageError, match="largest load is that of a pack without friction forces"):
+        capacity(rig(**assembled), min_film_thickness=2e-6)

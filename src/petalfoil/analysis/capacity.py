@@ -15,6 +15,7 @@ from petalfoil.analysis.balance import carrier
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.fields import all_fields
+from petalfoil.analysis.friction_told import refuse_path
 from petalfoil.analysis.heat_results import heat_results
 from petalfoil.analysis.load_limit import Capacity, largest_load
 from petalfoil.analysis.load_ray import Limits, LoadRay
@@ -244,9 +245,11 @@ def capacity(  # noqa: PLR0913 - the options of the verb
     Raises
     ------
     UsageError
-        No limit is given, or one that says nothing of this bearing; the shaft does not turn.
+        No limit is given, or one that says nothing of this bearing; the shaft does not turn; petals keep
+        friction forces.
     """
     newton_only(case)
+    refuse_path(case, "the largest load is that")
     limits = Limits(min_film_thickness=min_film_thickness, contact_fraction=contact_fraction, max_stress=max_stress)
     check_limits(case, limits)
     turn = list(speeds) if speeds is not None else [at(case, speed).operation.speed]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from petalfoil.case import Case, FrictionHistory
 from petalfoil.equilibrium.friction_under_load import PATH
 from petalfoil.equilibrium.solution import Solution
+from petalfoil.errors import UsageError
 
 RELAXED = "relaxed: no friction forces between the petals, as vibrations leave the pack"
 RELEASED = "without friction forces at the start, those of the motion from there"
@@ -44,3 +45,18 @@ def follows_path(case: Case, *, by_default: bool = False) -> bool:
     """Whether equilibria keep the friction forces of the path that the pack has gone."""
     asked = case.surface.friction_history
     return case.follows_friction and (by_default if asked is None else asked is FrictionHistory.ASSEMBLED)
+
+
+def refuse_path(case: Case, answers: str) -> None:
+    """Refuse a pack that keeps the friction forces of its path, where `answers` have none.
+
+    Raises
+    ------
+    UsageError
+        It does.
+    """
+    if case.surface.friction_history is FrictionHistory.ASSEMBLED:
+        raise UsageError(
+            f"{answers} of a pack without friction forces, and surface.friction_history asks for those of "
+            'its assembly: set it to "relaxed", or compare two runs'
+        )

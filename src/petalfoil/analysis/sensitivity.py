@@ -13,6 +13,7 @@ from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.crossings import CONTACT_FRACTION
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.derivative_sources import Asked, sources_of
+from petalfoil.analysis.friction_told import refuse_path
 from petalfoil.analysis.liftoff import own_load
 from petalfoil.analysis.load_ray import Limits
 from petalfoil.analysis.operating_point import Vector, applied_load, at
@@ -21,7 +22,7 @@ from petalfoil.analysis.runs import Points
 from petalfoil.analysis.sensitivity_table import ALL, LAYOUT, MATRICES, RESULTS, Line, lines_of, ordered, rounding_of
 from petalfoil.analysis.solve import placed
 from petalfoil.analysis.words import Choice, Names, known
-from petalfoil.case import Case, FrictionHistory
+from petalfoil.case import Case
 from petalfoil.case.parameters import parameter_of, parameters_of
 from petalfoil.equilibrium.run_context import Progress, RunContext, running
 from petalfoil.errors import UsageError
@@ -170,7 +171,7 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
             "for one of them alone under its part of the load, as `balance` tells it, or compare two runs"
         )
     verb = ask or ("balance" if load is not None or (case.operation.load and eccentricity is None) else "solve")
-    refuse_path(case)
+    refuse_path(case, "derivatives are those")
     there = posed(at(case.replace(**{"model.contacts": contacts}), speed), verb, load, eccentricity)
     paths = default_paths(there, verb) if vary is None else [checked(there, path) for path in vary]
     quantities = [known(name, [ALL, *ANSWERS], "result") for name in of or [MAIN_RESULT[verb]]]
@@ -181,21 +182,6 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     refuse_limits(there, asked)
     most = len(ANSWERS) if ALL in quantities else len(quantities)
     return Points(_points(there, asked, progress), len(paths) * most, "effects")
-
-
-def refuse_path(case: Case) -> None:
-    """Refuse a pack that keeps the friction forces of its path.
-
-    Raises
-    ------
-    UsageError
-        It does.
-    """
-    if case.surface.friction_history is FrictionHistory.ASSEMBLED:
-        raise UsageError(
-            "derivatives are those of a pack without friction forces, and surface.friction_history asks for those of "
-            'its assembly: set it to "relaxed", or compare two runs'
-        )
 
 
 def posed(case: Case, verb: str, load: Vector | None, eccentricity: Vector | None) -> Case:
