@@ -27,7 +27,6 @@ from petalfoil.analysis.declaration import Analysis
 from petalfoil.case import Case, keys
 from petalfoil.case.definition import Definition
 from petalfoil.cli.app import STUDIES, app
-from petalfoil.cli.commands import option_of
 from petalfoil.cli.show import show_command
 from petalfoil.cli.studies import study_command
 from petalfoil.results import schema
@@ -159,7 +158,7 @@ def _argument(analysis: Analysis, name: str, argument: Argument) -> tuple[str, .
         given = "–" if default in (None, False) else argument.text(default)
     unit = getattr(argument, "unit", "")
     bounds = argument.bounds(unit) if isinstance(argument, Measured) else ""
-    option = option_of(name, argument) + ("" if isinstance(argument, Flag) else f" {argument.metavar}")
+    option = argument.option_name(name) + ("" if isinstance(argument, Flag) else f" {argument.metavar}")
     return f"`{option}`", f"`{name}`", unit, bounds, given, _text(argument.help)
 
 
