@@ -112,4 +112,6 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(f"usage: python examples/{Path(__file__).name} FOLDER")
     main(Path(sys.argv[1]))

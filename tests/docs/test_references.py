@@ -96,7 +96,8 @@ def options() -> set[str]:
     inner = [part for command in commands().values() for part in getattr(command, "commands", {}).values()]
     every = [parameter for command in (group, *commands().values(), *inner) for parameter in command.params]
     found = {name for parameter in every for name in (*parameter.opts, *parameter.secondary_opts)}
-    return found | {"--help"} | set(re.findall(r'"(--[a-z-]+)"', text(ROOT / "benchmarks" / "run.py")))
+    of_scripts = [text(ROOT / "benchmarks" / name) for name in ("run.py", "studies.py")]
+    return found | {"--help"} | set(re.findall(r'"(--[a-z-]+)"', " ".join(of_scripts)))
 
 
 OF_DASK = {"--nthreads", "--nworkers", "--port"}

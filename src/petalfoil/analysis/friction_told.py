@@ -8,6 +8,8 @@ from petalfoil.case import Case, FrictionHistory
 from petalfoil.equilibrium.friction_under_load import PATH
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import UsageError
+from petalfoil.walls import wall_kind
+from petalfoil.walls.kind import Capability
 
 RELAXED = "relaxed: no friction forces between the petals, as vibrations leave the pack"
 RELEASED = "without friction forces at the start, those of the motion from there"
@@ -26,19 +28,24 @@ class FrictionTold:
     @classmethod
     def under_load(cls, case: Case) -> FrictionTold:
         """Those of balances of a case, wherever they are."""
-        if not case.surface.petal_friction > 0.0 or case.petals is None:
+        if not rubs(case):
             return cls(None)
         return cls(PATH if follows_path(case) else RELAXED)
 
     @classmethod
     def of(cls, case: Case, answer: Solution) -> FrictionTold:
         """Those of an equilibrium."""
-        if not case.surface.petal_friction > 0.0 or case.petals is None:
+        if not rubs(case):
             return cls(None)
         if answer.friction is None:
             return cls(RELAXED)
         scales = answer.problem.layout.scales
         return cls(answer.solution_path, answer.friction.lost * scales.force * scales.length)
+
+
+def rubs(case: Case) -> bool:
+    """Whether petals rub on each other."""
+    return case.surface.petal_friction > 0.0 and wall_kind(case).can(Capability.RUBBING)
 
 
 def follows_path(case: Case, *, by_default: bool = False) -> bool:
