@@ -37,6 +37,7 @@ def cold(cells: int) -> list[int]:
     return counts
 
 
+@pytest.mark.slow
 def test_cold_starts_cost_the_same_on_any_grid() -> None:
     coarse, fine = cold(32), cold(128)
     assert max(coarse) <= COLD_AT_32

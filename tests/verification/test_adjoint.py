@@ -92,6 +92,7 @@ def test_derivatives_by_both(name: str) -> None:
             assert_allclose(value, by_tangent.above[result], rtol=0.0, atol=1e-5 * size, err_msg=f"{result} by {path}")
 
 
+@pytest.mark.slow
 def test_one_solve_for_each_result(run: RunContext) -> None:
     tangent = tangent_of("points under a load")
     adjoint = AdjointDerivatives(tangent, ["bearing_force", "min_film_thickness"])

@@ -54,6 +54,7 @@ def cost(record: Record) -> float:
 # ---------------------------------------------------------------------------------------------- fixed positions
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("e", [(0.0, -100e-6), (80e-6, -150e-6), (-30e-6, 200e-6)])
 def test_the_load_of_a_position_leads_back_to_it(e: tuple[float, float]) -> None:
     bearing = case("paper_n8", **COARSE, **{"operation.eccentricity": e})

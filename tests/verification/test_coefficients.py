@@ -274,6 +274,7 @@ def test_without_a_load_the_status_says_why_there_is_no_threshold() -> None:
     assert "give a mass or a load" in str(found["status"])
 
 
+@pytest.mark.slow
 def test_a_chart_agrees_with_single_points() -> None:
     bearing = plain((24, 6))
     records = list(stability.records(bearing, speeds=[1000.0, 2000.0], loads=[5.0, 20.0]))

@@ -57,6 +57,7 @@ def test_shared_reactions_keep_the_sum_of_forces(lines: LineContacts) -> None:
     assert_allclose(lines.shared.sum(), lines.lam.sum(), rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_the_linear_response_is_the_derivative_of_these_equilibria(lines: LineContacts) -> None:
     step, forces = 1e-3, {}
     with running() as run:
@@ -70,6 +71,7 @@ def test_the_linear_response_is_the_derivative_of_these_equilibria(lines: LineCo
     assert_allclose(gradient, differences, atol=1e-5 * np.abs(differences).max())
 
 
+@pytest.mark.slow
 def test_a_load_is_carried_and_a_little_more_is_foretold() -> None:
     with running():
         problem = build_problem(bearing(**{"operation.eccentricity": ["0 um", "0 um"]}))

@@ -133,6 +133,7 @@ def test_slopes_on_the_default_grid_are_those_on_a_finer_one(name: str) -> None:
     assert apart(found[0][1], found[1][1]) <= 5e-3
 
 
+@pytest.mark.slow
 def test_stiffness_under_a_load_converges_at_second_order() -> None:
     """Eight petals under 20 N on 32, 64, 128 cells per pitch: 85.71, 85.91, 85.96 kN/m; before, 85.73, 85.90, 85.98."""
     found = []
@@ -169,6 +170,7 @@ def test_a_result_says_where_its_contacts_are() -> None:
     assert "contact_model" not in coefficients.record(case("plain_journal")).scalars
 
 
+@pytest.mark.slow
 def test_petals_that_stick_stiffen_contact_points() -> None:
     """As much on grids of 64 and 128 cells: within 1 % of the largest entry. At nodes they differ by 2 %."""
     found = []
@@ -204,6 +206,7 @@ def pressed_at(answer: Solution) -> AsperityContacts:
         return with_asperities(whole, answer.problem, start_at(whole, answer))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["turbocharger", pytest.param(STRETCHES, marks=pytest.mark.slow)])
 def test_slopes_with_asperities_are_those_of_contact_points(name: str) -> None:
     """Stiffness within 0.2 % of its largest entry, damping within 0.5 %, reactions within 0.3 %."""

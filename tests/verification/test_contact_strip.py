@@ -223,6 +223,7 @@ def stacked(quantity: str) -> list[tuple[float, float, float]]:
     return found
 
 
+@pytest.mark.slow
 def test_stacked_leaves() -> None:
     """Grids on which the shorter leaf ends at a node; between, the leaves part, and nothing else touches."""
     for (a, D2, X), (_, _, tip) in zip(stacked("X/P"), stacked("w1"), strict=True):

@@ -101,6 +101,7 @@ def compare(numbers: range, change: Callable[[Case], tuple[Case, float]]) -> lis
 CHANGES = pytest.mark.parametrize("change", [turned, tripled, doubled])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", [pytest.param(turned, marks=pytest.mark.slow), tripled, doubled])
 def test_two_bearings(change: Callable[[Case], tuple[Case, float]]) -> None:
     assert compare(range(2), change) == []

@@ -57,6 +57,7 @@ def assert_exact(derivatives: HeatedDerivatives, path: str, part: float = 1e-4, 
         assert found.above[name] == pytest.approx(quotient, rel=tolerance, abs=tolerance * size), (path, name)
 
 
+@pytest.mark.slow
 def test_a_plain_journal_under_a_load() -> None:
     """With side leakage, which carries a part of the heat."""
     derivatives = heated(plain(**{"model.cells_per_pitch": 16, "model.axial_cells": 4, "operation.load": (0.0, -50.0)}))

@@ -127,7 +127,8 @@ def test_two_hundred_random_packs() -> None:
     check(solved)
 
 
-@pytest.mark.parametrize("edges", [Edges.AMBIENT, pytest.param(Edges.CONTINUOUS, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("edges", [Edges.AMBIENT, Edges.CONTINUOUS])
 def test_four_bearings_of_the_whole_domain(edges: Edges) -> None:
     """Their contact fraction is a share, also where the film sucks."""
     for number in range(4):

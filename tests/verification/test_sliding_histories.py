@@ -99,6 +99,7 @@ def exact_loss(mu: float) -> float:
     return sum(0.5 * abs(a[1] + b[1]) * abs(a[2] - b[2]) for a, b in ((back, bottom), (forth, top)))
 
 
+@pytest.mark.slow
 def test_loop_of_an_arc_leaf_on_its_tip() -> None:
     """Within 0.2 % of slip, stick, slip back, stick in closed form, on 64 cells."""
     mu = 0.2

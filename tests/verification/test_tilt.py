@@ -81,6 +81,7 @@ def test_forces_and_moments_of_a_tilted_journal(number: int) -> None:
 COEFFICIENTS = rows("r2_tilt_4x4_LD1.csv")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "number", [4, *(pytest.param(k, marks=pytest.mark.slow) for k in range(len(COEFFICIENTS)) if k != 4)]
 )

@@ -103,6 +103,7 @@ def test_inertias_that_are_not_given_are_those_of_a_cylinder() -> None:
 # ---------------------------------------------------------------------------------------------- the conical mode
 
 
+@pytest.mark.slow
 def test_the_conical_mode_loses_stability_first() -> None:
     found = stable_at(7500.0)
     assert_allclose(float(found.scalars["threshold_speed"]) / RPM, 2900.0, rtol=1e-2)
@@ -110,6 +111,7 @@ def test_the_conical_mode_loses_stability_first() -> None:
     assert_allclose(float(there["critical_mass"]), 3.06, rtol=1e-2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("rpm", "growth"), [(4000.0, 10.5), (7500.0, 61.0)])
 def test_growth_of_the_conical_mode(rpm: float, growth: float) -> None:
     """Against the eigenvalues of the four equations of motion on stiffness and damping over frequency."""

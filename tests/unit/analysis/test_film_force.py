@@ -102,6 +102,7 @@ def test_a_journal_that_is_held_comes_to_its_equilibrium() -> None:
     assert told["contact_fraction"] == 0.0
 
 
+@pytest.mark.slow
 def test_the_gas_that_is_gained_has_come_in() -> None:
     film, speed = petalfoil.Film(PLAIN), PLAIN.operation.speed
     told = [film.results()]

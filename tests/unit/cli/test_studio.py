@@ -11,6 +11,7 @@ from petalfoil.cli.app import app
 from tests.cases import EXAMPLES
 
 
+@pytest.mark.slow
 def test_a_case_that_is_refused_is_told_by_key(tmp_path: Path) -> None:
     path = tmp_path / "case.toml"
     path.write_text((EXAMPLES / "paper_n8.toml").read_text().replace("count = 8", "count = 1"))

@@ -45,6 +45,7 @@ def test_the_same_problem_solved_in_two_runs_gives_the_same_bits() -> None:
     assert counts[0] == counts[1]
 
 
+@pytest.mark.slow
 def test_the_same_curve_twice_gives_the_same_bits() -> None:
     first, second = ([r.scalars["force_y"] for r in curve.records(FLAT, [0.0, 5e-5, 1e-4])] for _ in range(2))
     assert first == second

@@ -31,6 +31,7 @@ def test_the_suffix_chooses_the_format(suffix: str, fig: Figure, tmp_path: Path)
     assert len(list(tmp_path.iterdir())) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix", ["png", "pdf"])
 def test_drawing_again_gives_the_same_file(suffix: str, tmp_path: Path) -> None:
     for name in ("a", "b"):

@@ -231,6 +231,7 @@ def test_a_start_alone_is_not_drawn(steady: xr.Dataset) -> None:
 # ---------------------------------------------------------------------------------------------- animation
 
 
+@pytest.mark.slow
 def test_a_page_holds_its_pictures(steady: xr.Dataset, tmp_path: File) -> None:
     plot.animate(steady.assign_attrs(title="A <b>earing"), tmp_path / "orbit.html")
     page = (tmp_path / "orbit.html").read_text(encoding="utf-8")
