@@ -207,7 +207,7 @@ def pressed_at(answer: Solution) -> AsperityContacts:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["turbocharger", pytest.param(STRETCHES, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["turbocharger", STRETCHES])
 def test_slopes_with_asperities_are_those_of_contact_points(name: str) -> None:
     """Stiffness within 0.2 % of its largest entry, damping within 0.5 %, reactions within 0.3 %."""
     speed = BEARINGS[name].operation.speed

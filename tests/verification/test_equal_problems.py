@@ -102,7 +102,7 @@ CHANGES = pytest.mark.parametrize("change", [turned, tripled, doubled])
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("change", [pytest.param(turned, marks=pytest.mark.slow), tripled, doubled])
+@pytest.mark.parametrize("change", [turned, tripled, doubled])
 def test_two_bearings(change: Callable[[Case], tuple[Case, float]]) -> None:
     assert compare(range(2), change) == []
 

@@ -25,7 +25,7 @@ def at_rest_and_at_speed(cells: int) -> list[Solution | None]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("cells", [896, *(pytest.param(cells, marks=pytest.mark.slow) for cells in (1024, 2048, 4096))])
+@pytest.mark.parametrize("cells", [896, 1024, 2048, 4096])
 def test_answers_with_digits_to_spare(cells: int) -> None:
     for answer in at_rest_and_at_speed(cells):
         assert answer is not None

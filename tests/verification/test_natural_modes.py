@@ -212,9 +212,7 @@ OPERATORS = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.slow if name == "petals" else ()) for name in OPERATORS]
-)
+@pytest.mark.parametrize("name", list(OPERATORS))
 def test_modes_are_the_eigenvalues_of_the_whole_operator(name: str) -> None:
     """Each found mode is one, with its participation; and each one in which the rotor takes part is found."""
     bearing, load, masses = OPERATORS[name]
