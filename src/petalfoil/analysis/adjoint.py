@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,8 +57,13 @@ class AdjointDerivatives(ByParameters):
     @classmethod
     def of_all(cls, tangent: DerivativesOf) -> AdjointDerivatives:
         """Of all results that have an adjoint."""
-        found = Evaluation.of(tangent.case, tangent.told)
-        return cls(tangent, [name for name in tangent.values if gradient(name, found) is not None])
+        every = cls(tangent, list(tangent.values))
+        return cls(tangent, [name for name in every.names if gradient(name, every.evaluated) is not None])
+
+    @cached_property
+    def evaluated(self) -> Evaluation:
+        """The equilibrium as results read it, once for all of them."""
+        return Evaluation.of(self.tangent.case, self.tangent.told)
 
     @property
     def case(self) -> Case:
@@ -102,10 +108,7 @@ class AdjointDerivatives(ByParameters):
         there = [variation.at(steps) for steps, _ in variation.stencil]
         moved = [self.in_place(equations) for _, equations in there]
         rates = self.rates([equations for _, equations in there], weights)
-        sampled = [
-            {name: self.tangent.results(case, state)[name] for name in self.names}
-            for (case, _), state in zip(there, moved, strict=True)
-        ]
+        sampled = [self.tangent.results(case, state) for (case, _), state in zip(there, moved, strict=True)]
         found = {}
         for name in self.names:
             direct = sum(weight * results[name] for weight, results in zip(weights, sampled, strict=True))
@@ -148,7 +151,7 @@ class AdjointDerivatives(ByParameters):
             It has no adjoint.
         """
         found = self.tangent.told
-        fields = gradient(name, Evaluation.of(self.tangent.case, found))
+        fields = gradient(name, self.evaluated)
         if fields is None:
             if name in GRADIENTS:
                 raise UsageError(f"no adjoint of {name}: contact keeps it, and its derivative has two sides: {TANGENT}")
