@@ -1,6 +1,7 @@
 """Random bearings that can be built: a narrow family of steel packs in air, and the whole declared domain."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -14,7 +15,7 @@ MAX_TRIES = 200
 
 
 def random_case(rng: np.random.Generator, **changes: object) -> Case:
-    """Draw a steel pack in air, flat, 32 cells a pitch, its journal turning and displaced.
+    """Draw a steel pack in air, 2-D, 32 cells per pitch, its journal turning and displaced.
 
     Drawn: 5 to 12 petals, overlap 1.2 to 3 (petals up to 2.4 rad), both mounts, journals of 5 to 60 mm, petals of 0.3
     to 0.9 % of that, room for 1.25 to 2.2 times the layers and 5 um, bend radius 1.1 to 2.5 of the metric radius, L/D
@@ -28,9 +29,16 @@ def random_case(rng: np.random.Generator, **changes: object) -> Case:
     **changes
         New values by dotted path, applied to what was drawn, as `Case.replace` takes them.
     """
+    return _buildable(_draw, rng, changes)
+
+
+def _buildable(
+    draw: Callable[[np.random.Generator], Case], rng: np.random.Generator, changes: dict[str, object]
+) -> Case:
+    """The first case drawn that can be built with `changes`."""
     for _ in range(MAX_TRIES):
         try:
-            return _draw(rng).replace(**changes)
+            return draw(rng).replace(**changes)
         except DefinitionError:
             continue
     raise RuntimeError(f"no valid case in {MAX_TRIES} draws")
@@ -80,12 +88,7 @@ def wide_case(rng: np.random.Generator, **changes: object) -> Case:
     0.1 to 10 bar, 200 to 600 K, slip or none, 0.5 to 400 m/s, displacement up to 0.9 of the clearance that the layers
     leave. What cannot be built is drawn again.
     """
-    for _ in range(MAX_TRIES):
-        try:
-            return _draw_wide(rng).replace(**changes)
-        except DefinitionError:
-            continue
-    raise RuntimeError(f"no valid case in {MAX_TRIES} draws")
+    return _buildable(_draw_wide, rng, changes)
 
 
 def _draw_wide(rng: np.random.Generator) -> Case:

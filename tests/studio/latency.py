@@ -116,15 +116,15 @@ def drawn(page: Page, changes: int) -> list[Times]:
 
 def show(title: str, found: list[Times]) -> None:
     """Print medians and the largest values of times."""
-    print(title)  # noqa: T201
+    print(title)
     for name in found[0]:
         values = [one[name] for one in found]
-        print(f"  {name:24} {median(values):6.2f} s, at most {max(values):.2f} s of {len(values)}")  # noqa: T201
+        print(f"  {name:24} {median(values):6.2f} s, at most {max(values):.2f} s of {len(values)}")
 
 
 def main(options: Any) -> None:
     """Measure and print."""
-    print(f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")  # noqa: T201
+    print(f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
     begin = time.monotonic()
     with running_studio() as studio:
         show("after the start, server and solver", [first_answer(begin, studio)])

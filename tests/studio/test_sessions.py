@@ -76,7 +76,7 @@ def test_the_first_answer_after_a_start_takes_little_work() -> None:
     while len(spent) < STARTS and min(spent, default=FIRST_ANSWER + 1.0) > FIRST_ANSWER:
         with running_studio() as studio:
             spent.append(asyncio.run(first(studio)))
-    print(f"{min(spent):.2f} s of processor time until the first answer")  # noqa: T201
+    print(f"{min(spent):.2f} s of processor time until the first answer")
     assert min(spent) <= FIRST_ANSWER
 
 
@@ -94,12 +94,12 @@ def twenty_sessions(folder: Path, seconds: tuple[float, ...]) -> None:
         for duration in seconds:
             answers = asyncio.run(all_of_them(studio, duration))
             taken.append(memory(studio))
-            print(f"{sum(answers)} answers, {min(answers)} to {max(answers)} a page, none of another page")  # noqa: T201
+            print(f"{sum(answers)} answers, {min(answers)} to {max(answers)} a page, none of another page")
             assert min(answers) > 0
         assert wait_until(lambda: _is_idle(studio), 60.0)
         workers = [worker.memory_info().rss for worker in studio.workers()]
         spent = sum(psutil.Process(studio.process.pid).cpu_times()[:2])
-    print(f"server {_megabytes(taken)} MB, {spent:.0f} s of processor time; workers {_megabytes(workers)} MB")  # noqa: T201
+    print(f"server {_megabytes(taken)} MB, {spent:.0f} s of processor time; workers {_megabytes(workers)} MB")
     assert len(workers) >= 2
     assert max(b - a for a, b in itertools.pairwise(taken)) / SESSIONS < MOST_A_SESSION
     assert max(workers) < MOST_A_WORKER

@@ -37,7 +37,7 @@ def test_a_length_beyond_which_nothing_is_found_is_told(closed: Case, monkeypatc
     follow = lengthening.follow
 
     def lost(known: Solution, problem: LeakingFilm, *rest: object) -> Solution | None:
-        return follow(known, problem, *rest) if getattr(problem, "leakage", 0.0) > 0.06 else None  # type: ignore[arg-type]
+        return follow(known, problem, *rest) if getattr(problem, "leakage", 0.0) > 0.06 else None
 
     monkeypatch.setattr(lengthening, "follow", lost)
     monkeypatch.setattr(lengthening, "other_branches", lambda *_: iter(()))

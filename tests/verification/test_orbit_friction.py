@@ -14,7 +14,7 @@ from tests.cases import case
 
 
 def rubbing(mu: float, **changes: object) -> Case:
-    """Eight petals on 16 cells a pitch under a rotor of 3 kg."""
+    """Eight petals on 16 cells per pitch under a rotor of 3 kg."""
     grid = {"model.cells_per_pitch": 16, "surface.petal_friction": mu}
     return case("paper_n8", rotor={"mass": 3.0}, **grid, **changes)
 

@@ -190,7 +190,7 @@ def rows_of(count: int, scatter: float = 0.0) -> list[list[float]]:
     angles = np.linspace(0.0, pack.petal_angle, count)
     deviation = scatter * np.random.default_rng(4).standard_normal(count)
     deviation[0] = 0.0
-    return np.column_stack([angles, pack.free_radius(angles) + deviation]).tolist()  # type: ignore[no-any-return]
+    return np.column_stack([angles, pack.free_radius(angles) + deviation]).tolist()
 
 
 def test_a_coarse_measured_shape_is_warned_of() -> None:
