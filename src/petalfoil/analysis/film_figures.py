@@ -17,7 +17,7 @@ from petalfoil.system.unknowns import DEFLECTION
 
 Array = NDArray[np.float64]
 
-Bearing = tuple[StepProblem, Array, Array]
+BearingState = tuple[StepProblem, Array, Array]
 """A bearing with its unknowns and reactions."""
 
 
@@ -49,7 +49,7 @@ class FilmFigures:
     outflow: float
 
     @classmethod
-    def of(cls, bearing: Bearing, stored: Array) -> Self:
+    def of(cls, bearing: BearingState, stored: Array) -> Self:
         """Those of a bearing; `stored` is what its film and wall store (n_stored,)."""
         part, x, lam = bearing
         layout, case = part.layout, part.layout.case
@@ -72,7 +72,7 @@ class FilmFigures:
         )
 
 
-def film_work(before: Bearing, after: Bearing) -> float:
+def film_work(before: BearingState, after: BearingState) -> float:
     """Work of the film of a bearing on journal and wall between two instants [1]."""
     (earlier, x, _), (later, X, _) = before, after
     kept, wall = earlier.positive, earlier.layout.unknowns[DEFLECTION]
@@ -81,7 +81,7 @@ def film_work(before: Bearing, after: Bearing) -> float:
     return float(force @ (later.displacement - earlier.displacement) + pushed @ (X[wall] - x[wall]))
 
 
-def growth_work(before: Bearing, after: Bearing) -> float:
+def growth_work(before: BearingState, after: BearingState) -> float:
     """Work of a journal that grows on the contacts that it touches between two instants [1]."""
     (earlier, _, lam), (later, _, LAM) = before, after
     return 0.5 * float(np.sum((lam + LAM)[earlier.journal])) * (later.closing - earlier.closing)

@@ -16,7 +16,7 @@ from petalfoil.analysis.heat_results import with_heat
 from petalfoil.analysis.other_bearing import bearing_of
 from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.case import Case
-from petalfoil.equilibrium.at_limit import Limit, at_limit, loaded
+from petalfoil.equilibrium.at_limit import Limit, at_limit, loaded_state
 from petalfoil.equilibrium.element_contacts import clear_of_journal
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError
 from petalfoil.equilibrium.nodal_state import sampled_solution
@@ -185,7 +185,7 @@ class LoadRay:
             return None
         if known.elements is None:
             return None
-        start = loaded(known.elements, self.base, float(np.linalg.norm(known.load) / np.linalg.norm(unit)))
+        start = loaded_state(known.elements, self.base, float(np.linalg.norm(known.load) / np.linalg.norm(unit)))
 
         def distance(found: ElementEquilibrium, size: float) -> float:
             return self._judged(size, sampled_solution(found, size * unit)).margin

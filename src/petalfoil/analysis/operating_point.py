@@ -29,7 +29,7 @@ from petalfoil.equilibrium.lengthening import lengthened
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold
-from petalfoil.equilibrium.whole_length import balance_from_half, first_attempt
+from petalfoil.equilibrium.whole_length import balance_from_nothing, first_attempt
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.parts import AppliedLoad, Branch
 from petalfoil.system.build import build_problem
@@ -165,9 +165,7 @@ def begun_under_load(problem: CoupledProblem, load: Vector) -> tuple[Solution, c
     """
     wanted = load_of(problem.layout.case, load, problem.layout)
     try:
-        found, rate = begun(
-            problem, wanted, lambda: balance_from_half(problem, wanted) or balance_cold(problem, wanted)
-        )
+        found, rate = begun(problem, wanted, lambda: balance_from_nothing(problem, wanted))
     except ConvergenceError as failure:
         raise beyond_capacity(problem, load, failure) from failure
     keep(found, alone=not rate.real > 0.0)

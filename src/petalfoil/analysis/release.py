@@ -248,11 +248,9 @@ def held_on_shaft(problem: ShaftStep) -> tuple[Array, Array, NDArray[np.bool_]]:
     found, layout = [solve_cold(parts[0])], problem.layout
     same = parts[0].layout is parts[1].layout and np.array_equal(parts[0].displacement, parts[1].displacement)
     found.append(found[0] if same else solve_cold(parts[1]))
-    lam, active = (
-        joined(layout.gap_numbers, [np.asarray(getattr(one, of), dtype=np.float64) for one in found])
-        for of in ("lam", "active")
-    )
-    return joined(layout.numbers, [one.x for one in found]), lam, active > 0.5
+    lam, active = [one.lam for one in found], [one.active for one in found]
+    x = joined(layout.numbers, [one.x for one in found])
+    return x, joined(layout.gap_numbers, lam), joined(layout.gap_numbers, active)
 
 
 def at_rest_on_path(system: RotorBearing, known: Solution) -> Instant:

@@ -25,8 +25,8 @@ from petalfoil.dynamics.rotor_motion import moment_on_rotor
 from petalfoil.equilibrium.heated import heated
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.equilibrium.under_load import FORCE_TOLERANCE, balance_cold
-from petalfoil.equilibrium.whole_length import balance_from_half
+from petalfoil.equilibrium.under_load import FORCE_TOLERANCE
+from petalfoil.equilibrium.whole_length import balance_from_nothing
 from petalfoil.errors import ConvergenceError
 from petalfoil.system.build import build_problem
 from petalfoil.system.heat_network import HeatNetwork
@@ -168,7 +168,7 @@ class RotorInBearings:
             problem = build_problem(case)
             try:
                 wanted = np.array(load) / problem.layout.scales.force
-                one = balance_from_half(problem, wanted) or balance_cold(problem, wanted)
+                one = balance_from_nothing(problem, wanted)
                 one = one if support.network is None else heated(one, support.network)
             except ConvergenceError as failure:
                 size = float(np.hypot(*load))

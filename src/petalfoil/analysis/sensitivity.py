@@ -177,8 +177,10 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     quantities = [known(name, [ALL, *ANSWERS], "result") for name in of or [MAIN_RESULT[verb]]]
     limits = Limits(min_film_thickness=min_film_thickness, contact_fraction=contact_fraction, max_stress=max_stress)
     fraction = CONTACT_FRACTION if contact_fraction is None else contact_fraction
-    asked = Asked(verb, paths, quantities, step, vary is None, contacts == "points", fraction, limits, direction)
-    asked = replace(asked, frequency=frequency, mass=mass, by_adjoint=method == ADJOINT)
+    asked = Asked(
+        verb, paths, quantities, step, vary is None, contacts == "points", fraction, limits, direction,
+        frequency, mass, method == ADJOINT,
+    )  # fmt: skip
     refuse_limits(there, asked)
     most = len(ANSWERS) if ALL in quantities else len(quantities)
     return Points(_points(there, asked, progress), len(paths) * most, "effects")

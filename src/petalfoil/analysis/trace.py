@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
-from petalfoil.analysis.film_figures import Bearing, FilmFigures, film_work, growth_work
+from petalfoil.analysis.film_figures import BearingState, FilmFigures, film_work, growth_work
 from petalfoil.case import Case
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
@@ -124,7 +124,7 @@ class Trace:
         scales = self.system.problem.layout.scales
         return scales.length, scales.pressure, scales.force, self.system.rotor.clock.rate
 
-    def _bearings(self, instant: Instant) -> list[Bearing]:
+    def _bearings(self, instant: Instant) -> list[BearingState]:
         """Every bearing at the speed and position of an instant, with its unknowns and reactions."""
         number = self.system.rotor.bearing_number(instant.tau)
         there = self.system.problem.at(bearing_number=number, displacement=instant.e)

@@ -138,7 +138,7 @@ def _method_problems(case: Case) -> Iterator[Problem]:
 
 
 def _second_problems(case: Case) -> Iterator[Problem]:
-    """Yield what is wrong with the second bearing of the rotor as a bearing by itcase."""
+    """Yield what is wrong with the second bearing of the rotor as a bearing by itself."""
     if case.rotor is None or case.rotor.second is None:
         return
     try:

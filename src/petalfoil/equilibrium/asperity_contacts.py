@@ -13,12 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError, scaled_force, unbalanced
-from petalfoil.equilibrium.point_contacts import FARTHEST_MOVE, MOST_GROWTH, diverged
+from petalfoil.equilibrium.point_contacts import FARTHEST_MOVE, diverged
+from petalfoil.equilibrium.point_contacts import admitted as film_admits
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import AT_ASPERITIES
 from petalfoil.physics.asperity_contact import FULL_PRESSURE, ContactSamples
 from petalfoil.physics.gap_curves import ContactPoints
-from petalfoil.solvers.problem import POSITIVE_FRACTION, RESIDUAL_TOLERANCE, fraction_to_boundary
+from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 from petalfoil.system.asperity_equations import AsperityEquations
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.point_equations import PointEquations, PointState
@@ -187,19 +188,9 @@ def admitted(equations: AsperityEquations, change: tuple[Array, Array], most: fl
     The journal moves by `most` reference films at most.
     """
     smooth, (dX, move) = equations.smooth, change
-    state, whole = smooth.state, smooth.whole
-    dw, dP = dX[: whole.n_wall], dX[whole.n_wall :]
-    grown = growth(equations, dw, move)
+    grown = growth(equations, dX[: smooth.whole.n_wall], move)
     farthest = float(np.max(np.abs(grown) * (equations.pressure > MATTERS), initial=0.0))
-    closing = whole.film_by_w @ dw + whole.film_by_e @ move
-    return min(
-        1.0,
-        POSITIVE_FRACTION * fraction_to_boundary(state.P, dP),
-        fraction_to_boundary(MOST_GROWTH * state.P, -dP),
-        POSITIVE_FRACTION * fraction_to_boundary(smooth.film_thickness.ravel(), closing),
-        max(FARTHEST / max(farthest, FARTHEST), SHORTEST),
-        most / max(float(np.linalg.norm(move)), most),
-    )
+    return min(film_admits(smooth, change, most), max(FARTHEST / max(farthest, FARTHEST), SHORTEST))
 
 
 def growth(equations: AsperityEquations, dw: Array, move: Array) -> Array:

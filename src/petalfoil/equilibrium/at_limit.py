@@ -35,7 +35,7 @@ from petalfoil.system.point_equations import PointEquations
 Array = NDArray[np.float64]
 Change: TypeAlias = tuple[Array, Array]
 """Change of the unknowns (n,) and of the journal's position (n_position,)."""
-LoadedEquations: TypeAlias = PointEquations | AsperityEquations
+ElementEquations: TypeAlias = PointEquations | AsperityEquations
 
 REACHED = 1e-6
 """Relative distance from a limit at which it counts as reached."""
@@ -74,11 +74,11 @@ PROBE = 1e-5
 """Part of a change by which the distance from the limit is differentiated along it."""
 
 
-class Loaded(Protocol):
+class LoadedState(Protocol):
     """A state under a load of some size, solved or not."""
 
     @property
-    def equations(self) -> LoadedEquations:
+    def equations(self) -> ElementEquations:
         """The equations at the state."""
 
     @property
@@ -101,7 +101,7 @@ class Loaded(Protocol):
 
 @dataclass(frozen=True)
 class LoadedPoints:
-    """Contact points under a load; members as of `Loaded`."""
+    """Contact points under a load; members as of `LoadedState`."""
 
     equations: PointEquations
     size: float
@@ -132,7 +132,7 @@ class LoadedPoints:
 
 @dataclass(frozen=True)
 class LoadedAsperities:
-    """Contact pressures over asperities under a load; members as of `Loaded`."""
+    """Contact pressures over asperities under a load; members as of `LoadedState`."""
 
     equations: AsperityEquations
     size: float
@@ -155,7 +155,7 @@ class LoadedAsperities:
         """There are no contacts to choose."""
 
 
-def loaded(found: ElementEquilibrium, problem: CoupledProblem, size: float) -> Loaded:
+def loaded_state(found: ElementEquilibrium, problem: CoupledProblem, size: float) -> LoadedState:
     """The state of an equilibrium under the equations of `problem` and another load, unsolved."""
     here = problem.at(displacement=found.equations.problem.displacement)
     if isinstance(found, AsperityContacts):
@@ -166,7 +166,7 @@ def loaded(found: ElementEquilibrium, problem: CoupledProblem, size: float) -> L
     raise TypeError(f"neither contact points nor asperities: {type(found)}")
 
 
-def largest(equations: LoadedEquations) -> float:
+def largest(equations: ElementEquations) -> float:
     """Largest scaled residual."""
     return float(np.max(np.abs(equations.scaled)))
 
@@ -186,16 +186,16 @@ class Limit:
     direction: Array
     distance: Callable[[ElementEquilibrium, float], float]
 
-    def of(self, at: Loaded) -> float:
+    def of(self, at: LoadedState) -> float:
         """Distance of a state from the limit."""
         return self.distance(at.positioned, at.size)
 
-    def residual(self, at: Loaded) -> float:
+    def residual(self, at: LoadedState) -> float:
         """Largest scaled residual of a state, the unbalanced force among them."""
         force = scaled_force(at.equations, at.size * self.direction)
         return max(largest(at.equations), float(np.max(np.abs(force))))
 
-    def along(self, at: Loaded, change: Change) -> float:
+    def along(self, at: LoadedState, change: Change) -> float:
         """Derivative of the distance along a change of unknowns and position."""
         return (self.of(at.moved(change, length=PROBE)) - self.of(at)) / PROBE
 
@@ -219,7 +219,7 @@ class LimitTangent:
     slope: float
 
     @classmethod
-    def at(cls, at: Loaded, limit: Limit) -> LimitTangent:
+    def at(cls, at: LoadedState, limit: Limit) -> LimitTangent:
         """Factorise at a state.
 
         Raises
@@ -236,7 +236,7 @@ class LimitTangent:
             raise NoPointsError("more load does not lead nearer to the limit")
         return cls(tangent, by_load, slope)
 
-    def stepped(self, at: Loaded, limit: Limit) -> Loaded:
+    def stepped(self, at: LoadedState, limit: Limit) -> LoadedState:
         """The state after a step, shortened where film or pressures would vanish or the journal goes too far."""
         tangent, (dX, move) = self.tangent, self.by_load
         own = tangent.correction(at.equations.newton_residual, unbalanced(at.equations, at.size * limit.direction))
@@ -246,7 +246,7 @@ class LimitTangent:
         return at.moved(change, more, at.admitted(change))
 
 
-def at_limit(start: Loaded, limit: Limit) -> Loaded:
+def at_limit(start: LoadedState, limit: Limit) -> LoadedState:
     """The state and the size of the load at the limit, followed from a neighbour.
 
     Raises

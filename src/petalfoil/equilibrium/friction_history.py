@@ -89,5 +89,4 @@ def slid_to(pack: FoilPackProblem, friction: Friction, before: FrictionResult) -
     solver = current_run().pack_solver
     if not friction.exact:
         return slide(pack, friction, before, solver)
-    lines = [line.number for line in pack.layout.wall.contacts.lines]
-    return slide_exactly(pack, friction, before, lines, solver)
+    return slide_exactly(pack, friction, before, pack.layout.wall.contacts.line_numbers, solver)

@@ -128,7 +128,7 @@ class LoadedPath:
         self, problem: CoupledProblem, before: FrictionResult, medium: Medium
     ) -> tuple[CoupledProblem, FrictionResult] | None:
         """The state after a step in a `medium`; None if it is not found."""
-        lines = [line.number for line in problem.layout.wall.contacts.lines]
+        lines = problem.layout.wall.contacts.line_numbers
         equations = SinkingEquations(problem, self.load, before.x, medium)
         newton = SlidingNewton(equations, self.friction, before.friction, lines, BALANCE)
         found = newton.solved((before.x, problem.displacement, before.active, before.lam))

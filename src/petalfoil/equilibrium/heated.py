@@ -131,12 +131,12 @@ class HeatedEquations(ContactEquations):
         """The same with the heat balances linearised at `state`."""
         return replace(self, rows=HeatRows(self.network, self.at(state.b), state.x, state.lam))
 
-    def step_length(self, state: ContactState, correction: Correction) -> float:
+    def longest_step(self, at: tuple[Array, Array], correction: Correction) -> float:
         """Pressures stay positive; the journal moves by a few films, the temperatures by some tens of kelvins."""
         k = self.n_free
         farthest = MOST_FILMS / max(float(np.linalg.norm(correction.b[:k])), 1e-300)
         warmest = WARMEST_STEP / max(float(np.max(np.abs(correction.b[k:]))), 1e-300)
-        return min(super().step_length(state, correction), farthest, warmest)
+        return min(super().longest_step(at, correction), farthest, warmest)
 
     def balanced(self, x: Array, lam: Array, b: Array) -> bool:
         """Whether forces and heat balance."""

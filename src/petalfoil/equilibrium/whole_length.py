@@ -15,7 +15,7 @@ from petalfoil.equilibrium.cold_start import BARRIERS, attempt
 from petalfoil.equilibrium.continuation import WARM, follow, predicted
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution, from_contacts
-from petalfoil.equilibrium.under_load import RELOADED, from_neighbour, from_nothing, newton
+from petalfoil.equilibrium.under_load import RELOADED, balance_cold, from_neighbour, from_nothing, newton
 from petalfoil.mesh.axial import AxialGrid
 from petalfoil.solvers.contact_newton import solve_contacts
 from petalfoil.system.build import build_problem, build_tilting
@@ -71,6 +71,17 @@ def balance_from_half(problem: CoupledProblem, load: Array) -> Solution | None:
     here = problem.at(displacement=middle.problem.displacement)
     start, tangent = (predicted(middle, here), middle.active), middle.contacts.tangent
     return newton(here, start, load, RELOADED, tangent) or from_neighbour(middle, problem, load)
+
+
+def balance_from_nothing(problem: CoupledProblem, load: Array) -> Solution:
+    """The balance with a load (n_position,) over the unit of force, from nothing; on half the length first.
+
+    Raises
+    ------
+    ConvergenceError
+        No balance was found.
+    """
+    return balance_from_half(problem, load) or balance_cold(problem, load)
 
 
 def force_unit(problem: CoupledProblem) -> float:

@@ -71,6 +71,11 @@ class Contacts:
     petals: slice
     lines: tuple[GapLines, ...] = ()
 
+    @property
+    def line_numbers(self) -> list[NDArray[np.intp]]:
+        """Numbers of the gaps in these lines, (line, node) each."""
+        return [line.number for line in self.lines]
+
     def gaps(self, W: Array, e: Array) -> Array:
         """Gaps at deflections `W` (n,) and displacement `e` (2,), shape (m,) [m]."""
         gaps: Array = self.rest + self.by_e @ e + self.G @ W

@@ -68,8 +68,8 @@ def build_pair(case: Case, supports: Sequence[Case] = ()) -> ShaftStep:
         raise ValueError("this rotor runs in one bearing")
     both = [one.replace(**{"model.symmetry": False}) for one in supports or case.supports]
     check_memory(max(both, key=lambda one: grid_of(one).memory), bearings=2)
-    first = free_to_tilt(both[0])
-    second = first if same_wall(*both) else free_to_tilt(both[1], first.scales)
+    first = layout_on_shaft(both[0])
+    second = first if same_wall(*both) else layout_on_shaft(both[1], first.scales)
     length, levers = first.scales.length, np.array([1.0, 1.0, case.rotor.lever, case.rotor.lever])
     arms = [arm_of(one, place) / levers for one, place in zip(both, case.rotor.places, strict=True)]
     askew = [askew_of(one) / length for one in both]
@@ -79,7 +79,7 @@ def build_pair(case: Case, supports: Sequence[Case] = ()) -> ShaftStep:
     return ShaftStep(layout, first.scales.bearing_number(both[0].gas.viscosity, speed, radius), position)
 
 
-def free_to_tilt(case: Case, units: Scales | None = None) -> BearingLayout:
+def layout_on_shaft(case: Case, units: Scales | None = None) -> BearingLayout:
     """The layout of a bearing on a shaft that tilts; lengths and forces in the units of another one, if given."""
     bare = case.replace(**{"operation.tilt": None})
     wall = build_wall(bare)

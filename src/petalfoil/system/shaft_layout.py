@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -21,6 +22,7 @@ from petalfoil.system.unknowns import DEFLECTION, PRESSURE, Unknowns
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
+T = TypeVar("T", bound=np.generic)
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,9 +170,9 @@ def apart(blocks: list[list[int]]) -> list[Index]:
     ]
 
 
-def joined(numbers: tuple[Index, ...], values: list[Array]) -> Array:
+def joined(numbers: tuple[Index, ...], values: list[NDArray[T]]) -> NDArray[T]:
     """One vector from those of all bearings."""
-    out = np.empty(sum(map(len, numbers)))
+    out = np.empty(sum(map(len, numbers)), dtype=values[0].dtype)
     for places, own in zip(numbers, values, strict=True):
         out[places] = own
     return out

@@ -75,7 +75,7 @@ class StepProblem(CoupledProblem):
     @property
     def contact_lines(self) -> list[Index]:
         """Gaps of one kind in lines around the shaft, (line, node) each."""
-        return [line.number for line in self.layout.wall.contacts.lines]
+        return self.layout.wall.contacts.line_numbers
 
     def rows_of(self, stored: Array) -> Array:
         """What is stored, or its rate, at the rows that it belongs to; (n,) [1]."""
