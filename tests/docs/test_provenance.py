@@ -1,7 +1,6 @@
 """Numbers of a page have a command and a day: on the page itself, or in a row of `docs/validation/recorded-runs.md`.
 
-A page counts where it has tables or captions of measured numbers. Single numbers in sentences cannot be found this way;
-a row that names a page speaks for them too.
+A page counts where it has tables or captions of measured numbers. `test_sentences` asks the same of running text.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from tests.docs.texts import DOCS, ROOT, text
 RUNS = DOCS / "validation" / "recorded-runs.md"
 
 NUMBER = re.compile(r"(?<![\w.])\d+\.\d+|\d\s?%|±")
-COMMAND = re.compile(r"petalfoil [a-z]+ |python (?:-m )?[\w./]+|make [a-z-]+|pytest |tests/\S+\.py")
+COMMAND = re.compile(r"petalfoil [a-z]+[ `]|python (?:-m )?[\w./]+|make [a-z-]+|pytest |tests/\S+\.py")
 DAY = re.compile(rf"\d{{4}}-\d\d-\d\d|\d{{1,2}} (?:{'|'.join(calendar.month_name[1:])}) \d{{4}}")
 
 NO_RESULTS = {
