@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
+from petalfoil.equilibrium.sinking import Medium, PetalsInMedium, SinkingEquations
 from petalfoil.solvers.central_path import Change, PathPoint
 from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.interior_point import NewtonSystem
@@ -213,6 +214,42 @@ def test_a_damped_wall_resists_motion_and_its_gas_stores_nothing(name: str) -> N
     assert_allclose(resisted[: problem.layout.n_wall], 0.6 * change[: problem.layout.n_wall], rtol=0.0, atol=1e-7)
     assert_allclose(resisted[problem.layout.n_wall :], 0.0, atol=1e-12)
     assert_allclose(damped.slack_derivative(shift, 2.0), plain.slack_derivative(shift), rtol=0.0, atol=0.0)
+
+
+@pytest.mark.parametrize("name", PETALS)
+def test_petals_in_a_medium_are_told_their_derivatives(name: str) -> None:
+    """Film to slope 2; the wall's rows, held back from where they began (M7), are linear, and exact."""
+    problem, rng = build_problem(bearing(name)), np.random.default_rng(21)
+    x, shift, n_wall = open_state(problem, rng), random_shift(problem, rng), problem.layout.n_wall
+    sinking = PetalsInMedium(problem, open_state(problem, rng), 0.3)
+    along, gaps = rng.uniform(-1.0, 1.0, len(x)), rng.uniform(-1.0, 1.0, len(shift))
+    line = sinking.linearize(x, shift)
+    change = line.matrix(np.zeros(len(shift))) @ along
+    film = slice(n_wall, None)
+    assert_tangent(lambda t: sinking.linearize(x + t * along, shift).residual[film], change[film], largest=2.0**-8)
+    moved = sinking.linearize(x + along, shift).residual[:n_wall] - line.residual[:n_wall]
+    assert_allclose(moved, change[:n_wall], rtol=0.0, atol=1e-12 * np.max(np.abs(line.residual)))
+    by_gaps = line.slack_derivative(gaps)
+    assert_tangent(lambda t: sinking.linearize(x, shift + t * gaps).residual, by_gaps, largest=2.0**-8)
+    held = problem.linearize(x, shift).residual[:n_wall] + 0.3 * (x - sinking.start)[:n_wall]
+    assert_allclose(line.residual[:n_wall], held, rtol=0.0, atol=1e-12 * np.max(np.abs(held)))
+
+
+@pytest.mark.parametrize("name", PETALS)
+def test_a_journal_in_a_medium_is_told_its_derivatives(name: str) -> None:
+    """The balance (M7) by unknowns, reactions and position: linear, and its border says so; gaps move as it says."""
+    problem, rng = build_problem(bearing(name)), np.random.default_rng(22)
+    d, x = problem.layout.n_position, open_state(problem, rng)
+    sinking = SinkingEquations(problem, rng.uniform(-1.0, 1.0, d), x, Medium(0.7, 0.3))
+    lam, e = rng.uniform(0.0, 1.0, problem.G.shape[0]), problem.displacement
+    dx, dlam, de = (rng.uniform(-1.0, 1.0, len(one)) for one in (x, lam, e))
+    before, after = sinking.imbalance(x, lam, e), sinking.imbalance(x + dx, lam + dlam, e + de)
+    change = sinking.border.rows(dx, dlam) - sinking.border_stiffness @ de
+    assert_allclose(after - before, change, rtol=0.0, atol=1e-11 * np.max(np.abs(after)))
+    moved = sinking.at(e + de).gaps(x) - sinking.at(e).gaps(x)
+    assert_allclose(moved, sinking.border.gap_derivative @ de, rtol=0.0, atol=1e-11 * np.max(np.abs(problem.gaps(x))))
+    by_e = sinking.at(e).linearize(x).slack_derivative(problem.border.gap_derivative @ de)
+    assert_tangent(lambda t: sinking.at(e + t * de).linearize(x).residual, by_e, largest=2.0**-8)
 
 
 @pytest.mark.parametrize("name", ["stepped petals, 2d", "slipping stepped petals, 2d"])

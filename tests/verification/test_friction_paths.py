@@ -10,16 +10,23 @@ from numpy.testing import assert_allclose
 
 from petalfoil.analysis.balance import balance
 from petalfoil.analysis.capacity import capacity
+from petalfoil.analysis.coefficients import coefficients
 from petalfoil.analysis.impedance import elastic_and_sliding, impedance
+from petalfoil.analysis.liftoff import liftoff
 from petalfoil.analysis.operating_point import under_load
 from petalfoil.analysis.orbit import orbit
 from petalfoil.analysis.runup import runup
 from petalfoil.analysis.sensitivity import sensitivity
+from petalfoil.analysis.stability import stability
 from petalfoil.case import Case, Rotor
-from petalfoil.equilibrium.friction_under_load import PATH, LoadedPath
+from petalfoil.equilibrium.friction_history import assembled
+from petalfoil.equilibrium.friction_under_load import BALANCE, PATH, LoadedPath
 from petalfoil.equilibrium.run_context import running
+from petalfoil.equilibrium.sinking import Medium, SinkingEquations
+from petalfoil.equilibrium.sliding_newton import Iterate, SlidingNewton, SlidingTangent
 from petalfoil.errors import DefinitionError, UsageError
 from petalfoil.results.record import Record
+from petalfoil.system.build import build_problem
 from petalfoil.system.friction import friction_of
 from tests.cases import case
 
@@ -101,6 +108,63 @@ def test_a_motion_begins_with_the_friction_of_the_path() -> None:
         strayed.append(float(np.ptp(y)))
         assert ("assembled" in str(record.scalars["friction_path"])) == (history == "assembled")
     assert strayed[0] < 1e-10
+
+
+@pytest.mark.slow
+def test_a_pack_that_keeps_its_friction_lifts_off_where_its_run_up_does() -> None:
+    """Contact fractions on either side of the lift-off speed, each led from rest, are on either side of the limit."""
+    kept = rig(**{"surface.friction_history": "assembled"})
+    (found,) = liftoff.records(kept, [LOAD])
+    assert found.scalars["friction_path"] == PATH
+    up, down = (float(found.scalars[f"{name}_speed"]) for name in ("liftoff", "touchdown"))
+    assert 0.0 < down <= up
+    below, above = (
+        float(next(iter(balance.records(kept, load=(0.0, -LOAD), speed=factor * up))).scalars["contact_fraction"])
+        for factor in (0.95, 1.05)
+    )
+    assert above < float(found.scalars["contact_fraction_limit"]) < below
+
+
+@pytest.mark.slow
+def test_modes_of_a_pack_that_keeps_its_friction_are_those_of_its_stiffness() -> None:
+    """Natural frequency and damping ratio of 5 kg against `K` and `C` of the same path at that frequency."""
+    kept, mass = rig(**{"surface.friction_history": "assembled", "operation.load": (0.0, -LOAD)}), 5.0
+    record = stability.record(kept, mass=mass)
+    assert record.scalars["friction_path"] == PATH
+    for frequency, ratio in zip(record.fields["natural_frequency"], record.fields["damping_ratio"], strict=True):
+        K, C = (coefficients.record(kept, [float(frequency)]).fields[name][0] for name in ("stiffness", "damping"))
+        s = np.linalg.eigvals(np.block([[np.zeros((2, 2)), np.eye(2)], [-K / mass, -C / mass]]))
+        told = complex(-ratio / np.sqrt(1.0 - ratio**2), 1.0) * frequency
+        assert np.min(np.abs(s - told)) < 1e-4 * abs(told)
+
+
+def pack_in_a_medium() -> tuple[SlidingTangent, slice]:
+    """The rig at rest round a journal that sinks, its tangent with the gaps beside contacts; gaps on the journal."""
+    problem = build_problem(rig(**{"operation.eccentricity": (0.0, 0.0), "operation.speed": 0.0}))
+    friction = friction_of(rig(), problem.layout)
+    assert friction is not None
+    with running():
+        pack = assembled(friction, problem)
+        assert pack is not None
+        x = problem.layout.ambient(pack.x)
+        equations = SinkingEquations(problem, np.array([0.0, -1.0]), x, Medium(0.5))
+        newton = SlidingNewton(equations, friction, pack.friction, problem.layout.wall.contacts.line_numbers, BALANCE)
+        begin = Iterate(x, problem.displacement, pack.lam, pack.friction.force, pack.active, pack.friction.direction)
+        tangent = newton.tangent_at(begin)
+    assert tangent is not None
+    return tangent, problem.layout.wall.contacts.journal
+
+
+@pytest.mark.slow
+def test_contacts_that_close_push_each_other_alike() -> None:
+    """Gaps by unit reactions, the journal giving way in its medium, are symmetric (Maxwell): at rest no gas flows."""
+    tangent, journal = pack_in_a_medium()
+    space, contacts = tangent.columns.space, tangent.columns.contacts
+    is_open = ~space.held
+    assert np.count_nonzero(is_open & (contacts < journal.stop)) > 3
+    compliance = space.answer[np.ix_(is_open, np.flatnonzero(is_open))]
+    assert_allclose(compliance, compliance.T, rtol=0.0, atol=1e-9 * np.max(compliance))
+    assert np.linalg.eigvalsh(compliance).min() > -1e-12 * np.max(compliance)
 
 
 def test_what_has_no_path_is_refused() -> None:

@@ -126,6 +126,11 @@ class SinkingEquations(LoadedEquations):
         """The medium resists the journal."""
         return self.medium.journal * np.eye(len(self.load))
 
+    @property
+    def stops(self) -> slice:
+        """The journal alone can open contacts that close a chain between journal and bushing."""
+        return self.problem.layout.wall.contacts.journal
+
     def at(self, b: Array) -> ContactProblem:
         """The coupled system at a displacement, petals in the medium."""
         there = self.problem.at(displacement=b)

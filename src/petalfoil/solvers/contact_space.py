@@ -113,7 +113,9 @@ class Columns:
                 opening[gap] = -1.0
                 units.append(tangent.respond(none, opening))
             else:
-                units.append(tangent.respond(-rows[[place]].toarray()[0]))
+                change, reactions = tangent.respond(-rows[[place]].toarray()[0])
+                reactions[gap] = 1.0  # the unit itself, which bordered unknowns feel too
+                units.append((change, reactions))
         units += [tangent.respond(slips[[place]].toarray()[0]) for place in range(len(at))]
         moved = [answered(Unit(change, reactions, 0.0)) for change, reactions in units]
         change = np.column_stack([unit.change for unit in moved])
