@@ -71,20 +71,19 @@ class RotorOnBearings:
             return elastic(self.case, held(self.case, answer))
         return self._joint(answer)
 
-    def followed(self, last: JournalMotion, speed: float, load: tuple[float, float]) -> Impedance | None:
-        """The impedance under `load` (x, y) [N] at another speed [rad/s], contacts and position followed from `last`.
+    def followed(self, last: JournalMotion, speed: float, load: tuple[float, float] | None) -> Impedance | None:
+        """The impedance at another speed [rad/s], contacts followed from `last`.
 
-        None for contacts at nodes, for two bearings, with a heat network, and where the equilibrium is lost.
+        The position is followed under a `load` (x, y) [N], and stays where that is None. The result is None for
+        contacts at nodes, for two bearings, with a heat network, and where the equilibrium is lost.
         """
         if not isinstance(last, ElementMotion) or self.case.bearings > 1:
             return None
         problem = last.problem
-        wanted = load_of(self.case, load, problem.layout)
-        if (
-            problem.temperatures is not None
-            or last.contacts.gradient is None
-            or len(wanted) != len(problem.displacement)
-        ):
+        wanted = None if load is None else load_of(self.case, load, problem.layout)
+        if problem.temperatures is not None:
+            return None
+        if wanted is not None and (last.contacts.gradient is None or len(wanted) != len(problem.displacement)):
             return None
         scales, R_j = problem.layout.scales, self.case.bearing.journal_radius
         there = problem.at(bearing_number=scales.bearing_number(self.case.gas.viscosity, speed, R_j))

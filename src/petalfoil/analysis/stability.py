@@ -22,7 +22,7 @@ from petalfoil.analysis.rotor_on_bearings import RotorOnBearings, whole_length
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
 from petalfoil.analysis.speeds import SpeedLine
-from petalfoil.analysis.threshold import rotor_mass, threshold_speed
+from petalfoil.analysis.threshold import Known, rotor_mass, threshold_speed
 from petalfoil.case import Case
 from petalfoil.dynamics.critical_mass import Whirl
 from petalfoil.dynamics.film_stability import leading_eigenvalue
@@ -191,7 +191,7 @@ def point(case: Case, load: Vector | None, mass: float | None, progress: Progres
         impedance = rotor.impedance(found.answer)
         whirl = rotor.whirl(impedance, speed)
         modes = None if math.isnan(rotor.mass) else rotor.modes(impedance, speed)
-        threshold, ended = threshold_speed(rotor, load, (impedance.motion, whirl))
+        threshold, ended = threshold_speed(rotor, load, Known(found.answer, impedance.motion, whirl))
         contacts = ContactModel.of_motion(impedance.motion)
         parts = (Rotor(rotor.mass, threshold), *whirl_parts(case, found, whirl, ended), contacts, effort(run.seconds))
         fields, coords = ({}, {}) if modes is None else mode_fields(modes, speed, tilts=case.bearings > 1)

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from scipy.optimize import brentq
 
+from petalfoil.analysis.contact_model import reported
 from petalfoil.analysis.operating_point import Vector, applied_load, at, operating_point
 from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
 from petalfoil.dynamics.critical_mass import Whirl
 from petalfoil.dynamics.rotor_motion import GRAVITY
+from petalfoil.equilibrium.continuation import advance
 from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import JournalMotion
+from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 
 RANGE, FACTOR = 16.0, 1.3
@@ -53,18 +57,26 @@ NEVER = 50.0
 """Margin of a bearing on which a rotor of any mass is stable; with the other sign, of one on which any whirls."""
 
 
-def threshold_speed(rotor: RotorOnBearings, load: Vector | None, start: tuple[JournalMotion, Whirl]) -> Threshold:
-    """Speed at which the rotor becomes unstable, within the range, from small motions and whirl at the case's speed.
+@dataclass(frozen=True)
+class Known:
+    """What is known at the case's speed: the equilibrium, small motions about it, and its neutral whirl."""
+
+    answer: Solution
+    motion: JournalMotion
+    whirl: Whirl
+
+
+def threshold_speed(rotor: RotorOnBearings, load: Vector | None, start: Known) -> Threshold:
+    """Speed at which the rotor becomes unstable, within the range, from what is known at the case's speed.
 
     Upward from a stable bearing, downward from an unstable one. A speed without an equilibrium ends the search.
     """
-    motion, whirl = start
-    if whirl.mass == 0.0:
+    if start.whirl.mass == 0.0:
         return math.nan, ""  # it whirls at any speed
     if math.isnan(rotor.mass):
         return math.nan, "no threshold speed: give a mass or a load"
-    margin_at = margins(rotor, load, motion)
-    known, here = rotor.case.operation.speed, margin(whirl, rotor.mass)
+    margin_at = margins(rotor, load, start)
+    known, here = rotor.case.operation.speed, margin(start.whirl, rotor.mass)
     factor = FACTOR if here > 0.0 else 1.0 / FACTOR
     first, last = sorted((known, known * RANGE if here > 0.0 else known / RANGE))
     try:
@@ -107,43 +119,98 @@ JUMP = 0.1
 changes it by some thousandths."""
 
 
-def margins(rotor: RotorOnBearings, load: Vector | None, start: JournalMotion) -> Callable[[float], float]:
-    """The margin over speed [rad/s], under the load or at the case's position, from the small motions at its speed."""
+def margins(rotor: RotorOnBearings, load: Vector | None, start: Known) -> Callable[[float], float]:
+    """The margin over speed [rad/s], under the load or at the case's position, followed from the case's speed."""
     case = rotor.case
-    if load is None and case.operation.load is None:
+    wanted = None if load is None and case.operation.load is None else applied_load(case, load)
+    balances: Balances
+    if wanted is not None:
+        balances = SpeedLine(case, wanted, known=start.answer, temperatures=start.answer.problem.temperatures)
+    elif case.heat is None and start.answer.friction is None:
+        balances = PositionLine(case, start.answer)
+    else:
+        balances = PositionAnew(case)
+    return FollowedMargin(rotor, wanted, balances, start.motion)
 
-        def in_place(speed: float) -> float:
-            answer = operating_point(at(case, speed), None).answer
-            return margin(rotor.whirl(rotor.impedance(answer), speed), rotor.mass)
 
-        return in_place
-    return MarginUnderLoad(rotor, SpeedLine(case, applied_load(case, load)), start)
+class Balances(Protocol):
+    """Equilibria over speed."""
+
+    seeks: bool
+    """Whether contacts between nodes are looked for."""
+
+    def at(self, speed: float) -> Solution:
+        """The equilibrium at a speed [rad/s]."""
 
 
 @dataclass
-class MarginUnderLoad:
-    """The margin over speed under a load, each equilibrium from the last one, with contacts of one kind.
+class PositionLine:
+    """Equilibria at the case's position, each followed from the one before."""
+
+    case: Case
+    known: Solution
+    seeks: bool = True
+
+    def at(self, speed: float) -> Solution:
+        """The equilibrium at `speed` [rad/s].
+
+        Raises
+        ------
+        ConvergenceError
+            None was found.
+        """
+        before, problem = self.known, self.known.problem
+        number = problem.layout.scales.bearing_number(self.case.gas.viscosity, speed, self.case.bearing.journal_radius)
+        found, _ = advance(before, problem.at(bearing_number=number))
+        self.known = reported(self.case, found, before) if self.seeks else replace(found, elements_sought=True)
+        return self.known
+
+
+@dataclass
+class PositionAnew:
+    """Equilibria at the case's position, each from nothing: with temperatures, or with friction of a path."""
+
+    case: Case
+    seeks: bool = True
+
+    def at(self, speed: float) -> Solution:
+        """The equilibrium at `speed` [rad/s].
+
+        Raises
+        ------
+        ConvergenceError
+            None was found.
+        """
+        return operating_point(at(self.case, speed), None).answer
+
+
+@dataclass
+class FollowedMargin:
+    """The margin over speed, each equilibrium from the last one, with contacts of one kind.
 
     Attributes
     ----------
     rotor : RotorOnBearings
         Rotor and bearing.
-    line : SpeedLine
-        Balances with contacts at nodes, for speeds at which contact points are not followed.
+    load : (x, y) or None
+        The load [N]; None at the case's position.
+    balances : Balances
+        Equilibria with contacts at nodes, for speeds at which contact points are not followed.
     last : JournalMotion
         Small motions about the last equilibrium.
     """
 
     rotor: RotorOnBearings
-    line: SpeedLine
+    load: Vector | None
+    balances: Balances
     last: JournalMotion
 
     def __call__(self, speed: float) -> float:
         """The margin at `speed` [rad/s]."""
-        impedance = self.rotor.followed(self.last, speed, self.line.load)
+        impedance = self.rotor.followed(self.last, speed, self.load)
         if impedance is None:
-            self.line.seeks = not isinstance(self.last, SmallMotion)
-            impedance = self.rotor.impedance(self.line.at(speed))
+            self.balances.seeks = not isinstance(self.last, SmallMotion)
+            impedance = self.rotor.impedance(self.balances.at(speed))
         self.last = impedance.motion
         return margin(self.rotor.whirl(impedance, speed), self.rotor.mass)
 

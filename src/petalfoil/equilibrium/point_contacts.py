@@ -172,8 +172,8 @@ def newton(equations: PointEquations, most: int, load: Array | None) -> tuple[Po
     raise NoPointsError(f"contacts or the residual, {largest:.1e}, still change after {STEPS} steps")
 
 
-def followed(near: PointContacts, problem: CoupledProblem, load: Array) -> PointContacts:
-    """The equilibrium of a neighbouring problem under a load, from that `near`, in a few whole steps.
+def followed(near: PointContacts, problem: CoupledProblem, load: Array | None) -> PointContacts:
+    """The equilibrium of a neighbouring problem from that `near`, in a few whole steps; under a load with its position.
 
     The residual may grow on the way: for points that travel it does so in the first step, and halving that step would
     lead there in ten short ones.
@@ -189,7 +189,8 @@ def followed(near: PointContacts, problem: CoupledProblem, load: Array) -> Point
         if tangent is not None and largest <= RESIDUAL_TOLERANCE:
             points = revised(equations)
             if points is None:
-                return PointContacts(equations, float(np.max(np.abs(equations.scaled))), tangent.gradient)
+                residual = float(np.max(np.abs(equations.scaled)))
+                return PointContacts(equations, residual, None if load is None else tangent.gradient)
             equations, tangent = replace(equations, state=replace(equations.state, points=points)), None
         if diverged(equations.state):
             break
