@@ -19,7 +19,7 @@ from petalfoil.analysis.orbit_motion import Orbit
 from petalfoil.classic.columns import columns
 from petalfoil.classic.descent import PackDescent
 from petalfoil.classic.film_cells import FilmCells, film_cells
-from petalfoil.classic.kernels import DescentSettings, Engine, MarchSettings, kernels
+from petalfoil.classic.kernels import DescentSettings, KernelBackend, MarchSettings, kernels
 from petalfoil.classic.method_options import ClassicOptions
 from petalfoil.classic.numpy_kernels import exponential_fit, inflow, largest_rate
 from petalfoil.classic.relaxation import pressure_unknowns
@@ -57,7 +57,7 @@ def turn(orbit: Orbit) -> float:
     return 2.0 * math.pi / (2.0 * orbit.system.problem.time_number * step)
 
 
-def costs(orbit: Orbit, engine: Engine, steps: int) -> tuple[float, float]:
+def costs(orbit: Orbit, engine: KernelBackend, steps: int) -> tuple[float, float]:
     """Time of a film step and of a descent step in calls of `steps` steps, after a first call [s]."""
     start, inner = orbit.start, kernels(engine)
     problem = placed(orbit, start)

@@ -18,7 +18,7 @@ from petalfoil.analysis.orbit_motion import Orbit
 from petalfoil.analysis.release import TOLERANCE, OrbitRequest
 from petalfoil.analysis.session import one_thread
 from petalfoil.case import Case
-from petalfoil.classic.kernels import Engine
+from petalfoil.classic.kernels import KernelBackend
 from petalfoil.dynamics.stage import StageOptions
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.solvers.constraints import constrain
@@ -38,7 +38,7 @@ of this size.
 TURN, PLACES = 25, 8
 """Number of the last steps that are kept, and of those in which explicit steps are counted."""
 MODELS = {"2d": "2-D", "3d": "3-D"}
-LOOPS = {Engine.NUMBA: 16_000, Engine.NUMPY: 960}
+LOOPS = {KernelBackend.NUMBA: 16_000, KernelBackend.NUMPY: 960}
 """Number of loop steps in one timed call."""
 
 
@@ -217,16 +217,16 @@ def against_explicit(motion: Followed) -> list[Row]:
         "most_at_a_place": max(each),
         "seconds_per_revolution": motion.seconds_per_revolution,
     }
-    return [by(engine, motion, counts, (film_steps, float(np.mean(each)))) for engine in Engine]
+    return [by(engine, motion, counts, (film_steps, float(np.mean(each)))) for engine in KernelBackend]
 
 
-def by(engine: Engine, motion: Followed, counts: dict[str, Value], steps: tuple[float, float]) -> Row:
+def by(engine: KernelBackend, motion: Followed, counts: dict[str, Value], steps: tuple[float, float]) -> Row:
     """The row of one implementation of the loops."""
     name, description = (
         f"orbit_{motion.case.name}_{engine}",
         f"{motion.case.description}: explicit steps ({engine}) over petalfoil's",
     )
-    if engine is Engine.NUMBA and find_spec("numba") is None:
+    if engine is KernelBackend.NUMBA and find_spec("numba") is None:
         return Row(name, description, None, remark="numba is not installed")
     (film_steps, each), (film, pack) = steps, explicit.costs(motion.orbit, engine, LOOPS[engine])
     alone, whole = film_steps * film, film_steps * (film + each * pack)

@@ -229,14 +229,14 @@ def alone(race: Race, limit: float) -> tuple[list[dict[str, Any]], bool]:
 
 def run_classic(race: Race) -> None:
     """Print a line for each outer iteration and each stop, until the solution is that of Newton's method."""
-    from petalfoil.classic.kernels import Engine
+    from petalfoil.classic.kernels import KernelBackend
     from petalfoil.classic.method_options import ClassicOptions
     from petalfoil.classic.relaxation import ClassicRun, relax
 
     problem = build_problem(race.case())
     found = solve_cold(problem)
     reference = compared_results(problem, found.x, found.lam)
-    engine = Engine(race.engine)
+    engine = KernelBackend(race.engine)
     with contextlib.suppress(ConvergenceError):  # compiles the loops
         relax(ClassicRun(build_problem(Race(6, 9, 0, 0).case()), ClassicOptions(max_outer=1), engine))
     start = time.process_time()

@@ -24,7 +24,7 @@ SMALLER = 0.98
 
 
 @dataclass(frozen=True)
-class Grid:
+class GridSize:
     """Size of a case's grid.
 
     Attributes
@@ -66,17 +66,17 @@ class Grid:
         along = f"cells_per_pitch = {self.cells}"
         return f"{along}, axial_cells = {self.axial}" if self.axial else along
 
-    def scaled(self, factor: float) -> Grid:
+    def scaled(self, factor: float) -> GridSize:
         """The grid with `factor` as many cells each way, an even number along the axis."""
         axial = max(2 * int(0.5 * factor * self.axial), 2) if self.axial else 0
         return replace(self, cells=max(int(factor * self.cells), 4), axial=axial)
 
 
-def grid_of(case: Case) -> Grid:
+def grid_of(case: Case) -> GridSize:
     """The grid of a case."""
     pack, axial = case.pack, 0 if case.model.kind is ModelKind.TWO_D else case.axial_cells
     count, overlap = (0, 0.0) if pack is None else (pack.count, pack.overlap)
-    return Grid(count, overlap, case.cells_per_pitch, axial, case.symmetric)
+    return GridSize(count, overlap, case.cells_per_pitch, axial, case.symmetric)
 
 
 def check_memory(case: Case, bearings: int = 1) -> None:
@@ -114,7 +114,7 @@ def available_memory() -> float:
     return float(psutil.virtual_memory().available)
 
 
-def _fitting(grid: Grid, available: float) -> str:
+def _fitting(grid: GridSize, available: float) -> str:
     """Words for a grid of about the same proportions that fits into `available` [bytes]."""
     factor = SMALLER
     while (smaller := grid.scaled(factor)).memory > available:

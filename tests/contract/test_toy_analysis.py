@@ -14,7 +14,7 @@ from typer.testing import CliRunner, Result
 
 import petalfoil
 from petalfoil import plot
-from petalfoil.analysis.arguments import Load, Quantity, Speed, Values
+from petalfoil.analysis.arguments import Load, NumberWithUnit, Speed, Values
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.known_verbs import forget
 from petalfoil.analysis.operating_point import at
@@ -24,10 +24,10 @@ from petalfoil.case import Case
 from petalfoil.cli.app import app
 from petalfoil.equilibrium.run_context import Progress
 from petalfoil.errors import UnitError, UsageError
-from petalfoil.results.layout import Point, Series, at_speed
-from petalfoil.results.parts import Outcome, scalars_of
+from petalfoil.results.layout import Series, SinglePoint, at_speed
+from petalfoil.results.parts import RunOutcome, scalars_of
 from petalfoil.results.record import Record
-from petalfoil.results.schema import COORDINATES, FIELDS, SCALARS, VARIABLES, Role, Shown, Variable
+from petalfoil.results.schema import COORDINATES, FIELDS, SCALARS, VARIABLES, Role, TableLabel, Variable
 from petalfoil.results.store import load as load_result
 from tests.cases import EXAMPLES, case
 
@@ -37,15 +37,15 @@ RPM = 3.141592653589793 / 30.0
 
 # ---------------------------------------------------------------------------------------------- the analysis
 
-Gap = Annotated[float, Quantity(unit="m", help='Film thickness of the estimate: "30 um".', above=0.0)]
+Gap = Annotated[float, NumberWithUnit(unit="m", help='Film thickness of the estimate: "30 um".', above=0.0)]
 Several = Annotated[Sequence[float] | None, Values(unit="rad/s", metavar="LIST", help="Several speeds.", above=0.0)]
 
 RESULTS = {
     "petroff_torque": Variable(
-        (), "N m", "torque of a concentric journal", "M_P", shown=Shown("Petroff torque", "mN·m", 1e3)
+        (), "N m", "torque of a concentric journal", "M_P", shown=TableLabel("Petroff torque", "mN·m", 1e3)
     ),
     "petroff_gap": Variable(
-        (), "m", "film thickness of the estimate", "h_P", role=Role.GIVEN, shown=Shown("gap", "µm", 1e6)
+        (), "m", "film thickness of the estimate", "h_P", role=Role.GIVEN, shown=TableLabel("gap", "µm", 1e6)
     ),
 }
 
@@ -61,7 +61,7 @@ class Estimate:
 def install() -> None:
     """Declare the analysis."""
 
-    @analysis(Point(), Series(at=at_speed), excludes={"speed": ("speeds",)}, results=RESULTS)
+    @analysis(SinglePoint(), Series(at=at_speed), excludes={"speed": ("speeds",)}, results=RESULTS)
     def petroff(
         case: Case,
         gap: Gap = 30e-6,
@@ -97,7 +97,7 @@ STOP_AT = [-1]
 def estimate(case: Case, gap: float) -> Record:
     radius, length = case.bearing.journal_radius, case.bearing.length
     torque = 2.0 * 3.141592653589793 * case.gas.viscosity * case.operation.speed * radius**3 * length / gap
-    scalars = scalars_of(*geometry(case), asked_position(case), Estimate(torque, gap), Outcome())
+    scalars = scalars_of(*geometry(case), asked_position(case), Estimate(torque, gap), RunOutcome())
     return Record(analysis="petroff", scalars=scalars, case_toml=case.to_toml(), title=case.title)
 
 
@@ -136,7 +136,7 @@ def test_it_is_a_function_of_numbers_and_texts() -> None:
     assert_allclose(float(again["petroff_torque"]), float(ds["petroff_torque"]), rtol=1e-12)
     several = petalfoil.petroff(PLAIN, speeds=["100 rad/s", 200.0])
     assert_allclose(several["petroff_torque"], [torque(100.0, 30e-6), torque(200.0, 30e-6)], rtol=1e-12)
-    assert "gap : Quantity, optional" in petalfoil.petroff.__doc__
+    assert "gap : NumberWithUnit, optional" in petalfoil.petroff.__doc__
 
 
 def test_it_is_a_command_with_options_and_help(cli: Call) -> None:
@@ -202,4 +202,4 @@ def test_refusals_name_argument_or_option_and_unit(cli: Call) -> None:
 def test_a_result_keeps_its_declaration() -> None:
     other = Variable((), "N m", "another torque", "M")
     with pytest.raises(ValueError, match="'petroff_torque' is already declared"):
-        analysis(Point(), results={"petroff_torque": other})(lambda case: None)
+        analysis(SinglePoint(), results={"petroff_torque": other})(lambda case: None)

@@ -15,7 +15,7 @@ import pytest
 from petalfoil.errors import UsageError
 from petalfoil.studio.address import address_of
 from petalfoil.studio.design import Design
-from petalfoil.studio.engine import Engine, Job
+from petalfoil.studio.engine import Job, WorkerPool
 from petalfoil.studio.protocol import Cancelled, Done, Failure, Found, Work
 from tests.studio.server import running_studio, wait_until
 
@@ -29,11 +29,11 @@ LITTLE = 300e6
 SHORT = Design.starting().with_value("model.cells_per_pitch", 24).to_toml()
 
 
-def with_engine(ask: Callable[[Engine], Awaitable[None]]) -> None:
+def with_engine(ask: Callable[[WorkerPool], Awaitable[None]]) -> None:
     """Run something with an engine of two workers."""
 
     async def run() -> None:
-        engine = Engine(2)
+        engine = WorkerPool(2)
         await engine.start()
         try:
             await asyncio.wait_for(ask(engine), 120.0)
@@ -44,7 +44,7 @@ def with_engine(ask: Callable[[Engine], Awaitable[None]]) -> None:
     asyncio.run(run())
 
 
-def answer(engine: Engine, case: str, owner: str = "a", *, is_long: bool = False) -> Job:
+def answer(engine: WorkerPool, case: str, owner: str = "a", *, is_long: bool = False) -> Job:
     return engine.submit(owner, Work.ANSWER, verb="balance", case_toml=case, is_long=is_long)
 
 
@@ -57,7 +57,7 @@ async def at_work(job: Job) -> int:
 
 
 def test_a_cancelled_task_leaves_its_worker_warm() -> None:
-    async def ask(engine: Engine) -> None:
+    async def ask(engine: WorkerPool) -> None:
         job = answer(engine, LONG, is_long=True)
         pid = await at_work(job)
         engine.cancel(job)
@@ -73,7 +73,7 @@ def test_a_cancelled_task_leaves_its_worker_warm() -> None:
 
 
 def test_a_killed_worker_is_told_and_replaced() -> None:
-    async def ask(engine: Engine) -> None:
+    async def ask(engine: WorkerPool) -> None:
         job = answer(engine, LONG, is_long=True)
         pid = await at_work(job)
         os.kill(pid, signal.SIGKILL)
@@ -92,7 +92,7 @@ def test_a_killed_worker_is_told_and_replaced() -> None:
 def test_a_worker_that_does_not_stop_is_killed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("petalfoil.studio.engine.PATIENCE", 0.1)
 
-    async def ask(engine: Engine) -> None:
+    async def ask(engine: WorkerPool) -> None:
         job = answer(engine, LONG, is_long=True)
         pid = await at_work(job)
         psutil.Process(pid).suspend()
@@ -107,7 +107,7 @@ def test_a_worker_that_does_not_stop_is_killed(monkeypatch: pytest.MonkeyPatch) 
 def test_a_worker_that_takes_too_much_memory_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("petalfoil.studio.worker_process.MOST_MEMORY", LITTLE)
 
-    async def ask(engine: Engine) -> None:
+    async def ask(engine: WorkerPool) -> None:
         outcome = await answer(engine, LONG, is_long=True).outcome
         assert isinstance(outcome, Failure)
         assert "memory" in f"{outcome.message} {outcome.advice}"
@@ -117,7 +117,7 @@ def test_a_worker_that_takes_too_much_memory_is_told(monkeypatch: pytest.MonkeyP
 
 
 def test_long_jobs_leave_a_worker_to_short_ones_and_sessions_get_their_own() -> None:
-    async def ask(engine: Engine) -> None:
+    async def ask(engine: WorkerPool) -> None:
         long = [answer(engine, LONG, owner, is_long=True) for owner in "ab"]
         await at_work(long[0])
         loads = {owner: 5.0 + number for number, owner in enumerate("cdefgh")}
@@ -140,7 +140,7 @@ def test_long_jobs_leave_a_worker_to_short_ones_and_sessions_get_their_own() -> 
 
 
 def test_a_session_cannot_fill_the_queue() -> None:
-    async def ask(engine: Engine) -> None:
+    async def ask(engine: WorkerPool) -> None:
         jobs = [answer(engine, SHORT, "greedy") for _ in range(40)]
         other = answer(engine, SHORT, "modest")
         outcomes = [await job.outcome for job in jobs]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from petalfoil.analysis.derivatives import Derivative, DerivativesOf, Results, nearest_turn
-from petalfoil.analysis.variation import Variation
+from petalfoil.analysis.variation import VariedCase
 from petalfoil.case import Case
 from petalfoil.case.parameters import parameters_of
 from petalfoil.equilibrium.element_rates import under
@@ -110,7 +110,7 @@ def compared(derivatives: DerivativesOf, path: str) -> Comparison:
     return Comparison(path, True, errors[worst], worst)
 
 
-def difference_quotient(derivatives: DerivativesOf, variation: Variation) -> Results:
+def difference_quotient(derivatives: DerivativesOf, variation: VariedCase) -> Results:
     """Difference quotient of results of equilibria solved again, at the points of the variation."""
     sampled = []
     for steps, weight in variation.stencil:
@@ -122,7 +122,7 @@ def difference_quotient(derivatives: DerivativesOf, variation: Variation) -> Res
     }
 
 
-def relative_error(derivatives: DerivativesOf, variation: Variation, pair: tuple[str, Derivative, Results]) -> float:
+def relative_error(derivatives: DerivativesOf, variation: VariedCase, pair: tuple[str, Derivative, Results]) -> float:
     """Difference of a derivative over its size, in relative changes of result and parameter."""
     name, found, quotient = pair
     change = change_of(derivatives, variation)
@@ -134,7 +134,7 @@ def relative_error(derivatives: DerivativesOf, variation: Variation, pair: tuple
     )
 
 
-def change_of(derivatives: DerivativesOf, variation: Variation) -> float:
+def change_of(derivatives: DerivativesOf, variation: VariedCase) -> float:
     """What a parameter is compared with: its size, of the bearing's radii the clearance that they leave."""
     radii = ("bearing.journal_radius", "bearing.bushing_radius")
     return derivatives.case.bearing.clearance if variation.parameter.path in radii else variation.size

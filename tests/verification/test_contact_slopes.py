@@ -19,7 +19,7 @@ from petalfoil.equilibrium.run_context import running
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.travelling_contacts import travelling_contacts, turning_compliance
 from petalfoil.physics.contact import Contacts, GapLines
-from petalfoil.physics.contact_points import ContactPoints
+from petalfoil.physics.contact_points import IsolatedContacts
 from petalfoil.solvers.problem import Border
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.solvers.tangent import BorderedTangent, Tangent
@@ -80,7 +80,7 @@ def strip_gradient(cells: int, *, travelling: bool) -> Array:
     by_e = np.column_stack([np.ones(n), -CURVATURE * (phi[1:] - STOP[1])])
     lines = (GapLines(np.arange(n)[None], phi[1:], 1),) if travelling else ()
     contacts = Contacts(problem.G, rest, by_e, np.ones(n), none, none, none, lines)
-    points = ContactPoints.of(contacts, problem.gaps(answer.x), answer.lam, answer.active)
+    points = IsolatedContacts.of(contacts, problem.gaps(answer.x), answer.lam, answer.active)
     assert len(points.travel_stiffness) == int(travelling)
     moving = travelling_contacts(problem.G, by_e, points.placed(turning_compliance(problem.G, matrix, points, None)))
     matrix, constraints = sp.csc_array(matrix + moving.tangent), moving.constraints

@@ -15,7 +15,7 @@ from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
 from petalfoil.case import Case
 from petalfoil.case.parameters import parameter_of, with_values
-from petalfoil.equilibrium.contact_sets import Contact, split
+from petalfoil.equilibrium.contact_sets import TravellingContact, split
 from petalfoil.equilibrium.nodal_state import NodalState
 from petalfoil.equilibrium.run_context import running
 from petalfoil.equilibrium.small_motion import AT_POINTS, HELD_AT_NODES
@@ -117,14 +117,14 @@ def test_refusals_name_the_key(key: str, value: object) -> None:
 
 def test_a_point_with_low_gaps_beside_it_splits_in_two() -> None:
     """The halves are halfway to the gaps and keep the centroid of the reaction."""
-    (first, second), left = split([Contact(3, 10.0, 4.0, [])], [(3, 9.0, -1), (3, 10.5, 0)])
+    (first, second), left = split([TravellingContact(3, 10.0, 4.0, [])], [(3, 9.0, -1), (3, 10.5, 0)])
     assert left == []
     assert_allclose([first.position, second.position], [9.5, 10.25])
     assert_allclose(first.reaction + second.reaction, 4.0)
     assert_allclose(first.reaction * first.position + second.reaction * second.position, 40.0)
-    (first, second), _ = split([Contact(3, 10.0, 4.0, [])], [(3, 11.0, 0)])
+    (first, second), _ = split([TravellingContact(3, 10.0, 4.0, [])], [(3, 11.0, 0)])
     assert_allclose([first.position, second.position], [9.75, 10.5])
-    stretch = [Contact(3, 10.0, 4.0, [1.0]), Contact(3, 12.0, 4.0, [])]
+    stretch = [TravellingContact(3, 10.0, 4.0, [1.0]), TravellingContact(3, 12.0, 4.0, [])]
     assert split(stretch, [(3, 9.0, -1)]) == (stretch, [(3, 9.0, -1)])
 
 

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from petalfoil.analysis.derivatives import ByParameters, Derivative, DerivativesOf, Results
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.result_gradients import GRADIENTS, FieldGradient, gradient
-from petalfoil.analysis.variation import EquationFamily, Variation
+from petalfoil.analysis.variation import EquationFamily, VariedCase
 from petalfoil.case import Case
 from petalfoil.equilibrium.element_rates import ElementValues, under
 from petalfoil.equilibrium.parameter_response import Equations, EquationValues, StateWeights
@@ -90,7 +90,7 @@ class AdjointDerivatives(ByParameters):
         """Residual of the equilibrium."""
         return self.tangent.residual
 
-    def variation(self, path: str) -> Variation:
+    def variation(self, path: str) -> VariedCase:
         """The case at values of the parameter `path`; see `DerivativesOf.variation`."""
         return self.tangent.variation(path)
 

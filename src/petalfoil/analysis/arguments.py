@@ -3,7 +3,7 @@
 An argument carries its declaration as an annotation. Unit, range and help text stand there once; the Python function
 and the command line read them alike::
 
-    Speed = Annotated[float | None, Quantity(unit="rad/s", help="Speed instead of the case's", metavar="QUANTITY")]
+    Speed = Annotated[float | None, NumberWithUnit(unit="rad/s", help="Speed for the case's", metavar="QUANTITY")]
 """
 
 from __future__ import annotations
@@ -104,7 +104,7 @@ class Measured(Range, Argument, ABC):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Quantity(Measured):
+class NumberWithUnit(Measured):
     """One quantity."""
 
     def read(self, given: object) -> float:
@@ -290,7 +290,7 @@ SPEED_HELP = 'Speed instead of the case\'s: "8000 rad/s", "60000 rpm".'
 LOAD_HELP = 'Load on the rotor instead of the case\'s: "0 N, -50 N"; a single value acts along -y.'
 DISPLACEMENTS_HELP = 'Displacements along the direction: "0 um : 280 um : 15"; or a list or single one: "100 um".'
 
-Speed: TypeAlias = Annotated[float | None, Quantity(unit="rad/s", help=SPEED_HELP, at_least=0.0)]
+Speed: TypeAlias = Annotated[float | None, NumberWithUnit(unit="rad/s", help=SPEED_HELP, at_least=0.0)]
 Speeds: TypeAlias = Annotated[
     Sequence[float] | None,
     Values(
@@ -305,7 +305,7 @@ Displacements: TypeAlias = Annotated[
     Sequence[float], Values(unit="m", option="eccentricity", metavar="START:STOP:COUNT", help=DISPLACEMENTS_HELP)
 ]
 Direction: TypeAlias = Annotated[
-    float, Quantity(unit="rad", metavar="ANGLE", help="Direction of the displacements, from x toward y.")
+    float, NumberWithUnit(unit="rad", metavar="ANGLE", help="Direction of the displacements, from x toward y.")
 ]
 Load: TypeAlias = Annotated[tuple[float, float] | None, LoadVector(also="loads", metavar="LOAD", help=LOAD_HELP)]
 Moment: TypeAlias = Annotated[
@@ -323,7 +323,7 @@ Loads: TypeAlias = Annotated[
 ]
 Mass: TypeAlias = Annotated[
     float | None,
-    Quantity(
+    NumberWithUnit(
         unit="kg",
         help="Mass of the rotor: \"2 kg\", in two bearings all of it; by default the case's rotor's, or the load's.",
         above=0.0,
@@ -331,7 +331,7 @@ Mass: TypeAlias = Annotated[
 ]
 Accuracy: TypeAlias = Annotated[
     float | None,
-    Quantity(
+    NumberWithUnit(
         unit="1",
         metavar="NUMBER",
         help='Refine the grid until the error bar of every result is below this, as "1 %"; what misses it is named.',

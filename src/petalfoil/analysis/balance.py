@@ -20,7 +20,7 @@ from petalfoil.analysis.records import effort, position, solution_record
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.results.layout import Point
+from petalfoil.results.layout import SinglePoint
 from petalfoil.results.parts import AppliedLoad
 from petalfoil.results.record import Record
 
@@ -35,7 +35,7 @@ class CarriedBy:
     carried_by: str
 
 
-@analysis(Point(), error_bars=True)
+@analysis(SinglePoint(), error_bars=True)
 def balance(
     case: Case,
     load: Load = None,

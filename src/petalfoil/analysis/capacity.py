@@ -10,7 +10,7 @@ from typing import Annotated
 
 import numpy as np
 
-from petalfoil.analysis.arguments import Quantity, Speed, Speeds, Whole
+from petalfoil.analysis.arguments import NumberWithUnit, Speed, Speeds, Whole
 from petalfoil.analysis.balance import carrier
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.declaration import analysis
@@ -28,10 +28,10 @@ from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, current_run, running
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.results.layout import ArrayTable, Point, Series, at_speed
-from petalfoil.results.parts import Outcome
+from petalfoil.results.layout import ArrayTable, Series, SinglePoint, at_speed
+from petalfoil.results.parts import RunOutcome
 from petalfoil.results.record import Array, Record
-from petalfoil.results.schema import DataType, Role, Shown, Variable
+from petalfoil.results.schema import DataType, Role, TableLabel, Variable
 from petalfoil.walls import wall_kind
 
 DOWN = -math.pi / 2.0
@@ -45,7 +45,7 @@ LBF, INCH, KRPM = 4.4482216152605, 0.0254, 1e3 * math.pi / 30.0
 
 MinFilm = Annotated[
     float | None,
-    Quantity(
+    NumberWithUnit(
         unit="m",
         option="min-film",
         help='Minimum film thickness to keep: "5 um"; above the contact film thickness.',
@@ -54,43 +54,47 @@ MinFilm = Annotated[
 ]
 Fraction = Annotated[
     float | None,
-    Quantity(unit="1", metavar="FRACTION", help="Contact fraction that is allowed.", above=0.0, below=1.0),
+    NumberWithUnit(unit="1", metavar="FRACTION", help="Contact fraction that is allowed.", above=0.0, below=1.0),
 ]
 Stress = Annotated[
     float | None,
-    Quantity(unit="Pa", help='Maximum bending stress of the petals that is allowed: "800 MPa".', above=0.0),
+    NumberWithUnit(unit="Pa", help='Maximum bending stress of the petals that is allowed: "800 MPa".', above=0.0),
 ]
-LoadDirection = Annotated[float, Quantity(unit="rad", metavar="ANGLE", help="Direction of the load, from x toward y.")]
+LoadDirection = Annotated[
+    float, NumberWithUnit(unit="rad", metavar="ANGLE", help="Direction of the load, from x toward y.")
+]
 Orientations = Annotated[
     int,
     Whole(metavar="COUNT", help="Directions of the load over one pitch, from --direction on.", at_least=1),
 ]
 
 RESULTS = {
-    "load_capacity": Variable((), "N", "largest load within the limits", "W_c", shown=Shown("load capacity", "N")),
+    "load_capacity": Variable((), "N", "largest load within the limits", "W_c", shown=TableLabel("load capacity", "N")),
     "load_direction": Variable(
         (), "rad", "direction of the load, from x toward y", "psi", role=Role.GIVEN,
-        shown=Shown("load direction", "deg", 180.0 / math.pi),
+        shown=TableLabel("load direction", "deg", 180.0 / math.pi),
     ),
     "load_coefficient": Variable(
-        (), "N s m-3", "load capacity over L D^2 omega", "C_W", shown=Shown("load coefficient", "N s/m³")
+        (), "N s m-3", "load capacity over L D^2 omega", "C_W", shown=TableLabel("load coefficient", "N s/m³")
     ),
     "load_coefficient_imperial": Variable(
         (), "lbf in-3 krpm-1", "load capacity over L D^2 omega, in the unit of the literature", "D_W",
-        shown=Shown("load coefficient", "lbf/(in³ krpm)"),
+        shown=TableLabel("load coefficient", "lbf/(in³ krpm)"),
     ),
     "limited_by": Variable(
-        (), "", "result that reaches its limit at the load capacity", "q_lim", DataType.STR, shown=Shown("limited by")
+        (), "", "result that reaches its limit at the load capacity", "q_lim", DataType.STR,
+        shown=TableLabel("limited by"),
     ),
     "min_film_limit": Variable((), "m", "least minimum film thickness allowed", "h_lim", role=Role.GIVEN),
     "contact_fraction_allowed": Variable((), "1", "largest contact fraction allowed", "s_lim", role=Role.GIVEN),
     "stress_limit": Variable((), "Pa", "largest maximum bending stress allowed", "sigma_lim", role=Role.GIVEN),
     "least_load_capacity": Variable(
-        (), "N", "least load capacity of all directions looked at", "min W_c", shown=Shown("least load capacity", "N")
+        (), "N", "least load capacity of all directions looked at", "min W_c",
+        shown=TableLabel("least load capacity", "N"),
     ),
     "least_capacity_direction": Variable(
         (), "rad", "direction of the least load capacity", "psi_min",
-        shown=Shown("  in direction", "deg", 180.0 / math.pi),
+        shown=TableLabel("  in direction", "deg", 180.0 / math.pi),
     ),
     "capacity_over_direction": Variable(
         ("load_orientation",), "N", "load capacity in each direction; nan where none was found", "W_c"
@@ -117,7 +121,7 @@ OVER = ("load_orientation", "capacity_over_direction")
 
 
 @dataclass(frozen=True)
-class Asked:
+class CapacityRequest:
     """Limits, and the directions of the load [rad]."""
 
     limits: Limits
@@ -134,7 +138,7 @@ class Given:
     stress_limit: float | None
 
     @classmethod
-    def of(cls, asked: Asked) -> Given:
+    def of(cls, asked: CapacityRequest) -> Given:
         """Limits and the first direction."""
         limits = asked.limits
         return cls(
@@ -164,14 +168,14 @@ class Least:
 
 
 @dataclass
-class Search:
+class CapacitySearch:
     """The searches of one bearing, each from the state of the one before.
 
     Attributes
     ----------
     case : Case
         The bearing.
-    asked : Asked
+    asked : CapacityRequest
         Limits and directions.
     known : dict
         State at the capacity by direction, of the speed before.
@@ -181,7 +185,7 @@ class Search:
     """
 
     case: Case
-    asked: Asked
+    asked: CapacityRequest
     known: dict[float, Solution] = field(default_factory=dict)
     loads: dict[float, list[tuple[float, float, float]]] = field(default_factory=dict)
 
@@ -215,7 +219,7 @@ class Search:
 
 
 @analysis(
-    Point(lists=OVER, table=TABLE),
+    SinglePoint(lists=OVER, table=TABLE),
     Series(columns=COLUMNS, lists=OVER, at=at_speed),
     excludes={"speed": ("speeds",)},
     results=RESULTS,
@@ -255,7 +259,7 @@ def capacity(  # noqa: PLR0913 - the options of the verb
     turn = list(speeds) if speeds is not None else [at(case, speed).operation.speed]
     if not all(omega > 0.0 for omega in turn):
         raise UsageError("a load capacity needs a turning shaft: give speeds above zero")
-    search = Search(case, Asked(limits, directions_of(case, direction, orientations)))
+    search = CapacitySearch(case, CapacityRequest(limits, directions_of(case, direction, orientations)))
     if speeds is None:
         with running(progress, "capacity") as run:
             record = point(search, turn[0])
@@ -305,7 +309,7 @@ def directions_of(case: Case, first: float, count: int) -> Array:
 
 
 def _points(
-    search: Search, speeds: list[float], progress: Progress | None, done: Sequence[Record] = ()
+    search: CapacitySearch, speeds: list[float], progress: Progress | None, done: Sequence[Record] = ()
 ) -> Iterator[Record]:
     for number, speed in enumerate(speeds[len(done) :], len(done)):
         with running(part(progress, number, len(speeds)), f"capacity at {speed:.6g} rad/s"):
@@ -313,7 +317,7 @@ def _points(
         yield record
 
 
-def point(search: Search, speed: float) -> Record:
+def point(search: CapacitySearch, speed: float) -> Record:
     """The record of one speed."""
     asked, found = search.asked, search.at(speed)
     here, first = at(search.case, speed, (0.0, 0.0)), found[0]
@@ -325,10 +329,13 @@ def point(search: Search, speed: float) -> Record:
             Least(least_load_capacity=float(over[least]), least_capacity_direction=float(asked.directions[least])),
         )
     if first.at is None:
-        ended = Outcome(converged=False, status=f"not converged: {first.status}", residual=math.nan)
+        ended = RunOutcome(converged=False, status=f"not converged: {first.status}", residual=math.nan)
         parts += (asked_position(here), ended)
     else:
-        parts += (*carried(here, first), Outcome(status=first.status, residual=first.at.found.answer.reported_residual))
+        parts += (
+            *carried(here, first),
+            RunOutcome(status=first.status, residual=first.at.found.answer.reported_residual),
+        )
     return record_of(
         "capacity",
         here,

@@ -13,7 +13,7 @@ from petalfoil.case import Case, ModelKind
 from petalfoil.equilibrium.continuation import rest
 from petalfoil.equilibrium.run_context import running
 from petalfoil.errors import ConvergenceError
-from petalfoil.results.layout import Point
+from petalfoil.results.layout import SinglePoint
 from petalfoil.results.record import Record
 from petalfoil.system.build import build_problem
 from petalfoil.system.scales import Scales
@@ -33,7 +33,7 @@ class BearingNumbers:
     knudsen_number: float
 
 
-@analysis(Point())
+@analysis(SinglePoint())
 def check(case: Case) -> Record:
     """Validate a case, print its derived geometry and draw its cross-section.
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from petalfoil.analysis.arguments import Flag, Load, Name, Quantity, Speed, Speeds, Values, Whole
+from petalfoil.analysis.arguments import Flag, Load, Name, NumberWithUnit, Speed, Speeds, Values, Whole
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.contact_model import ContactModel
 from petalfoil.analysis.declaration import Export, analysis
@@ -27,8 +27,8 @@ from petalfoil.analysis.tilted_journal import free_to_tilt, held, whole_length
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, current_run, running
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.results.layout import ArrayTable, Cell, Point, Series, at_speed
-from petalfoil.results.parts import AppliedLoad, Outcome
+from petalfoil.results.layout import ArrayTable, Cell, Series, SinglePoint, at_speed
+from petalfoil.results.parts import AppliedLoad, RunOutcome
 from petalfoil.results.record import Record
 from petalfoil.results.ross import LEAST_POINTS, ross_frequencies
 from petalfoil.results.schema import Variable
@@ -50,7 +50,7 @@ Frequencies = Annotated[
 ]
 Amplitude = Annotated[
     float | None,
-    Quantity(
+    NumberWithUnit(
         unit="m",
         help='Amplitude of the whirl at which petals with friction rub: "1 um"; by default they stick. In 2-D they '
         "slide along themselves, in 3-D only their faces turn (petals.theory).",
@@ -62,7 +62,7 @@ MATRICES = {"stiffness": ("K", "N/m"), "damping": ("C", "N s/m")}
 
 
 @dataclass(frozen=True)
-class Asked:
+class CoefficientRequest:
     """Whirl frequencies [rad/s], the amplitude at which petals rub [m], and whether the journal tilts too."""
 
     frequencies: Array
@@ -78,7 +78,7 @@ class Amplitudes:
 
 
 @dataclass(frozen=True)
-class Contact:
+class SolidContact:
     """What solid contact carries."""
 
     contact_fraction: float
@@ -198,7 +198,7 @@ EXPORTS = (
 
 
 @analysis(
-    Point(lists=LISTS, histories=(*ERROR_BARS, *TILTING), table=TABLE),
+    SinglePoint(lists=LISTS, histories=(*ERROR_BARS, *TILTING), table=TABLE),
     Series(lists=LISTS, histories=(*ERROR_BARS, *TILTING), table=TABLE, at=at_speed),
     exports=EXPORTS,
     excludes={"speed": ("speeds",)},
@@ -241,7 +241,7 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
     turn = list(speeds) if speeds is not None else [at(case, speed).operation.speed]
     if not all(omega > 0.0 for omega in turn):
         raise UsageError("coefficients need a turning shaft: give speeds above zero")
-    asked = Asked(np.array(turn if frequencies is None else frequencies, dtype=float), amplitude, tilt)
+    asked = CoefficientRequest(np.array(turn if frequencies is None else frequencies, dtype=float), amplitude, tilt)
     check_amplitude(case, asked)
     check_loss(case, asked)
     cases = [at(case, omega) for omega in turn]
@@ -251,7 +251,7 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
     return Points(partial(_points, cases, asked, load, progress), len(cases))
 
 
-def check_amplitude(case: Case, asked: Asked) -> None:
+def check_amplitude(case: Case, asked: CoefficientRequest) -> None:
     """Refuse an amplitude that changes nothing, or that has no meaning.
 
     Raises
@@ -271,7 +271,7 @@ def check_amplitude(case: Case, asked: Asked) -> None:
         )
 
 
-def check_loss(case: Case, asked: Asked) -> None:
+def check_loss(case: Case, asked: CoefficientRequest) -> None:
     """Refuse a frequency of zero where the wall loses energy whatever the frequency.
 
     Raises
@@ -287,7 +287,11 @@ def check_loss(case: Case, asked: Asked) -> None:
 
 
 def _points(
-    cases: list[Case], asked: Asked, load: Vector | None, progress: Progress | None, done: Sequence[Record] = ()
+    cases: list[Case],
+    asked: CoefficientRequest,
+    load: Vector | None,
+    progress: Progress | None,
+    done: Sequence[Record] = (),
 ) -> Iterator[Record]:
     for place, case in enumerate(cases[len(done) :], len(done)):
         with running(part(progress, place, len(cases)), "coefficients"):
@@ -300,7 +304,7 @@ def _points(
         yield record
 
 
-def point(case: Case, asked: Asked, load: Vector | None) -> Record:
+def point(case: Case, asked: CoefficientRequest, load: Vector | None) -> Record:
     """The record of one operating point.
 
     Raises
@@ -325,7 +329,7 @@ def point(case: Case, asked: Asked, load: Vector | None) -> Record:
         *state_parts(case, found),
         Amplitudes(asked.amplitude),
         ContactModel.of_motion(motion),
-        Outcome(residual=found.answer.reported_residual),
+        RunOutcome(residual=found.answer.reported_residual),
         cost,
         fields=dict(blocks(bearing, pairs)),
         coords={"whirl_frequency": asked.frequencies, "row": np.arange(2), "column": np.arange(2)},
@@ -335,6 +339,9 @@ def point(case: Case, asked: Asked, load: Vector | None) -> Record:
 def state_parts(case: Case, found: OperatingPoint) -> tuple[object, ...]:
     """What is told of the equilibrium that small motions are about."""
     bearing = bearing_of(case, found.answer)
-    contact, hot = Contact(Evaluation.of(bearing, found.answer).contact_fraction), heat_results(bearing, found.answer)
+    contact, hot = (
+        SolidContact(Evaluation.of(bearing, found.answer).contact_fraction),
+        heat_results(bearing, found.answer),
+    )
     told = (*(() if hot is None else (hot,)), *rotor_parts(case, found.answer), FrictionTold.of(case, found.answer))
     return *geometry(bearing), position(bearing, found.answer), contact, found.branch, *found.loaded, *told

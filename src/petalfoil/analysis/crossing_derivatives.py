@@ -17,7 +17,7 @@ from petalfoil.analysis.adjoint import AdjointDerivatives
 from petalfoil.analysis.crossings import PRECISION
 from petalfoil.analysis.derivatives import ByParameters, Derivative, Results
 from petalfoil.analysis.heated_derivatives import Derivatives
-from petalfoil.analysis.variation import Variation
+from petalfoil.analysis.variation import VariedCase
 from petalfoil.case.parameters import parameter_of
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.errors import ConvergenceError
@@ -38,7 +38,7 @@ SECANTS = 40
 
 
 @dataclass(frozen=True, eq=False)
-class AlongWith(Variation):
+class AlongWith(VariedCase):
     """A case at several values of a parameter, others changing in proportion.
 
     Attributes
@@ -50,7 +50,7 @@ class AlongWith(Variation):
     rates_of_others: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, variation: Variation, others: Mapping[str, float]) -> AlongWith:
+    def of(cls, variation: VariedCase, others: Mapping[str, float]) -> AlongWith:
         """A variation, and the rates of the others."""
         v = variation
         return cls(v.case, v.parameter, v.own, v.film, v.fineness, rates_of_others=others)
@@ -101,11 +101,11 @@ class CrossingDerivatives(ByParameters):
         """Residual of the equilibrium."""
         return self.balance.residual
 
-    def variation(self, path: str) -> Variation:
+    def variation(self, path: str) -> VariedCase:
         """The case at values of the parameter `path`; see `DerivativesOf.variation`."""
         return self.balance.variation(path)
 
-    def along(self, variation: Variation) -> Derivative:
+    def along(self, variation: VariedCase) -> Derivative:
         """Derivative of the quantity along a variation of the case.
 
         Raises
@@ -120,7 +120,7 @@ class CrossingDerivatives(ByParameters):
         below, above = ({self.name: self._on_side(variation, found, side)} for side in ("below", "above"))
         return replace(found, below=below, above=above, at_kink=True)
 
-    def _on_side(self, variation: Variation, found: Derivative, side: str) -> float:
+    def _on_side(self, variation: VariedCase, found: Derivative, side: str) -> float:
         """Rate of the quantity along which the result stays at its limit, on one side of the parameter."""
         sides, q = (self.by_quantity.above, self.by_quantity.below), self.limited
         first, other = (-getattr(found, side)[q] / by[q] for by in sides)

@@ -27,7 +27,7 @@ from petalfoil.system.build import build_problem
 
 
 @dataclass(frozen=True)
-class Asked:
+class DerivativeRequest:
     """What derivatives are asked for.
 
     Attributes
@@ -72,7 +72,7 @@ class Asked:
     by_adjoint: bool = False
 
 
-def sources_of(case: Case, asked: Asked) -> Sequence[Source]:
+def sources_of(case: Case, asked: DerivativeRequest) -> Sequence[Source]:
     """Where the results of a question have their derivatives.
 
     Raises
@@ -86,7 +86,7 @@ def sources_of(case: Case, asked: Asked) -> Sequence[Source]:
     return [with_adjoint(source, asked) for source in found] if asked.by_adjoint else found
 
 
-def with_adjoint(source: Source, asked: Asked) -> Source:
+def with_adjoint(source: Source, asked: DerivativeRequest) -> Source:
     """The same by the adjoint.
 
     Raises
@@ -103,7 +103,7 @@ def with_adjoint(source: Source, asked: Asked) -> Source:
     raise UsageError(f"no adjoint with [heat]: {TANGENT}")
 
 
-def by_tangent(case: Case, asked: Asked) -> Sequence[Source]:
+def by_tangent(case: Case, asked: DerivativeRequest) -> Sequence[Source]:
     """Where they have them by the tangent; see `sources_of`."""
     if asked.verb == "liftoff":
         return speed_derivatives(case, own_load(case), asked.contact_fraction, as_points=asked.as_points)

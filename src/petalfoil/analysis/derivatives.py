@@ -26,7 +26,7 @@ from petalfoil.analysis.variation import (
     FILM_CHANGE,
     EquationFamily,
     Stencil,
-    Variation,
+    VariedCase,
     equations_of,
     quotient,
 )
@@ -76,7 +76,7 @@ class Derivative:
     at_kink : bool
         Whether the two sides differ.
     fineness : float
-        Steps in which the results were differentiated, see `Variation`.
+        Steps in which the results were differentiated, see `VariedCase`.
     remark : str
         What they are not known to the last digits by, for people.
     """
@@ -97,11 +97,11 @@ class ByParameters(ABC):
     """Something with derivatives along variations of its case, hence by its parameters."""
 
     @abstractmethod
-    def variation(self, path: str) -> Variation:
+    def variation(self, path: str) -> VariedCase:
         """The case at values of the parameter `path`."""
 
     @abstractmethod
-    def along(self, variation: Variation) -> Derivative:
+    def along(self, variation: VariedCase) -> Derivative:
         """Derivatives along a variation of the case."""
 
     def by(self, path: str) -> Derivative:
@@ -208,7 +208,7 @@ class DerivativesOf(ByParameters):
         problem = self.solution.problem
         return float(np.min(problem.film(self.solution.x))) * problem.layout.scales.length
 
-    def variation(self, path: str) -> Variation:
+    def variation(self, path: str) -> VariedCase:
         """The case at values of the parameter `path`.
 
         Raises
@@ -222,7 +222,7 @@ class DerivativesOf(ByParameters):
         if parameter.is_count or parameter.value is None:
             why = "a whole number" if parameter.is_count else "left to a rule in this case: give it a value"
             raise UsageError(f"no derivative by {path}: it is {why}")
-        return Variation(self.case, parameter, self.own, self.thinnest)
+        return VariedCase(self.case, parameter, self.own, self.thinnest)
 
     def response(self, rates: EquationValues, nearest: float) -> ParameterResponse:
         """How the state follows; contacts that change within `nearest` of the parameter make a kink."""

@@ -16,7 +16,7 @@ from petalfoil.equilibrium.small_motion import AT_POINTS
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.mesh.strips import FilmMesh
 from petalfoil.physics.forces import attitude_angle, contact_fraction, node_area, viscous_torque
-from petalfoil.results.parts import Balances, Film, Forces
+from petalfoil.results.parts import Balances, FilmResults, Forces
 
 Array = NDArray[np.float64]
 
@@ -109,7 +109,7 @@ class Evaluation:
         x, y = state.problem.journal_moment(state.x, state.lam) * answer.problem.layout.scales.force
         return float(x), float(y)
 
-    def film(self) -> Film:
+    def film(self) -> FilmResults:
         """Extremes of film and pressure, friction and leakage."""
         film, case = self.answer.problem.layout.wall.film, self.case
         radius, omega = case.bearing.journal_radius, case.operation.speed
@@ -125,7 +125,7 @@ class Evaluation:
             case.slip_length * case.gas.ambient_pressure,
         )
         torque += case.surface.friction_coefficient * radius * self.normal_force
-        return Film(
+        return FilmResults(
             min_film_thickness=thinnest,
             min_film_thickness_angle=self._bushing_angle(thin.strip, thin.phi),
             min_film_thickness_z=None if film.axial.is_2d else thin.z,

@@ -44,7 +44,7 @@ def lowest(field: Array, phi: Array, z: Array) -> Extreme:
     best: Extreme | None = None
     for strip in np.argsort(nodal, kind="stable"):
         node, axial = divmod(int(places[strip]), len(z))
-        lines = (Line.of(phi, field[strip, :, axial], node), Line.of(z, field[strip, node], axial))
+        lines = (NodalProfile.of(phi, field[strip, :, axial], node), NodalProfile.of(z, field[strip, node], axial))
         if best is not None and nodal[strip] - BEYOND * sum(line.spread for line in lines) >= best.value:
             continue
         value, angle, distance = _between_nodes(field[strip], lines)
@@ -65,7 +65,7 @@ def weights_at(here: Extreme, field: Array, phi: Array, z: Array) -> Array:
     """Derivatives of an extreme of `field` by its values, the shape of the field: its place is stationary."""
     out, values = np.zeros_like(field), field[here.strip]
     node, axial = np.unravel_index(int(np.abs(values - here.value).argmin()), values.shape)
-    lines = Line.of(phi, values[:, axial], int(node)), Line.of(z, values[node], int(axial))
+    lines = NodalProfile.of(phi, values[:, axial], int(node)), NodalProfile.of(z, values[node], int(axial))
     along, across = (line.weights(place) for line, place in zip(lines, (here.phi, here.z), strict=True))
     out[here.strip, lines[0].window, lines[1].window] = np.outer(along, across)
     if not abs(float(np.sum(out * field)) - here.value) <= FOLLOWED * abs(here.value):  # parabolas replace the quartic
@@ -82,7 +82,7 @@ FOLLOWED = 1e-12
 
 
 @dataclass(frozen=True)
-class Line:
+class NodalProfile:
     """Values along one direction through the lowest node of a strip.
 
     Attributes
@@ -104,7 +104,7 @@ class Line:
     cell: float
 
     @classmethod
-    def of(cls, nodes: Array, values: Array, at: int) -> Line:
+    def of(cls, nodes: Array, values: Array, at: int) -> NodalProfile:
         """The line with the node at place `at`."""
         if not 0 < at < len(nodes) - 1:
             return cls(nodes, values, at, slice(at, at + 1), 1.0)
@@ -167,7 +167,7 @@ class Line:
         return float(self.nodes[self.at] + self.cell * local)
 
 
-def _between_nodes(values: Array, lines: tuple[Line, Line]) -> tuple[float, float, float]:
+def _between_nodes(values: Array, lines: tuple[NodalProfile, NodalProfile]) -> tuple[float, float, float]:
     """Lowest value of a strip (node, axial) and its place (angle, z), about the node that `lines` pass through."""
     along, across = lines
     own, window = float(values[along.at, across.at]), values[along.window, across.window]
@@ -178,7 +178,7 @@ def _between_nodes(values: Array, lines: tuple[Line, Line]) -> tuple[float, floa
     return own - below[0], along.place(below[1]), across.place(below[2])
 
 
-def _quartic(rise: Array, lines: tuple[Line, Line]) -> tuple[float, float, float] | None:
+def _quartic(rise: Array, lines: tuple[NodalProfile, NodalProfile]) -> tuple[float, float, float] | None:
     """What the polynomial through `rise` above the node falls below it, and where, in cells; None if nowhere near.
 
     Newton's method from the node, in the directions that have neighbours on both sides.

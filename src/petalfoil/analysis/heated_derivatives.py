@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.analysis.derivatives import KINK, ByParameters, Derivative, DerivativesOf, Results, ResultsOf
-from petalfoil.analysis.variation import CENTRAL, EquationFamily, Stencil, Variation
+from petalfoil.analysis.variation import CENTRAL, EquationFamily, Stencil, VariedCase
 from petalfoil.case import Case
 from petalfoil.equilibrium.parameter_response import Equations, EquationValues
 from petalfoil.equilibrium.solution import Solution
@@ -131,7 +131,7 @@ class HeatedDerivatives(ByParameters):
         """Residual of the equilibrium."""
         return self.frozen.residual
 
-    def variation(self, path: str) -> Variation:
+    def variation(self, path: str) -> VariedCase:
         """The case at values of the parameter `path`; see `DerivativesOf.variation`."""
         return self.frozen.variation(path)
 
@@ -141,7 +141,7 @@ class HeatedDerivatives(ByParameters):
         families = [TemperatureVariation(self.case, self.frozen.own, node) for node in range(NODES)]
         return [(family, smooth(self.frozen.along(family))) for family in families]
 
-    def along(self, variation: Variation) -> Derivative:
+    def along(self, variation: VariedCase) -> Derivative:
         """Derivatives along a variation of the case (V7).
 
         Raises
@@ -174,7 +174,7 @@ class HeatedDerivatives(ByParameters):
             )
         return -np.asarray(np.linalg.solve(slopes, [held.above[name] for name in BALANCES]), dtype=np.float64)
 
-    def _rates(self, variation: Variation, change: Array) -> EquationValues:
+    def _rates(self, variation: VariedCase, change: Array) -> EquationValues:
         """Derivatives of the equations with the temperatures following."""
         families: list[EquationFamily] = [variation, *(family for family, _ in self.by_temperatures)]
         return EquationValues.combined([family.rates(self.solution) for family in families], [1.0, *change])

@@ -24,7 +24,7 @@ WAY = "foil pack at zero speed, moved here with friction between its petals"
 
 
 @dataclass(frozen=True)
-class Point:
+class LoopPoint:
     """A state on the way.
 
     Attributes
@@ -57,7 +57,7 @@ def legs(cases: Sequence[Case], loop: bool) -> list[tuple[str, Case]]:
     return way
 
 
-def follow(way: list[tuple[str, Case]]) -> Iterator[Point]:
+def follow(way: list[tuple[str, Case]]) -> Iterator[LoopPoint]:
     """Yield the states along `way`, each from the one before; the first is assembled without friction."""
     base = build_problem(way[0][1])
     friction = friction_of(way[0][1], base.layout)
@@ -70,11 +70,11 @@ def follow(way: list[tuple[str, Case]]) -> Iterator[Point]:
         with running() as run:
             slid = moved(friction, before, problem) if before else assembled(friction, problem)
         if slid is None:
-            yield Point(case, leg, None, total * unit, run, run.seconds)
+            yield LoopPoint(case, leg, None, total * unit, run, run.seconds)
             continue
         total += slid.lost
         before = problem, slid
-        yield Point(case, leg, answer_of(problem, slid), total * unit, run, run.seconds)
+        yield LoopPoint(case, leg, answer_of(problem, slid), total * unit, run, run.seconds)
 
 
 def answer_of(problem: CoupledProblem, slid: FrictionResult) -> Solution:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Annotated
 
-from petalfoil.analysis.arguments import Quantity, Values
+from petalfoil.analysis.arguments import NumberWithUnit, Values
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.crossings import CONTACT_FRACTION, LiftoffSpeeds, crossings, fastest, sensitivity
 from petalfoil.analysis.declaration import analysis
@@ -24,8 +24,8 @@ from petalfoil.analysis.session import part
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.results.layout import Columns, load_of, of_load
-from petalfoil.results.parts import AppliedLoad, Outcome
+from petalfoil.results.layout import ColumnarSeries, load_of, of_load
+from petalfoil.results.parts import AppliedLoad, RunOutcome
 from petalfoil.results.record import Record
 from petalfoil.walls import Capability, required
 
@@ -42,7 +42,7 @@ LoadList = Annotated[
 ]
 Limit = Annotated[
     float,
-    Quantity(
+    NumberWithUnit(
         unit="1",
         metavar="FRACTION",
         help="Contact fraction below which the journal has lifted off.",
@@ -68,7 +68,7 @@ class FractionLimit:
     contact_fraction_limit: float
 
 
-LAYOUT = Columns(
+LAYOUT = ColumnarSeries(
     columns=TABLE,
     heads={"loads": load_of},
     names=(*SPEEDS, "contact_fraction_limit", "friction_path", "converged", "status", "factorizations", "wall_time"),
@@ -130,9 +130,9 @@ def _points(
             try:
                 up, down = crossings(case, load, limit)
                 found: tuple[object, ...] = (LiftoffSpeeds(up, down, *sensitivity(case, load, (limit, up))),)
-                ended = Outcome(status=in_words(case, up))
+                ended = RunOutcome(status=in_words(case, up))
             except ConvergenceError as failure:
-                found, ended = (), Outcome(converged=False, status=f"not converged: {failure}")
+                found, ended = (), RunOutcome(converged=False, status=f"not converged: {failure}")
             told = FractionLimit(limit), FrictionTold.under_load(case)
             asked = (*geometry(case), AppliedLoad.of((0.0, -load)), *told)
             record = record_of("liftoff", case, *asked, *found, effort(run.seconds), ended)

@@ -16,7 +16,7 @@ from petalfoil.analysis.heat_results import with_heat
 from petalfoil.analysis.other_bearing import bearing_of
 from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.case import Case
-from petalfoil.equilibrium.at_limit import Limit, at_limit, loaded_state
+from petalfoil.equilibrium.at_limit import LoadLimit, at_limit, loaded_state
 from petalfoil.equilibrium.element_contacts import clear_of_journal
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError
 from petalfoil.equilibrium.nodal_state import sampled_solution
@@ -191,7 +191,7 @@ class LoadRay:
             return self._judged(size, sampled_solution(found, size * unit)).margin
 
         try:
-            found = at_limit(start, Limit(unit, distance))
+            found = at_limit(start, LoadLimit(unit, distance))
             self.known = sampled_solution(clear_of_journal(found.positioned), found.size * unit)
         except NoPointsError as failure:
             current_run().note("limit", outcome=str(failure))

@@ -8,28 +8,30 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
-from petalfoil.analysis.arguments import Load, Pair, Place, Quantity, Ramp, StoredResult
+from petalfoil.analysis.arguments import Load, NumberWithUnit, Pair, Place, Ramp, StoredResult
 from petalfoil.analysis.declaration import Export, analysis
 from petalfoil.analysis.operating_point import Vector
 from petalfoil.analysis.orbit_motion import Orbit
 from petalfoil.analysis.release import TOLERANCE, OrbitRequest
 from petalfoil.case import Case
-from petalfoil.results.layout import Point
+from petalfoil.results.layout import SinglePoint
 from petalfoil.results.motion import Path
 from petalfoil.results.record import Record
 from petalfoil.results.schema import HISTORIES
-from petalfoil.results.summary import ABSENT, Row, cell, number
+from petalfoil.results.summary import ABSENT, TableRow, cell, number
 
 Revolutions = Annotated[
     float | None,
-    Quantity(
+    NumberWithUnit(
         unit="1",
         metavar="TURNS",
         help="Revolutions of the shaft to follow; by default to the end of the ramp, else 20.",
         above=0.0,
     ),
 ]
-Duration = Annotated[float | None, Quantity(unit="s", help='Time to follow, instead of turns: "10 ms".', above=0.0)]
+Duration = Annotated[
+    float | None, NumberWithUnit(unit="s", help='Time to follow, instead of turns: "10 ms".', above=0.0)
+]
 Initial = Annotated[
     Place,
     Pair(
@@ -54,7 +56,7 @@ Restart = Annotated[
 ]
 Tolerance = Annotated[
     float,
-    Quantity(
+    NumberWithUnit(
         unit="1",
         metavar="NUMBER",
         help="Local error of a step in reference films and ambient pressures.",
@@ -67,29 +69,29 @@ WARMTH = ("shaft_temperature", "pack_temperature", "shaft_growth")
 """Lines of the table of a motion with a heat network."""
 
 
-def summary(record: Record) -> Iterator[Row]:
+def summary(record: Record) -> Iterator[TableRow]:
     """Lines of the table: how far, how large, how close, and how far it can be trusted."""
     scalars, time = record.scalars, record.coords["time"].astype(float)
     over = {name: values.astype(float) for name, values in record.fields.items() if name in OVER_TIME}
-    yield Row("status", str(scalars["status"]), "")
-    yield Row("speed", _speeds(over["shaft_speed"].tolist()), "rpm")
-    yield Row("turns", number(float(scalars["revolutions"])), "")
-    yield Row("time", number(1e3 * float(time[-1] - time[0])), "ms")
+    yield TableRow("status", str(scalars["status"]), "")
+    yield TableRow("speed", _speeds(over["shaft_speed"].tolist()), "rpm")
+    yield TableRow("turns", number(float(scalars["revolutions"])), "")
+    yield TableRow("time", number(1e3 * float(time[-1] - time[0])), "ms")
     for name, label in (("steps", "steps"), ("factorizations", "factorisations"), ("failed_steps", "failed steps")):
-        yield Row(label, str(scalars[name]), "")
+        yield TableRow(label, str(scalars[name]), "")
     paths = Path.journals(time, over, places_of(record))
-    yield Row("largest displacement", number(1e6 * max(float(np.hypot(p.x, p.y).max()) for p in paths)), "µm")
-    yield Row("amplitude, last turns", with_bar(record, "amplitude", 1e6), "µm")
+    yield TableRow("largest displacement", number(1e6 * max(float(np.hypot(p.x, p.y).max()) for p in paths)), "µm")
+    yield TableRow("amplitude, last turns", with_bar(record, "amplitude", 1e6), "µm")
     if "tilt_amplitude" in scalars:
-        yield Row("tilt, last turns", with_bar(record, "tilt_amplitude", 1e6), "µrad")
-        yield Row("whirl ratio of the tilt", _ratio(float(scalars["tilt_whirl_ratio"])), "")
+        yield TableRow("tilt, last turns", with_bar(record, "tilt_amplitude", 1e6), "µrad")
+        yield TableRow("whirl ratio of the tilt", _ratio(float(scalars["tilt_whirl_ratio"])), "")
     yield cell("min_film_thickness", float(over["min_film_thickness"].min()))
     yield cell("contact_fraction", float(over["contact_fraction"].max()))._replace(label="largest contact fraction")
     yield from (cell(name, float(scalars[name])) for name in WARMTH if name in scalars)
-    yield Row("dominant whirl ratio", _ratio(float(scalars["dominant_whirl_ratio"])), "")
+    yield TableRow("dominant whirl ratio", _ratio(float(scalars["dominant_whirl_ratio"])), "")
     for name in ("mass_balance_error", "energy_balance_error"):
-        yield Row(name.replace("_balance_", "-balance "), number(float(scalars[name])), "")
-    yield Row("time spent", number(float(scalars["wall_time"])), "s")
+        yield TableRow(name.replace("_balance_", "-balance "), number(float(scalars[name])), "")
+    yield TableRow("time spent", number(float(scalars["wall_time"])), "s")
 
 
 def places_of(record: Record) -> tuple[float, ...]:
@@ -124,7 +126,7 @@ ANIMATION = Export(
 
 
 @analysis(
-    Point(histories=OVER_TIME, rows=summary),
+    SinglePoint(histories=OVER_TIME, rows=summary),
     exports=(ANIMATION,),
     excludes={"initial": ("restart",), "revolutions": ("duration",)},
     error_bars=True,

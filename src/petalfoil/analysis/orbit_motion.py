@@ -43,7 +43,7 @@ from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.equilibrium.run_context import RunContext, new_run
 from petalfoil.results.motion import figures_of, tilt_figures
-from petalfoil.results.parts import Outcome
+from petalfoil.results.parts import RunOutcome
 from petalfoil.results.record import Record
 
 if TYPE_CHECKING:
@@ -239,7 +239,7 @@ class Orbit:
             self.trace.audits(over),
             self._stepping(),
             effort(self.run.seconds, self.run),
-            Outcome(status=status, residual=float(self.residual)),
+            RunOutcome(status=status, residual=float(self.residual)),
             history=[],
             fields={**over, **pictures, **end_state(last, self.system)},
             coords={"time": time, **coords, **end_coordinates(last)},

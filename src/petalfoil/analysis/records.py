@@ -14,7 +14,7 @@ from petalfoil.analysis.heat_results import heat_results
 from petalfoil.case import Case, warnings_of
 from petalfoil.equilibrium.run_context import HistoryRow, RunContext, current_run
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.results.parts import Branch, Effort, Geometry, Outcome, Position, scalars_of
+from petalfoil.results.parts import Branch, Effort, Geometry, Position, RunOutcome, scalars_of
 from petalfoil.results.record import Array, Record
 from petalfoil.system.build import lever_of
 from petalfoil.system.temperatures import Temperatures
@@ -34,7 +34,7 @@ def solution_record(analysis: str, found: Evaluation, *parts: object) -> Record:
         *geometry(case),
         *film,
         *parts,
-        Outcome(),
+        RunOutcome(),
         fields=dict(fields),
         coords=coordinates(found),
     )
@@ -42,7 +42,7 @@ def solution_record(analysis: str, found: Evaluation, *parts: object) -> Record:
 
 def failed_record(analysis: str, case: Case, reason: object, *parts: object) -> Record:
     """The record of a point without a solution: what was asked, what it cost, and why there is none."""
-    ended = Outcome(converged=False, status=f"not converged: {reason}", residual=math.nan)
+    ended = RunOutcome(converged=False, status=f"not converged: {reason}", residual=math.nan)
     return record_of(analysis, case, *geometry(case), asked_position(case), *parts, effort(), ended)
 
 

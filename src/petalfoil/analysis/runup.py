@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Annotated
 
 import numpy as np
 
-from petalfoil.analysis.arguments import Load, Quantity, Whole
+from petalfoil.analysis.arguments import Load, NumberWithUnit, Whole
 from petalfoil.analysis.balance import balance_record
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.heat_results import network_in_time, stored_temperatures
@@ -22,18 +22,18 @@ from petalfoil.case import Case, warnings_of
 from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.layout import Series, at_speed
-from petalfoil.results.parts import AppliedLoad, Branch
+from petalfoil.results.parts import AppliedLoad, Branch, Leg
 from petalfoil.results.record import Record
 from petalfoil.walls import Capability, required
 
 Top = Annotated[
-    float, Quantity(unit="rad/s", help='Speed to run up to, and back from: "30000 rpm".', option="to", above=0.0)
+    float, NumberWithUnit(unit="rad/s", help='Speed to run up to, and back from: "30000 rpm".', option="to", above=0.0)
 ]
 Count = Annotated[int, Whole(metavar="COUNT", help="Speeds on the way up, rest included.", at_least=3)]
 
 WarmUp = Annotated[
     float | None,
-    Quantity(
+    NumberWithUnit(
         unit="s",
         metavar="TIME",
         help='Time from rest to the speed, and back: "20 s"; temperatures begin cold and follow by heat capacities.',
@@ -59,13 +59,6 @@ COLUMNS = {
     "pack_temperature": "pack\ntemp.",
     "shaft_growth": "shaft\ngrowth",
 }
-
-
-@dataclass(frozen=True)
-class Leg:
-    """Part of the way: up or down."""
-
-    leg: str
 
 
 @analysis(Series(columns=COLUMNS, legs=("up", "down"), at=at_speed), error_bars=True)

@@ -7,19 +7,28 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Annotated
 
-from petalfoil.analysis.arguments import Load, Mass, Position, Quantity, Speed
+from petalfoil.analysis.arguments import Load, Mass, NumberWithUnit, Position, Speed
 from petalfoil.analysis.capacity import DOWN, LoadDirection, MinFilm, Stress, check_limits
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.crossings import CONTACT_FRACTION
 from petalfoil.analysis.declaration import analysis
-from petalfoil.analysis.derivative_sources import Asked, sources_of
+from petalfoil.analysis.derivative_sources import DerivativeRequest, sources_of
 from petalfoil.analysis.friction_told import refuse_path
 from petalfoil.analysis.liftoff import own_load
 from petalfoil.analysis.load_ray import Limits
 from petalfoil.analysis.operating_point import Vector, applied_load, at
 from petalfoil.analysis.records import asked_position, effort, record_of
 from petalfoil.analysis.runs import Points
-from petalfoil.analysis.sensitivity_table import ALL, LAYOUT, MATRICES, RESULTS, Line, lines_of, ordered, rounding_of
+from petalfoil.analysis.sensitivity_table import (
+    ALL,
+    LAYOUT,
+    MATRICES,
+    RESULTS,
+    SensitivityLine,
+    lines_of,
+    ordered,
+    rounding_of,
+)
 from petalfoil.analysis.solve import placed
 from petalfoil.analysis.words import Choice, Names, known
 from petalfoil.case import Case
@@ -75,7 +84,7 @@ Of = Annotated[
 ]
 AnyLimit = Annotated[
     float | None,
-    Quantity(
+    NumberWithUnit(
         unit="1",
         metavar="FRACTION",
         help="Contact fraction: at lift-off (1 % by default), or allowed by a load capacity.",
@@ -85,7 +94,7 @@ AnyLimit = Annotated[
 ]
 Step = Annotated[
     float,
-    Quantity(
+    NumberWithUnit(
         unit="1",
         metavar="FRACTION",
         help="Relative change of each parameter, whose effect is printed.",
@@ -97,7 +106,7 @@ Step = Annotated[
 
 WhirlFrequency = Annotated[
     float | None,
-    Quantity(
+    NumberWithUnit(
         unit="rad/s",
         metavar="FREQUENCY",
         help="Whirl frequency of stiffness and damping; by default that of the speed.",
@@ -177,7 +186,7 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     quantities = [known(name, [ALL, *ANSWERS], "result") for name in of or [MAIN_RESULT[verb]]]
     limits = Limits(min_film_thickness=min_film_thickness, contact_fraction=contact_fraction, max_stress=max_stress)
     fraction = CONTACT_FRACTION if contact_fraction is None else contact_fraction
-    asked = Asked(
+    asked = DerivativeRequest(
         verb, paths, quantities, step, vary is None, contacts == "points", fraction, limits, direction,
         frequency, mass, method == ADJOINT,
     )  # fmt: skip
@@ -242,7 +251,7 @@ def posed_to_whirl(case: Case, load: Vector | None, eccentricity: Vector | None)
     return case.replace(**{"operation.load": applied_load(case, load), "operation.eccentricity": (0.0, 0.0)})
 
 
-def refuse_limits(case: Case, asked: Asked) -> None:
+def refuse_limits(case: Case, asked: DerivativeRequest) -> None:
     """Refuse a capacity without a limit, and limits of what has none.
 
     Raises
@@ -287,7 +296,7 @@ def checked(case: Case, path: str) -> str:
     return path
 
 
-def _points(case: Case, asked: Asked, progress: Progress | None) -> Iterator[Record]:
+def _points(case: Case, asked: DerivativeRequest, progress: Progress | None) -> Iterator[Record]:
     """One record for each parameter and result, by the size of the effect."""
     with running(progress, "sensitivity") as run:
         there = {name: source for source in sources_of(case, asked) for name in source.values if name in SCALARS}
@@ -322,7 +331,7 @@ def solves_of(run: RunContext) -> int:
     return run.film.solves + run.pack.solves + run.probes.solves
 
 
-def named(asked: Asked, there: list[str]) -> list[str]:
+def named(asked: DerivativeRequest, there: list[str]) -> list[str]:
     """Names of the results that are asked for, of those that are `there`.
 
     Raises
@@ -335,7 +344,7 @@ def named(asked: Asked, there: list[str]) -> list[str]:
     return [known(name, there, f"result of {asked.verb} here") for name in asked.quantities]
 
 
-def is_felt(case: Case, line: Line) -> bool:
+def is_felt(case: Case, line: SensitivityLine) -> bool:
     """Whether a line tells of an effect beyond rounding, or why it tells none; the angle of no force has no effects."""
     if math.isnan(line.row.effect):
         return not line.outcome.converged

@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from petalfoil.analysis.derivatives import Derivative, Results
-from petalfoil.analysis.variation import Variation
+from petalfoil.analysis.variation import VariedCase
 from petalfoil.case import Case
 from petalfoil.case.parameters import Parameter
 from petalfoil.errors import ConvergenceError, DefinitionError, PetalfoilError
 from petalfoil.results.layout import Series
-from petalfoil.results.parts import Outcome
+from petalfoil.results.parts import RunOutcome
 from petalfoil.results.record import Record
-from petalfoil.results.schema import SCALARS, DataType, Role, Shown, Variable
+from petalfoil.results.schema import SCALARS, DataType, Role, TableLabel, Variable
 from petalfoil.results.summary import ROUNDING, cell
 from petalfoil.units import format_quantity
 
@@ -24,11 +24,11 @@ FELT = 1e-7
 
 
 def _text(long_name: str, symbol: str, shown: str = "", role: Role = Role.GIVEN) -> Variable:
-    return Variable((), "", long_name, symbol, DataType.STR, role, Shown(shown or long_name))
+    return Variable((), "", long_name, symbol, DataType.STR, role, TableLabel(shown or long_name))
 
 
 def _number(long_name: str, symbol: str, role: Role = Role.ANSWER, units: str = "") -> Variable:
-    shown = Shown(long_name, "%", 100.0) if units == "1" else Shown(long_name)
+    shown = TableLabel(long_name, "%", 100.0) if units == "1" else TableLabel(long_name)
     return Variable((), units, long_name, symbol, role=role, shown=shown)
 
 
@@ -102,15 +102,15 @@ class Source(Protocol):
     def residual(self) -> float:
         """Residual of the equilibrium."""
 
-    def variation(self, path: str) -> Variation:
+    def variation(self, path: str) -> VariedCase:
         """The case at values of a parameter."""
 
-    def along(self, variation: Variation) -> Derivative:
+    def along(self, variation: VariedCase) -> Derivative:
         """Derivatives along it."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
+class SensitivityRow:
     """The effect of one parameter on one result; `nan` where there is no derivative."""
 
     parameter: str
@@ -181,32 +181,34 @@ ALL = "all"
 
 
 @dataclass(frozen=True)
-class Line:
+class SensitivityLine:
     """A row and how it came about."""
 
-    row: Row
-    outcome: Outcome
+    row: SensitivityRow
+    outcome: RunOutcome
 
 
-def lines_of(path: str, sources: Mapping[str, Source], step: float) -> list[Line]:
+def lines_of(path: str, sources: Mapping[str, Source], step: float) -> list[SensitivityLine]:
     """The rows of one parameter for each result; where a result has no derivative, its row says why."""
-    lines: list[Line] = []
-    done: dict[int, tuple[Variation, Derivative | PetalfoilError]] = {}
+    lines: list[SensitivityLine] = []
+    done: dict[int, tuple[VariedCase, Derivative | PetalfoilError]] = {}
     for quantity, source in sources.items():
         if id(source) not in done:
             done[id(source)] = along(source, source.variation(path))
         variation, found = done[id(source)]
         row = asked_row(variation, (quantity, source.values[quantity]), step)
         if isinstance(found, PetalfoilError):
-            lines.append(Line(row, Outcome(converged=False, status=f"not converged: {found}")))
+            lines.append(SensitivityLine(row, RunOutcome(converged=False, status=f"not converged: {found}")))
         else:
             lines.append(
-                Line(with_effect(row, found, variation), Outcome(status=in_words(found), residual=source.residual))
+                SensitivityLine(
+                    with_effect(row, found, variation), RunOutcome(status=in_words(found), residual=source.residual)
+                )
             )
     return lines
 
 
-def along(source: Source, variation: Variation) -> tuple[Variation, Derivative | PetalfoilError]:
+def along(source: Source, variation: VariedCase) -> tuple[VariedCase, Derivative | PetalfoilError]:
     """Derivatives along a variation, or why there are none: the case may not allow the change alone."""
     try:
         return variation, source.along(variation)
@@ -214,12 +216,12 @@ def along(source: Source, variation: Variation) -> tuple[Variation, Derivative |
         return variation, failure
 
 
-def asked_row(variation: Variation, result: tuple[str, float], step: float) -> Row:
+def asked_row(variation: VariedCase, result: tuple[str, float], step: float) -> SensitivityRow:
     """What a row tells of its parameter and its result."""
     parameter, (quantity, value) = variation.parameter, result
     value = value if abs(value) > rounding_of(variation.case, quantity) else 0.0
     change = step * (variation.value or variation.size)
-    return Row(
+    return SensitivityRow(
         parameter=parameter.path,
         parameter_text=format_quantity(variation.value, parameter.unit),
         parameter_value=variation.value,
@@ -237,7 +239,7 @@ def change_text(parameter: Parameter, change: float, step: float) -> str:
     return f"{100.0 * step:g} %" if parameter.value else f"+{format_quantity(change, parameter.unit)}"
 
 
-def with_effect(row: Row, found: Derivative, variation: Variation) -> Row:
+def with_effect(row: SensitivityRow, found: Derivative, variation: VariedCase) -> SensitivityRow:
     """The row with the derivatives of its result, and what they make of the change."""
     quantity, value, change = row.quantity, row.quantity_value, row.parameter_change
     side = found.above if change > 0.0 else found.below
@@ -263,6 +265,6 @@ def in_words(found: Derivative) -> str:
     return "; ".join(filter(None, ["converged", found.remark, sides]))
 
 
-def ordered(lines: Sequence[Line], quantities: Sequence[str]) -> list[Line]:
+def ordered(lines: Sequence[SensitivityLine], quantities: Sequence[str]) -> list[SensitivityLine]:
     """Lines by result, then by the size of the effect."""
     return sorted(lines, key=lambda line: (quantities.index(line.row.quantity), -line.row.size))

@@ -14,13 +14,13 @@ from petalfoil.analysis.records import asked_position, effort, position, solutio
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import UsageError
-from petalfoil.results.layout import Point
+from petalfoil.results.layout import SinglePoint
 from petalfoil.results.parts import Branch
 from petalfoil.results.record import Record
 from petalfoil.system.build import build_problem
 
 
-@analysis(Point(), error_bars=True)
+@analysis(SinglePoint(), error_bars=True)
 def solve(
     case: Case,
     *,

@@ -30,9 +30,9 @@ from petalfoil.dynamics.natural_modes import Mode
 from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.results.grid import Grid
-from petalfoil.results.layout import ArrayTable, Cell, Point, Series, at_speed
-from petalfoil.results.parts import AppliedLoad, Outcome
+from petalfoil.results.grid import LoadSpeedGrid
+from petalfoil.results.layout import ArrayTable, Cell, Series, SinglePoint, at_speed
+from petalfoil.results.parts import AppliedLoad, RunOutcome
 from petalfoil.results.record import Array, Record
 from petalfoil.results.schema import Variable
 from petalfoil.results.summary import ABSENT, cell, number
@@ -90,7 +90,7 @@ class Campbell(Series):
     takes_error_bars: ClassVar[bool] = False
 
 
-GRID = Grid(
+GRID = LoadSpeedGrid(
     names=("critical_mass", "whirl_ratio", "contact_fraction", "eccentricity_x", "eccentricity_y", "status"),
     tables={
         "critical_mass": "critical mass [kg] over load and speed",
@@ -115,7 +115,7 @@ class RotorMass:
 
 
 @dataclass(frozen=True)
-class Rotor:
+class RotorThreshold:
     """The rotor, and the speed at which it becomes unstable."""
 
     rotor_mass: float
@@ -123,7 +123,7 @@ class Rotor:
 
 
 @analysis(
-    Point(lists=MODES, histories=(TILT, *MODE_BARS), table=MODE_TABLE),
+    SinglePoint(lists=MODES, histories=(TILT, *MODE_BARS), table=MODE_TABLE),
     GRID,
     Campbell(lists=(*MODES, CRITICAL), histories=(TILT,), table=CAMPBELL_TABLE, at=at_speed),
     excludes={"speed": ("speeds",), "load": ("loads",), "mass": ("loads",)},
@@ -193,7 +193,12 @@ def point(case: Case, load: Vector | None, mass: float | None, progress: Progres
         modes = None if math.isnan(rotor.mass) else rotor.modes(impedance, speed)
         threshold, ended = threshold_speed(rotor, load, Known(found.answer, impedance.motion, whirl))
         contacts = ContactModel.of_motion(impedance.motion)
-        parts = (Rotor(rotor.mass, threshold), *whirl_parts(case, found, whirl, ended), contacts, effort(run.seconds))
+        parts = (
+            RotorThreshold(rotor.mass, threshold),
+            *whirl_parts(case, found, whirl, ended),
+            contacts,
+            effort(run.seconds),
+        )
         fields, coords = ({}, {}) if modes is None else mode_fields(modes, speed, tilts=case.bearings > 1)
         return record_of("stability", case, *parts, fields=fields, coords=coords)
 
@@ -202,7 +207,7 @@ def whirl_parts(case: Case, found: OperatingPoint, whirl: Whirl, ended: str) -> 
     """The state and its critical mass; what has no number is told by the status."""
     any_mass = {0.0: "whirls at half the speed at any speed and rotor mass", math.inf: "stable for any rotor mass"}
     remarks = ["converged", any_mass.get(whirl.mass, ""), ended]
-    outcome = Outcome(status="; ".join(filter(None, remarks)), residual=found.answer.reported_residual)
+    outcome = RunOutcome(status="; ".join(filter(None, remarks)), residual=found.answer.reported_residual)
     return *state_parts(case, found), CriticalMass(whirl.mass, whirl.ratio), outcome
 
 

@@ -27,7 +27,7 @@ from petalfoil.equilibrium.run_context import Progress, current_run, running
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.layout import Series
-from petalfoil.results.parts import Branch, Outcome
+from petalfoil.results.parts import Branch, Leg, RunOutcome
 from petalfoil.results.record import Record
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
@@ -44,13 +44,6 @@ class Torque:
 
     starting_torque: float
     friction_torque: float
-
-
-@dataclass(frozen=True)
-class Leg:
-    """Part of the way."""
-
-    leg: str
 
 
 def preload(points: list[dict[str, Any]]) -> dict[str, Any]:
@@ -162,7 +155,7 @@ def static_record(case: Case, answer: Solution, *parts: object) -> Record:
         Torque(torque, torque),
         wall_kind(case).scalars(fields),
         Branch(solution_path=answer.solution_path, stable=True, known_equilibria=1),
-        Outcome(residual=answer.reported_residual),
+        RunOutcome(residual=answer.reported_residual),
         *parts,
         fields=dict(fields),
         coords=coordinates(found),

@@ -104,7 +104,7 @@ class EquationFamily(ABC):
 
 
 @dataclass(frozen=True, eq=False)
-class Variation(EquationFamily):
+class VariedCase(EquationFamily):
     """A case at several values of a parameter.
 
     Attributes

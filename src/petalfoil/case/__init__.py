@@ -47,7 +47,7 @@ from petalfoil.case.rotor import Rotor, Which
 from petalfoil.case.second_bearing import SecondBearing
 from petalfoil.case.sections import (
     Bearing,
-    Contacts,
+    ContactDiscretization,
     Edges,
     FrictionHistory,
     Method,
@@ -64,7 +64,7 @@ __all__ = [
     "BumpFoil",
     "Bushing",
     "Case",
-    "Contacts",
+    "ContactDiscretization",
     "Edges",
     "Feet",
     "FrictionHistory",

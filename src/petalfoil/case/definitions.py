@@ -23,7 +23,16 @@ from petalfoil.case.pack_geometry import (
 )
 from petalfoil.case.petal_table import Petals, PetalTheory
 from petalfoil.case.rotor import Rotor
-from petalfoil.case.sections import ADAPTED, Bearing, Contacts, Method, Model, ModelKind, Operation, Surface
+from petalfoil.case.sections import (
+    ADAPTED,
+    Bearing,
+    ContactDiscretization,
+    Method,
+    Model,
+    ModelKind,
+    Operation,
+    Surface,
+)
 from petalfoil.case.wall_tables import WallTable, with_table
 from petalfoil.case.whole_case import refuse_unsolvable
 from petalfoil.errors import DefinitionError
@@ -272,7 +281,7 @@ class Case(Definition):
         """Whether contacts are looked for between nodes: of petals in 2-D on a rigid bushing."""
         model, on_bushing = self.model, self.petals is not None and self.backing is None
         newton_2d = model.kind is ModelKind.TWO_D and model.method is Method.NEWTON
-        return on_bushing and newton_2d and model.contacts is Contacts.POINTS
+        return on_bushing and newton_2d and model.contacts is ContactDiscretization.POINTS
 
     @property
     def has_contact_lines(self) -> bool:
@@ -280,7 +289,7 @@ class Case(Definition):
         model = self.model
         newton_3d = model.kind is ModelKind.THREE_D and model.method is Method.NEWTON
         unbacked = self.petals is not None and self.backing is None
-        return newton_3d and model.contacts is Contacts.POINTS and unbacked
+        return newton_3d and model.contacts is ContactDiscretization.POINTS and unbacked
 
     @property
     def adapts_stations(self) -> bool:

@@ -65,7 +65,7 @@ def keys(definition: type[Definition], prefix: str = "") -> Iterator[Key]:
 
 
 @dataclass(frozen=True)
-class Entry:
+class KeyEntry:
     """What a case says to a key, or leaves to its default.
 
     Attributes
@@ -83,7 +83,7 @@ class Entry:
     given: bool
 
 
-def entries(case: Case) -> Iterator[Entry]:
+def entries(case: Case) -> Iterator[KeyEntry]:
     """All keys of the tables that a case has, with their values.
 
     A table that the case leaves out is one of defaults. Keys without value, for which the case has a rule, are left
@@ -106,13 +106,13 @@ def as_html(case: Case) -> str:
     return f"<b>{escape(case.title or 'Case without a title')}</b><table>{rows}</table>"
 
 
-def _entries(table: Definition, prefix: str) -> Iterator[Entry]:
+def _entries(table: Definition, prefix: str) -> Iterator[KeyEntry]:
     for name, field in type(table).model_fields.items():
         value, key = getattr(table, name), _key(prefix + name, field)
         if isinstance(value, Definition):
             yield from _entries(value, f"{prefix}{name}.")
         elif value is not None:
-            yield Entry(key, _plain(value, key.unit.partition(",")[0]), name in table.model_fields_set)
+            yield KeyEntry(key, _plain(value, key.unit.partition(",")[0]), name in table.model_fields_set)
 
 
 def _plain(value: object, unit: str) -> str:

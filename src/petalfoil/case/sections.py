@@ -150,7 +150,7 @@ class Method(StrEnum):
     CLASSIC = "classic"
 
 
-class Contacts(StrEnum):
+class ContactDiscretization(StrEnum):
     """Where petals touch: at points and along stretches that travel between nodes, or at nodes of the film's grid."""
 
     POINTS = "points"
@@ -171,7 +171,7 @@ class Model(Definition):
     petal_cells: Annotated[int, Count(meaning="elements of a petal per pitch", at_least=12, at_most=96)] = 32
     """Cubic elements of petals whose contacts are points; of no effect in 3-D, or with contacts at nodes. Stiffness on
     16 and 32 of them differs from that on 48 by up to 0.6 and 0.04 %; many make stretches of contact hard to find."""
-    contacts: Contacts = Contacts.POINTS
+    contacts: ContactDiscretization = ContactDiscretization.POINTS
     """At points that travel between nodes, in 2-D on petals with continuous slopes, in 3-D where they are isolated; or
     at nodes of the film's grid."""
     axial_cells: Annotated[int, Count(meaning="cells over the whole length", at_least=2, at_most=512)] | None = None

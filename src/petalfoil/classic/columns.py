@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 
-class Columns(NamedTuple):
+class ContactColumns(NamedTuple):
     """Columns of nodes that can touch; lengths are divided by `h_ref`.
 
     Attributes
@@ -44,7 +44,7 @@ class Columns(NamedTuple):
     layers: Index
 
 
-def columns(problem: CoupledProblem) -> Columns:
+def columns(problem: CoupledProblem) -> ContactColumns:
     """The columns of the wall of `problem`, from its gaps."""
     contacts, n = problem.layout.wall.contacts, problem.layout.n_wall
     gap = problem.gaps(np.zeros(problem.layout.n))  # gaps of the free petals
@@ -73,7 +73,7 @@ def _touching(problem: CoupledProblem) -> tuple[Index, Index]:
     return inner, outer
 
 
-def _stacked(innermost: Index, above: Index, between: Array, bounds: tuple[Array, Array]) -> Columns:
+def _stacked(innermost: Index, above: Index, between: Array, bounds: tuple[Array, Array]) -> ContactColumns:
     """Build all columns together, layer by layer from the innermost nodes outward."""
     low, high = bounds[0][innermost], np.full(len(innermost), np.inf)
     node, shift, layers = [innermost], [np.zeros(len(innermost))], np.ones(len(innermost), dtype=np.int64)
@@ -86,4 +86,4 @@ def _stacked(innermost: Index, above: Index, between: Array, bounds: tuple[Array
         node.append(more)
         shift.append(np.where(more >= 0, lift + between[here], np.inf))
         layers += more >= 0
-    return Columns(np.array(node, dtype=np.int64), np.array(shift), low, high, layers)
+    return ContactColumns(np.array(node, dtype=np.int64), np.array(shift), low, high, layers)

@@ -10,7 +10,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.classic.columns import Columns
+from petalfoil.classic.columns import ContactColumns
 from petalfoil.classic.film_cells import FilmCells
 from petalfoil.classic.kernels import CHECK, REFRESH, Bands, DescentSettings, MarchSettings
 
@@ -126,7 +126,9 @@ def gas_inventory_error(P: Array, cells: FilmCells) -> float:
 
 
 @compiled
-def descend(W: Array, load: Array, shell: Bands, columns: Columns, settings: DescentSettings) -> tuple[int, float]:
+def descend(
+    W: Array, load: Array, shell: Bands, columns: ContactColumns, settings: DescentSettings
+) -> tuple[int, float]:
     """As `numpy_kernels.descend`."""
     n = len(W)
     ahead, last, force = W.copy(), W.copy(), np.empty(n)
@@ -165,7 +167,7 @@ def elastic_force(W: Array, shell: Bands, force: Array) -> None:
 
 
 @compiled
-def project(W: Array, columns: Columns) -> None:
+def project(W: Array, columns: ContactColumns) -> None:
     """The nearest deflections that satisfy the constraints (18)-(20); up to three layers are written out."""
     node, shift = columns.node, columns.shift
     for c in range(len(columns.layers)):
@@ -191,7 +193,7 @@ def project(W: Array, columns: Columns) -> None:
 
 
 @compiled
-def pool(W: Array, columns: Columns, c: int) -> None:
+def pool(W: Array, columns: ContactColumns, c: int) -> None:
     """Project one column of any number of layers: neighbours out of order take their mean (pool adjacent violators)."""
     layers = columns.layers[c]
     mean, count, blocks = np.empty(layers), np.empty(layers, dtype=np.int64), 0

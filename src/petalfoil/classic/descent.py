@@ -9,8 +9,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.classic.columns import Columns, columns
-from petalfoil.classic.kernels import Bands, DescentSettings, Engine, kernels
+from petalfoil.classic.columns import ContactColumns, columns
+from petalfoil.classic.kernels import Bands, DescentSettings, KernelBackend, kernels
 from petalfoil.classic.method_options import ClassicOptions
 from petalfoil.classic.numpy_kernels import project
 from petalfoil.system.coupled import CoupledProblem
@@ -34,7 +34,7 @@ class PackDescent:
         The bearing.
     options : ClassicOptions
         Step length and acceleration.
-    engine : Engine or None
+    engine : KernelBackend or None
         Inner loops; None takes the fastest installed.
     steps : int
         Number of gradient steps so far.
@@ -42,11 +42,11 @@ class PackDescent:
 
     problem: CoupledProblem
     options: ClassicOptions
-    engine: Engine | None = None
+    engine: KernelBackend | None = None
     steps: int = field(default=0, init=False)
 
     @cached_property
-    def columns(self) -> Columns:
+    def columns(self) -> ContactColumns:
         """The constraints."""
         return columns(self.problem)
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.classic.film_cells import film_cells
-from petalfoil.classic.kernels import Engine, MarchSettings, kernels
+from petalfoil.classic.kernels import KernelBackend, MarchSettings, kernels
 from petalfoil.classic.method_options import ClassicOptions
 from petalfoil.system.coupled import CoupledProblem
 
@@ -25,7 +25,7 @@ class FilmMarch:
         The bearing.
     options : ClassicOptions
         Fraction of the stable time step.
-    engine : Engine or None
+    engine : KernelBackend or None
         Inner loops; None takes the fastest installed.
     steps : int
         Number of time steps so far.
@@ -33,7 +33,7 @@ class FilmMarch:
 
     problem: CoupledProblem
     options: ClassicOptions
-    engine: Engine | None = None
+    engine: KernelBackend | None = None
     steps: int = field(default=0, init=False)
 
     @property

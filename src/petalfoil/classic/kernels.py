@@ -11,13 +11,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.classic.columns import Columns
+from petalfoil.classic.columns import ContactColumns
 from petalfoil.classic.film_cells import FilmCells
 
 Array = NDArray[np.float64]
 
 
-class Engine(StrEnum):
+class KernelBackend(StrEnum):
     """Implementation of the inner loops."""
 
     NUMBA = "numba"
@@ -61,7 +61,7 @@ class Kernels(NamedTuple):
     """The inner loops. They change their first argument in place and return (steps, remaining change or force)."""
 
     march: Callable[[Array, FilmCells, MarchSettings], tuple[int, float]]
-    descend: Callable[[Array, Array, Bands, Columns, DescentSettings], tuple[int, float]]
+    descend: Callable[[Array, Array, Bands, ContactColumns, DescentSettings], tuple[int, float]]
 
 
 REFRESH = 32
@@ -72,11 +72,11 @@ CHECK = 20
 
 
 @cache
-def kernels(engine: Engine | None = None) -> Kernels:
+def kernels(engine: KernelBackend | None = None) -> Kernels:
     """The inner loops of `engine`; None takes the fastest installed."""
     if engine is None:
-        engine = Engine.NUMBA if numba_is_installed() else Engine.NUMPY
-    if engine is Engine.NUMBA:
+        engine = KernelBackend.NUMBA if numba_is_installed() else KernelBackend.NUMPY
+    if engine is KernelBackend.NUMBA:
         from petalfoil.classic import compiled_kernels as compiled
 
         return Kernels(compiled.march, compiled.descend)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.classic.columns import Columns
+from petalfoil.classic.columns import ContactColumns
 from petalfoil.classic.film_cells import FilmCells
 from petalfoil.classic.kernels import CHECK, REFRESH, Bands, DescentSettings, MarchSettings
 from petalfoil.physics.reynolds import langevin
@@ -101,7 +101,9 @@ def gas_inventory_error(P: Array, cells: FilmCells) -> float:
 # ---------------------------------------------------------------------------------------------- pack
 
 
-def descend(W: Array, load: Array, shell: Bands, columns: Columns, settings: DescentSettings) -> tuple[int, float]:
+def descend(
+    W: Array, load: Array, shell: Bands, columns: ContactColumns, settings: DescentSettings
+) -> tuple[int, float]:
     """Descend the gradient of the energy of the pack from `W` (n,), projected onto the constraints (45)-(50).
 
     Returns
@@ -137,7 +139,7 @@ def elastic_force(W: Array, shell: Bands) -> Array:
     return out.ravel()
 
 
-def project(W: Array, columns: Columns) -> Array:
+def project(W: Array, columns: ContactColumns) -> Array:
     """The nearest deflections to `W` (n,) that satisfy the constraints (18)-(20), column by column.
 
     The ascending sequence nearest to `Z` is `max over a <= q of min over b >= q of mean(Z_a ... Z_b)` (isotonic

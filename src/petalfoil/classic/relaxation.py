@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from petalfoil.classic.descent import PackDescent
 from petalfoil.classic.film_march import FilmMarch
-from petalfoil.classic.kernels import Engine
+from petalfoil.classic.kernels import KernelBackend
 from petalfoil.classic.method_options import ClassicOptions
 from petalfoil.errors import ConvergenceError
 from petalfoil.system.coupled import CoupledProblem
@@ -57,7 +57,7 @@ class ClassicRun:
         The bearing at one speed and journal position.
     options : ClassicOptions
         Parameters of the method.
-    engine : Engine or None
+    engine : KernelBackend or None
         Inner loops; None takes the fastest installed.
     tell : callable or None
         Called with every new row of the history.
@@ -67,7 +67,7 @@ class ClassicRun:
 
     problem: CoupledProblem
     options: ClassicOptions = field(default_factory=ClassicOptions)
-    engine: Engine | None = None
+    engine: KernelBackend | None = None
     tell: Callable[[HistoryRow], None] | None = None
     pulse: Callable[[], None] | None = None
     rows: list[HistoryRow] = field(default_factory=list, init=False)

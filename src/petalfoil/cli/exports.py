@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from petalfoil.cli.outputs import Export
+from petalfoil.cli.outputs import ExportFile
 from petalfoil.errors import UsageError
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from petalfoil.analysis.declaration import Export as Declared
+    from petalfoil.analysis.declaration import Export
 
 
-def export_options(exports: Iterable[Declared]) -> list[inspect.Parameter]:
+def export_options(exports: Iterable[Export]) -> list[inspect.Parameter]:
     """Options for the files of exports, and for their settings; absent where nothing is given."""
     options: dict[str, inspect.Parameter] = {}
     for export in exports:
@@ -31,7 +31,7 @@ def export_options(exports: Iterable[Declared]) -> list[inspect.Parameter]:
     return list(options.values())
 
 
-def chosen(exports: Iterable[Declared], given: Mapping[str, Any]) -> tuple[Export, ...]:
+def chosen(exports: Iterable[Export], given: Mapping[str, Any]) -> tuple[ExportFile, ...]:
     """The exports that the options ask for, with their settings.
 
     Raises
@@ -47,7 +47,7 @@ def chosen(exports: Iterable[Declared], given: Mapping[str, Any]) -> tuple[Expor
             if given[name] is not None and name not in used:
                 raise UsageError(f"--{name} says nothing without --{export.option}")
     return tuple(
-        Export(
+        ExportFile(
             option=f"--{export.option}",
             path=given[export.option],
             suffixes=export.suffixes,
@@ -61,7 +61,7 @@ def _option(name: str, annotation: Any) -> inspect.Parameter:
     return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=annotation, default=None)
 
 
-def _writer(export: Declared, given: Mapping[str, Any]) -> Any:
+def _writer(export: Export, given: Mapping[str, Any]) -> Any:
     """The function that writes an export with its settings, loaded when it is called."""
     settings = {
         name: argument.named(f"--{name}", given[name])

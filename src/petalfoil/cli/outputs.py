@@ -27,7 +27,7 @@ FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Export:
+class ExportFile:
     """A file for another program.
 
     Parameters
@@ -60,14 +60,14 @@ class Outputs:
         NetCDF file.
     plot : Path or None
         Figure.
-    exports : tuple of Export
+    exports : tuple of ExportFile
         Files for other programs.
     """
 
     as_json: bool
     out: Path | None
     plot: Path | None
-    exports: tuple[Export, ...] = ()
+    exports: tuple[ExportFile, ...] = ()
 
     @classmethod
     def checked(
@@ -76,7 +76,7 @@ class Outputs:
         as_json: bool,
         out: Path | None = None,
         plot: Path | None = None,
-        exports: tuple[Export, ...] = (),
+        exports: tuple[ExportFile, ...] = (),
     ) -> Self:
         """Make sure, before any work is done, that it can be given out afterwards.
 

@@ -15,7 +15,7 @@ from petalfoil.cli.exports import chosen, export_options
 from petalfoil.cli.failures import handled
 from petalfoil.cli.outputs import Outputs
 from petalfoil.errors import UsageError
-from petalfoil.results.layout import Answer, Point, Series
+from petalfoil.results.layout import Answer, Series, SinglePoint
 from petalfoil.results.store import load
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def show(result: Path, *, as_json: bool, plot: Path | None, **files: Any) -> Non
         for option in exports:
             if files[option] is not None and option not in own:
                 raise UsageError(f"--{option}: a result of {ds.attrs['analysis']} has nothing for such a file")
-        unknown = Series() if "point" in ds.dims else Point()  # of an analysis that is not declared here
+        unknown = Series() if "point" in ds.dims else SinglePoint()  # of an analysis that is not declared here
         outputs.deliver(Answer.stored(ds, analysis.layout_of(ds) if analysis else unknown), ds)
 
 

@@ -21,12 +21,12 @@ from petalfoil.text import for_terminal
 if TYPE_CHECKING:
     import xarray as xr
 
-    from petalfoil.studies.engine import Effort
+    from petalfoil.studies.engine import ProcessorTime
 
 MOST_REASONS = 5
 
 
-def deliver(ds: xr.Dataset, folder: Path, *, as_json: bool, effort: Effort | None = None) -> None:
+def deliver(ds: xr.Dataset, folder: Path, *, as_json: bool, effort: ProcessorTime | None = None) -> None:
     """Print a study, and say on standard error why cases have no answer.
 
     Raises

@@ -172,7 +172,7 @@ def largest(equations: ElementEquations) -> float:
 
 
 @dataclass(frozen=True)
-class Limit:
+class LoadLimit:
     """A limit, and the direction of the load that shall reach it.
 
     Attributes
@@ -219,7 +219,7 @@ class LimitTangent:
     slope: float
 
     @classmethod
-    def at(cls, at: LoadedState, limit: Limit) -> LimitTangent:
+    def at(cls, at: LoadedState, limit: LoadLimit) -> LimitTangent:
         """Factorise at a state.
 
         Raises
@@ -236,7 +236,7 @@ class LimitTangent:
             raise NoPointsError("more load does not lead nearer to the limit")
         return cls(tangent, by_load, slope)
 
-    def stepped(self, at: LoadedState, limit: Limit) -> LoadedState:
+    def stepped(self, at: LoadedState, limit: LoadLimit) -> LoadedState:
         """The state after a step, shortened where film or pressures would vanish or the journal goes too far."""
         tangent, (dX, move) = self.tangent, self.by_load
         own = tangent.correction(at.equations.newton_residual, unbalanced(at.equations, at.size * limit.direction))
@@ -246,7 +246,7 @@ class LimitTangent:
         return at.moved(change, more, at.admitted(change))
 
 
-def at_limit(start: LoadedState, limit: Limit) -> LoadedState:
+def at_limit(start: LoadedState, limit: LoadLimit) -> LoadedState:
     """The state and the size of the load at the limit, followed from a neighbour.
 
     Raises

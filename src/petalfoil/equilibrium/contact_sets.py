@@ -55,7 +55,7 @@ SPANS = 1.0 / 24.0
 
 
 @dataclass
-class Contact:
+class TravellingContact:
     """A travelling point, and the points of the stretch that begins there.
 
     Attributes
@@ -72,16 +72,16 @@ class Contact:
     inner: list[float]
 
 
-def listed(points: ContactPoints) -> list[Contact]:
+def listed(points: ContactPoints) -> list[TravellingContact]:
     """The contacts one by one, in their order."""
     parts = np.split(points.reaction, points.ends[1:]) if len(points.curve) else []
     return [
-        Contact(int(curve), float(position), float(part[0]), part[1:].tolist())
+        TravellingContact(int(curve), float(position), float(part[0]), part[1:].tolist())
         for curve, position, part in zip(points.curve, points.position, parts, strict=True)
     ]
 
 
-def packed(contacts: Iterable[Contact]) -> ContactPoints:
+def packed(contacts: Iterable[TravellingContact]) -> ContactPoints:
     """The same in arrays, in their order along the curves."""
     rows = sorted(contacts, key=lambda contact: (contact.curve, contact.position))
     reactions = [[contact.reaction, *contact.inner] for contact in rows]
@@ -97,7 +97,7 @@ def merged(points: ContactPoints) -> ContactPoints:
     """Travelling points that meet become one, at the centroid of their reactions."""
     if not np.any((np.diff(points.curve) == 0) & (np.diff(points.position) < MEETING)):
         return points
-    kept: list[Contact] = []
+    kept: list[TravellingContact] = []
     for contact in listed(points):
         last = kept[-1] if kept else None
         if last is None or last.curve != contact.curve or contact.position - last.position >= MEETING:
@@ -146,20 +146,20 @@ def least_pull(equations: PointEquations, opening: float) -> Array:
     return np.asarray(opening / (SPANS * curves.compliance[element]))
 
 
-def without_pulling(contacts: list[Contact]) -> list[Contact]:
+def without_pulling(contacts: list[TravellingContact]) -> list[TravellingContact]:
     """Without reactions that pull: a stretch ends before them, and begins again behind them."""
-    left: list[Contact] = []
+    left: list[TravellingContact] = []
     for k, contact in enumerate(contacts):
         ahead = contacts[k + 1].position if contact.inner else contact.position
         values = [contact.reaction, *contact.inner]
         places = np.linspace(contact.position, ahead, len(values) + 1)[:-1] if contact.inner else [contact.position]
         # the stretch that this one continues, if the point before still bears
-        begin: Contact | None = None
+        begin: TravellingContact | None = None
         for place, value in zip(places, values, strict=True):
             if value < 0.0:
                 begin = None
             elif begin is None:
-                begin = Contact(contact.curve, float(place), value, [])
+                begin = TravellingContact(contact.curve, float(place), value, [])
                 left.append(begin)
             else:
                 begin.inner.append(value)
@@ -168,46 +168,46 @@ def without_pulling(contacts: list[Contact]) -> list[Contact]:
     return [settled(left, k) for k in range(len(left))]
 
 
-def reaches(contacts: list[Contact], k: int) -> bool:
+def reaches(contacts: list[TravellingContact], k: int) -> bool:
     """Whether the stretch that begins at contact `k` still has an end."""
     return k + 1 < len(contacts) and contacts[k + 1].reaction >= 0.0
 
 
-def closed(left: list[Contact], begin: Contact, place: float) -> None:
+def closed(left: list[TravellingContact], begin: TravellingContact, place: float) -> None:
     """End the stretch of `begin` at its last point."""
-    left.append(Contact(begin.curve, place, begin.inner.pop(), []))
+    left.append(TravellingContact(begin.curve, place, begin.inner.pop(), []))
 
 
-def settled(left: list[Contact], k: int) -> Contact:
+def settled(left: list[TravellingContact], k: int) -> TravellingContact:
     """A contact whose stretch has lost its end has none."""
     here, ahead = left[k], left[k + 1] if k + 1 < len(left) else None
     if here.inner and (ahead is None or ahead.curve != here.curve):
-        return Contact(here.curve, here.position, here.reaction, [])
+        return TravellingContact(here.curve, here.position, here.reaction, [])
     return here
 
 
-def with_fresh(contacts: list[Contact], fresh: list[tuple[int, float, int]]) -> list[Contact]:
+def with_fresh(contacts: list[TravellingContact], fresh: list[tuple[int, float, int]]) -> list[TravellingContact]:
     """With contacts at further places: a point split in two, one more in a stretch, a stretch between two, a point."""
-    new: list[Contact] = []
+    new: list[TravellingContact] = []
     contacts, fresh = split(contacts, fresh)
     for curve, place, before in fresh:
         if before >= 0 and bridges(contacts, before):
             contacts[before].inner.append(0.0)
         else:
-            new.append(Contact(curve, place, 0.0, []))
+            new.append(TravellingContact(curve, place, 0.0, []))
     return [*contacts, *new] if not new else sorted([*contacts, *new], key=lambda one: (one.curve, one.position))
 
 
 def split(
-    contacts: list[Contact], fresh: list[tuple[int, float, int]]
-) -> tuple[list[Contact], list[tuple[int, float, int]]]:
+    contacts: list[TravellingContact], fresh: list[tuple[int, float, int]]
+) -> tuple[list[TravellingContact], list[tuple[int, float, int]]]:
     """The contacts with points that have gaps below zero beside them split in two, and the other gaps.
 
     Petals that flatten against each other touch at two points in place of one. Those are about halfway to the lowest
     gaps, and share the reaction so that its centroid stays. Without a gap on one side, the point there moves half as
     far as the other one.
     """
-    left: list[Contact] = []
+    left: list[TravellingContact] = []
     numbers, used = [-1], set()
     for k, one in enumerate(contacts):
         near = [f for f in fresh if f[0] == one.curve and abs(f[1] - one.position) <= SPLIT]
@@ -224,18 +224,18 @@ def split(
 
 
 def halves(
-    one: Contact, before: tuple[int, float, int] | None, behind: tuple[int, float, int] | None
-) -> tuple[Contact, Contact]:
+    one: TravellingContact, before: tuple[int, float, int] | None, behind: tuple[int, float, int] | None
+) -> tuple[TravellingContact, TravellingContact]:
     """The two points that take the place of one, from the lowest gaps before and behind it."""
     down = 0.0 if before is None else 0.5 * (one.position - before[1])
     up = 0.0 if behind is None else 0.5 * (behind[1] - one.position)
     down, up = down or 0.5 * up, up or 0.5 * down
     share = up / (down + up)
-    first = Contact(one.curve, max(one.position - down, 0.0), share * one.reaction, [])
-    return first, Contact(one.curve, one.position + up, (1.0 - share) * one.reaction, [])
+    first = TravellingContact(one.curve, max(one.position - down, 0.0), share * one.reaction, [])
+    return first, TravellingContact(one.curve, one.position + up, (1.0 - share) * one.reaction, [])
 
 
-def bridges(contacts: list[Contact], k: int) -> bool:
+def bridges(contacts: list[TravellingContact], k: int) -> bool:
     """Whether a point between contact `k` and the next makes a stretch of them, or belongs to the one there is."""
     if k + 1 >= len(contacts) or contacts[k + 1].curve != contacts[k].curve:
         return False
@@ -299,7 +299,7 @@ def sagging(equations: PointEquations, curve: Index, position: Array) -> Array:
 
 def from_active_nodes(whole: PointLayout, lam: Array, active: Mask) -> ContactPoints:
     """Contact points from the reactions (m,) of active nodes (m,)."""
-    contacts: list[Contact] = []
+    contacts: list[TravellingContact] = []
     phi, n = whole.pack.elements.phi, whole.pack.mesh.count
     for kind, nodes in enumerate(whole.pack.nodes.values()):
         lines = whole.layout.wall.contacts.lines[kind]
@@ -317,19 +317,19 @@ def runs(active: Mask) -> list[Index]:
     return np.split(at, np.flatnonzero(np.diff(at) > 1) + 1) if len(at) else []
 
 
-def of_run(curve: int, place: Array, lam: Array, end: float) -> list[Contact]:
+def of_run(curve: int, place: Array, lam: Array, end: float) -> list[TravellingContact]:
     """A point where a run of active nodes is short, else a stretch with a point at each end."""
     total = float(lam.sum())
     if len(place) <= 2 or place[-1] - place[0] <= SHORT_STRETCH:
         at = float(place @ lam / total) if total > 0.0 else float(place.mean())
         at_end = place[-1] == end and lam[-1] >= 0.5 * total
-        return [Contact(curve, end if at_end else at, total, [])]
+        return [TravellingContact(curve, end if at_end else at, total, [])]
     first, last = centroid(place[:2], lam[:2]), end if place[-1] == end else centroid(place[-2:], lam[-2:])
     count = max(round((last - first) / SPACING) - 1, 0)
     spread = float(lam[2:-2].sum()) / max(count, 1)
     return [
-        Contact(curve, first, float(lam[:2].sum()), [spread] * count),
-        Contact(curve, last, float(lam[-2:].sum()), []),
+        TravellingContact(curve, first, float(lam[:2].sum()), [spread] * count),
+        TravellingContact(curve, last, float(lam[-2:].sum()), []),
     ]
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from petalfoil.equilibrium.friction_path import FrictionResult
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.constraints import constrain
-from petalfoil.solvers.contact_space import Columns, KnownState, RubbingContacts
+from petalfoil.solvers.contact_space import KnownState, RubbingContacts, UnitResponses
 from petalfoil.solvers.coulomb import ContactForces
 from petalfoil.solvers.problem import ContactProblem, Linearized, no_border
 from petalfoil.solvers.sparse_lu import LinearSolver, SingularMatrixError
@@ -80,7 +80,7 @@ def slide_exactly(
     known = KnownState(before.active, before.friction.direction, gaps, before.lam, before.friction.force, still)
     doubt = beside(before.active, lines) | (base[2] < CLOSED)
     for _ in range(ROUNDS):
-        columns = Columns.of(tangent, pack.G, np.flatnonzero(doubt), rubbing)
+        columns = UnitResponses.of(tangent, pack.G, np.flatnonzero(doubt), rubbing)
         found = columns.solved(base, slip, known)
         if found is None:
             return None
@@ -111,7 +111,7 @@ def reached(
     pack: ContactProblem,
     friction: Friction,
     before: FrictionResult,
-    columns: Columns,
+    columns: UnitResponses,
     at: tuple[Array, ContactForces],
 ) -> FrictionResult:
     """The state after the step: unknowns `x` and contact forces."""

@@ -30,7 +30,7 @@ from petalfoil.equilibrium.parameter_response import (
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.travelling_contacts import TravellingContacts, placed_points, travelling_contacts
-from petalfoil.physics.contact_points import ContactPoints
+from petalfoil.physics.contact_points import IsolatedContacts
 from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.problem import Border
 from petalfoil.solvers.sparse_lu import SingularMatrixError
@@ -51,7 +51,7 @@ class PointEquilibrium:
     ----------
     solution : Solution
         The equilibrium.
-    points : ContactPoints
+    points : IsolatedContacts
         Its contacts: points, and the others at nodes.
     travelling : TravellingContacts
         What they add to the tangent.
@@ -60,7 +60,7 @@ class PointEquilibrium:
     """
 
     solution: Solution
-    points: ContactPoints
+    points: IsolatedContacts
     travelling: TravellingContacts
     tangent: BorderedTangent
 

@@ -18,7 +18,7 @@ from petalfoil.equilibrium.run_context import current_run
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.contact_equations import ContactEquations, ContactState, Correction
-from petalfoil.solvers.contact_space import Columns, KnownState, RubbingContacts, Unit
+from petalfoil.solvers.contact_space import KnownState, RubbingContacts, Unit, UnitResponses
 from petalfoil.solvers.coulomb import ContactForces
 from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.solvers.tangent import BorderedTangent, Tangent
@@ -58,7 +58,7 @@ class SlidingTangent(BorderedTangent):
 
     Attributes
     ----------
-    columns : Columns
+    columns : UnitResponses
         Of openings, reactions and friction forces.
     moved : (d, m + f) array
         Change of the bordered unknowns by each.
@@ -68,7 +68,7 @@ class SlidingTangent(BorderedTangent):
         What resists the bordered unknowns.
     """
 
-    columns: Columns
+    columns: UnitResponses
     moved: Array
     pushed: Array
     stiffness: Array
@@ -86,7 +86,7 @@ class SlidingTangent(BorderedTangent):
             change, reactions = unit.change + plain.units @ moves[-1], unit.reactions + pushed @ moves[-1]
             return Unit(change, reactions, border.gap_derivative @ moves[-1])
 
-        columns = Columns.of(plain, rubs[0], contacts, rubs[1], answered)
+        columns = UnitResponses.of(plain, rubs[0], contacts, rubs[1], answered)
         own = {field.name: getattr(plain, field.name) for field in fields(BorderedTangent)}
         return cls(**own, columns=columns, moved=np.column_stack(moves), pushed=pushed, stiffness=stiffness)
 
@@ -215,7 +215,7 @@ class SlidingNewton:
         return KnownState(at.closed, at.slips, self.gaps(at), at.lam, at.force, slip)
 
     def stepped(
-        self, at: Iterate, correction: Correction, length: float, contacts: tuple[Columns, ContactForces]
+        self, at: Iterate, correction: Correction, length: float, contacts: tuple[UnitResponses, ContactForces]
     ) -> Iterate:
         """The iterate after part of a correction, with the contact forces that belong to it."""
         columns, found = contacts

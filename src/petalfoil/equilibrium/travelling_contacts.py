@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.physics.contact_points import ContactPoints
+from petalfoil.physics.contact_points import IsolatedContacts
 from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.point_constraints import PointConstraints, constrain_points
 from petalfoil.system.coupled import Linearization
@@ -91,7 +91,7 @@ class TravellingContacts:
     def at_nodes(cls, solution: Solution) -> TravellingContacts:
         """Those of an equilibrium, all at their nodes."""
         contacts = solution.problem.layout.wall.contacts
-        return travelling_contacts(solution.problem.G, contacts.by_e, ContactPoints((), solution.active))
+        return travelling_contacts(solution.problem.G, contacts.by_e, IsolatedContacts((), solution.active))
 
     @cached_property
     def tangent(self) -> sp.csc_array:
@@ -109,10 +109,10 @@ class TravellingContacts:
         return np.asarray(self.slope_by_e.T @ (self.travel_stiffness[:, None] * self.slope_by_e))
 
 
-def placed_points(solution: Solution, linearized: Linearization) -> ContactPoints:
+def placed_points(solution: Solution, linearized: Linearization) -> IsolatedContacts:
     """Contact points of an equilibrium whose contacts determine it, where they are (K8): one factorisation."""
     problem, active = solution.problem, solution.active
-    points = ContactPoints.of(problem.layout.wall.contacts, problem.gaps(solution.x), solution.lam, active)
+    points = IsolatedContacts.of(problem.layout.wall.contacts, problem.gaps(solution.x), solution.lam, active)
     matrix = linearized.matrix(np.zeros(len(active)))
     return points.placed(turning_compliance(problem.G, matrix, points, problem.elimination_key))
 
@@ -133,7 +133,7 @@ def constraints_of(G: sp.csr_array, points: PlacedPoints) -> PointConstraints:
     return constrain_points(constrain(G, points.at_nodes), sp.csr_array(points.value @ G))
 
 
-def turning_compliance(G: sp.csr_array, matrix: sp.csc_array, points: ContactPoints, key: Hashable | None) -> Array:
+def turning_compliance(G: sp.csr_array, matrix: sp.csc_array, points: IsolatedContacts, key: Hashable | None) -> Array:
     """Turn of the gap at each point by a unit moment on its whole contact line, points pinned, (k,).
 
     `matrix` (n, n) is the tangent, `key` that of its elimination orders. One factorisation, a solve for each line.

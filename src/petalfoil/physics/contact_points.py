@@ -40,7 +40,7 @@ EVEN = 0.5
 
 
 @dataclass(frozen=True)
-class ContactPoints:
+class IsolatedContacts:
     """Contacts of an equilibrium, as points where they are isolated.
 
     Attributes
@@ -55,7 +55,7 @@ class ContactPoints:
     at_nodes: Mask
 
     @classmethod
-    def of(cls, contacts: Contacts, gaps: Array, lam: Array, active: Mask) -> ContactPoints:
+    def of(cls, contacts: Contacts, gaps: Array, lam: Array, active: Mask) -> IsolatedContacts:
         """Those of an equilibrium with the contacts `active`, from gaps and reactions at the nodes, all (m,)."""
         groups = tuple(PointsOnLines.of(lines, gaps, lam, active) for lines in contacts.lines)
         at_nodes = active.copy()
@@ -63,7 +63,7 @@ class ContactPoints:
             at_nodes[group.replaced] = False
         return cls(groups, at_nodes)
 
-    def placed(self, compliance: Array) -> ContactPoints:
+    def placed(self, compliance: Array) -> IsolatedContacts:
         """The points where their `compliance` `C` (k,), in units of gap over reaction [1/rad^2], puts them (K8)."""
         weight = 1.0 / (1.0 + compliance * self.travel_stiffness)
         ends = np.cumsum([len(group.line) for group in self.groups], dtype=np.intp)

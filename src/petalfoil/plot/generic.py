@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from petalfoil.errors import UsageError
 from petalfoil.plot import style
-from petalfoil.plot.labels import QUANTITIES, Quantity, quantity
+from petalfoil.plot.labels import QUANTITIES, PlottedQuantity, quantity
 from petalfoil.plot.views import Floats, array, one_point, unconverged
 from petalfoil.results.schema import COORDINATES, SCALARS, Role
 from petalfoil.text import for_terminal
@@ -162,7 +162,7 @@ def _scalar(ds: xr.Dataset, name: str) -> float:
     return float(ds[name])
 
 
-def _written(shown: Quantity, value: float) -> str:
+def _written(shown: PlottedQuantity, value: float) -> str:
     return f"{value * shown.factor + 0.0:.4g}".replace("-", "−")
 
 

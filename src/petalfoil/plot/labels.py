@@ -16,7 +16,7 @@ MICRO = 1e6
 
 
 @dataclass(frozen=True)
-class Quantity:
+class PlottedQuantity:
     """A quantity as figures show it.
 
     Parameters
@@ -43,46 +43,46 @@ class Quantity:
 
 
 QUANTITIES = {
-    "bearing_force": Quantity("bearing force", "N", 1.0, "|F|"),
-    "min_film_thickness": Quantity("minimum film thickness", "µm", MICRO, "h$_{min}$"),
-    "peak_pressure": Quantity("peak pressure", "kPa", 1e-3, "p$_{max}$"),
-    "friction_torque": Quantity("friction torque", "mN·m", 1e3, "M"),
-    "starting_torque": Quantity("starting torque", "mN·m", 1e3, "M$_0$"),
-    "contact_fraction": Quantity("contact fraction", "%", 100.0),
-    "contact_normal_force": Quantity("contact normal force", "N"),
-    "max_bending_stress": Quantity("maximum bending stress", "MPa", 1e-6, "σ$_{max}$"),
-    "power_loss": Quantity("power loss", "W"),
-    "side_leakage": Quantity("side leakage", "mg/s", 1e6),
-    "attitude_angle": Quantity("attitude angle", "deg", 180.0 / math.pi),
-    "eccentricity": Quantity("eccentricity", "µm", MICRO, "e"),
-    "eccentricity_x": Quantity("displacement along x", "µm", MICRO, "e$_x$"),
-    "eccentricity_y": Quantity("displacement along y", "µm", MICRO, "e$_y$"),
-    "shaft_temperature": Quantity("shaft temperature", "K", 1.0),
-    "pack_temperature": Quantity("pack temperature", "K", 1.0),
-    "speed": Quantity("speed", "rpm", RPM),
-    "load": Quantity("load", "N"),
-    "liftoff_speed": Quantity("lift-off speed", "rpm", RPM),
-    "touchdown_speed": Quantity("touchdown speed", "rpm", RPM),
-    "threshold_speed": Quantity("threshold speed", "rpm", RPM),
-    "critical_mass": Quantity("critical rotor mass", "kg", 1.0, "m$_c$"),
-    "rotor_mass": Quantity("rotor mass", "kg", 1.0, "m"),
-    "whirl_ratio": Quantity("whirl ratio", "", 1.0, "Ω/ω"),
-    "growth_rate": Quantity("growth rate", "1/s"),
-    "growth_frequency": Quantity("growth frequency", "Hz", HERTZ),
-    "whirl_frequency": Quantity("whirl frequency", "Hz", HERTZ, "Ω"),
+    "bearing_force": PlottedQuantity("bearing force", "N", 1.0, "|F|"),
+    "min_film_thickness": PlottedQuantity("minimum film thickness", "µm", MICRO, "h$_{min}$"),
+    "peak_pressure": PlottedQuantity("peak pressure", "kPa", 1e-3, "p$_{max}$"),
+    "friction_torque": PlottedQuantity("friction torque", "mN·m", 1e3, "M"),
+    "starting_torque": PlottedQuantity("starting torque", "mN·m", 1e3, "M$_0$"),
+    "contact_fraction": PlottedQuantity("contact fraction", "%", 100.0),
+    "contact_normal_force": PlottedQuantity("contact normal force", "N"),
+    "max_bending_stress": PlottedQuantity("maximum bending stress", "MPa", 1e-6, "σ$_{max}$"),
+    "power_loss": PlottedQuantity("power loss", "W"),
+    "side_leakage": PlottedQuantity("side leakage", "mg/s", 1e6),
+    "attitude_angle": PlottedQuantity("attitude angle", "deg", 180.0 / math.pi),
+    "eccentricity": PlottedQuantity("eccentricity", "µm", MICRO, "e"),
+    "eccentricity_x": PlottedQuantity("displacement along x", "µm", MICRO, "e$_x$"),
+    "eccentricity_y": PlottedQuantity("displacement along y", "µm", MICRO, "e$_y$"),
+    "shaft_temperature": PlottedQuantity("shaft temperature", "K", 1.0),
+    "pack_temperature": PlottedQuantity("pack temperature", "K", 1.0),
+    "speed": PlottedQuantity("speed", "rpm", RPM),
+    "load": PlottedQuantity("load", "N"),
+    "liftoff_speed": PlottedQuantity("lift-off speed", "rpm", RPM),
+    "touchdown_speed": PlottedQuantity("touchdown speed", "rpm", RPM),
+    "threshold_speed": PlottedQuantity("threshold speed", "rpm", RPM),
+    "critical_mass": PlottedQuantity("critical rotor mass", "kg", 1.0, "m$_c$"),
+    "rotor_mass": PlottedQuantity("rotor mass", "kg", 1.0, "m"),
+    "whirl_ratio": PlottedQuantity("whirl ratio", "", 1.0, "Ω/ω"),
+    "growth_rate": PlottedQuantity("growth rate", "1/s"),
+    "growth_frequency": PlottedQuantity("growth frequency", "Hz", HERTZ),
+    "whirl_frequency": PlottedQuantity("whirl frequency", "Hz", HERTZ, "Ω"),
 }
 _UNITS = {"1": ("", 1.0), "rad s-1": ("Hz", HERTZ), "rad": ("deg", 180.0 / math.pi)}
 """Units of the schema that figures show as others."""
 
 
-def quantity(ds: xr.Dataset, name: str) -> Quantity:
+def quantity(ds: xr.Dataset, name: str) -> PlottedQuantity:
     """How a variable of a dataset is shown: as the table says, else from its own long name and unit."""
     if name in QUANTITIES:
         return QUANTITIES[name]
     attributes = ds[name].attrs
     declared = for_figure(str(attributes.get("units", "")))
     unit, factor = ("rpm", RPM) if declared == "rad s-1" and "speed" in name else _UNITS.get(declared, (declared, 1.0))
-    return Quantity(for_figure(str(attributes.get("long_name", name.replace("_", " ")))), unit, factor)
+    return PlottedQuantity(for_figure(str(attributes.get("long_name", name.replace("_", " ")))), unit, factor)
 
 
 # ------------------------------------------------------------------------------------------ facts of a title

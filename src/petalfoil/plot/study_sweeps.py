@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from petalfoil.plot import style
-from petalfoil.plot.labels import Quantity
+from petalfoil.plot.labels import PlottedQuantity
 from petalfoil.plot.study_views import (
     Floats,
     count_fact,
@@ -128,7 +128,7 @@ def _contours(ds: xr.Dataset, names: tuple[str, ...]) -> Figure:
     return fig
 
 
-def _contour(ax: Axes, ds: xr.Dataset, name: str, told: Quantity) -> None:
+def _contour(ax: Axes, ds: xr.Dataset, name: str, told: PlottedQuantity) -> None:
     down, across = (str(dim) for dim in ds["converged"].dims)
     ds = ds.sortby([down, across])
     x, y = in_unit(ds, across, parameter(ds, across)), in_unit(ds, down, parameter(ds, down))
@@ -152,7 +152,7 @@ def _without_answer(ds: xr.Dataset) -> list[tuple[str, str, str, NDArray[np.bool
     return [region for region in regions if region[-1].any()]
 
 
-def _columns(ds: xr.Dataset, names: tuple[str, ...]) -> list[tuple[Quantity, Floats]]:
+def _columns(ds: xr.Dataset, names: tuple[str, ...]) -> list[tuple[PlottedQuantity, Floats]]:
     """Parameters and results of every case, one column each."""
     varied, shown = parameters(ds), shown_results(ds, names)
     told = [(parameter(ds, name), name) for name in varied] + [(result(ds, name), name) for name in shown]

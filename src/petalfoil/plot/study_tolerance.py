@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from petalfoil.plot import style
-from petalfoil.plot.labels import Quantity
+from petalfoil.plot.labels import PlottedQuantity
 from petalfoil.plot.study_views import Floats, count_fact, in_unit, of_cases, parameters, result, shown_results
 
 Told: TypeAlias = dict[str, Any]
@@ -57,7 +57,7 @@ def tolerance(ds: xr.Dataset, names: tuple[str, ...] = ()) -> Figure:
     return fig
 
 
-def _histogram(ax: Axes, values: Floats, quantity: Quantity, told: Told, limits: list[Told]) -> None:
+def _histogram(ax: Axes, values: Floats, quantity: PlottedQuantity, told: Told, limits: list[Told]) -> None:
     finite = values[np.isfinite(values)]
     ax.hist(finite, bins="auto", density=True, color=style.SKY, edgecolor=style.WHITE, linewidth=0.4)
     nominal, spread = told["nominal"], told["first_order_standard_deviation"]
@@ -76,7 +76,7 @@ def _histogram(ax: Axes, values: Floats, quantity: Quantity, told: Told, limits:
     ax.legend(fontsize=style.TICK, frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0))
 
 
-def _contributions(ax: Axes, ds: xr.Dataset, quantity: Quantity, told: Told) -> None:
+def _contributions(ax: Axes, ds: xr.Dataset, quantity: PlottedQuantity, told: Told) -> None:
     """A bar for the effect of one standard deviation of each parameter, the largest first."""
     paths = {str(ds[name].attrs["path"]): name for name in parameters(ds)}
     effects = {path: effect * quantity.factor for path, effect in told["effects"].items() if effect is not None}

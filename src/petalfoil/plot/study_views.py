@@ -10,7 +10,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from petalfoil.errors import UsageError
-from petalfoil.plot.labels import QUANTITIES, RPM, Quantity, quantity
+from petalfoil.plot.labels import QUANTITIES, RPM, PlottedQuantity, quantity
 from petalfoil.results.schema import SCALARS, DataType, Role
 from petalfoil.results.summary import values_without_rounding
 from petalfoil.text import for_figure
@@ -29,24 +29,25 @@ def parameters(ds: xr.Dataset) -> list[str]:
     return [name for name in names if ds[name].size > 1] or names
 
 
-def parameter(ds: xr.Dataset, name: str) -> Quantity:
+def parameter(ds: xr.Dataset, name: str) -> PlottedQuantity:
     """How a parameter is shown: its meaning, and a unit in which its values are readable."""
     attributes = ds[name].attrs
     meaning, units = for_figure(str(attributes.get("long_name", name))), str(attributes.get("units", ""))
     largest = float(np.max(np.abs(ds[name].values))) if ds[name].size else 0.0
     if units == "rad s-1":
-        return Quantity(meaning, "rpm", RPM)
+        return PlottedQuantity(meaning, "rpm", RPM)
     if units == "rad":
-        return Quantity(meaning, "deg", 180.0 / np.pi)
+        return PlottedQuantity(meaning, "deg", 180.0 / np.pi)
     for unit, ladder in (("m", _LENGTHS), ("Pa", _PRESSURES)):
         if units == unit:
             return next(
-                (Quantity(meaning, u, factor) for top, u, factor in ladder if largest < top), Quantity(meaning, unit)
+                (PlottedQuantity(meaning, u, factor) for top, u, factor in ladder if largest < top),
+                PlottedQuantity(meaning, unit),
             )
-    return Quantity(meaning, "" if units == "1" else for_figure(units))
+    return PlottedQuantity(meaning, "" if units == "1" else for_figure(units))
 
 
-def result(ds: xr.Dataset, name: str) -> Quantity:
+def result(ds: xr.Dataset, name: str) -> PlottedQuantity:
     """How a result is shown; a long name without its symbol."""
     return replace(quantity(ds, name), symbol="")
 
@@ -75,7 +76,7 @@ def of_cases(ds: xr.Dataset) -> xr.Dataset:
     return last.squeeze(single) if len(single) < last["converged"].ndim else last
 
 
-def in_unit(ds: xr.Dataset, name: str, shown: Quantity) -> Floats:
+def in_unit(ds: xr.Dataset, name: str, shown: PlottedQuantity) -> Floats:
     """Values of a parameter or a result in the unit of the figure; infinite ones are left out."""
     values = values_without_rounding(ds, name) * shown.factor
     return np.where(np.isfinite(values), values, np.nan)

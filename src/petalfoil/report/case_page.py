@@ -15,7 +15,7 @@ from petalfoil.case import ModelKind
 from petalfoil.case.keys import entries
 from petalfoil.report import html
 from petalfoil.report.case_results import LOAD_FACTORS, Part, Request, load_of, load_text
-from petalfoil.report.page_tables import TextTable, of_answer
+from petalfoil.report.page_tables import PageTable, of_answer
 from petalfoil.results.schema import VARIABLES, Role
 from petalfoil.results.seal import digest_of_data
 from petalfoil.results.summary import cell, in_order, without_rounding
@@ -48,7 +48,7 @@ class Picture:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Section:
+class PageSection:
     """One part of the page."""
 
     name: str
@@ -57,7 +57,7 @@ class Section:
     failed: bool = False
     notes: tuple[str, ...] = ()
     figures: tuple[Picture, ...] = ()
-    tables: tuple[TextTable, ...] = ()
+    tables: tuple[PageTable, ...] = ()
 
 
 def render(request: Request, parts: Sequence[Part], seconds: float, date: str) -> str:
@@ -93,7 +93,7 @@ def render(request: Request, parts: Sequence[Part], seconds: float, date: str) -
 # ---------------------------------------------------------------------------------------------- sections
 
 
-def _sections(request: Request, parts: dict[str, Part]) -> Iterator[Section]:
+def _sections(request: Request, parts: dict[str, Part]) -> Iterator[PageSection]:
     """The parts of the page in order; loads around the asked one stand together."""
     for name, part in parts.items():
         if name == "pack":
@@ -110,12 +110,12 @@ def _sections(request: Request, parts: dict[str, Part]) -> Iterator[Section]:
             yield _section(part, f"{part.title} of the operating point.")
 
 
-def _section(part: Part, caption: str, notes: tuple[str, ...] = ()) -> Section:
+def _section(part: Part, caption: str, notes: tuple[str, ...] = ()) -> PageSection:
     if part.dataset is None or part.answer is None:
-        return Section(name=part.name, title=part.title, refusal=_reason(part), failed=part.is_failed)
+        return PageSection(name=part.name, title=part.title, refusal=_reason(part), failed=part.is_failed)
     failures = " ".join(part.answer.failures())
     figures = () if failures else (Picture(html.image(plot.summary(part.dataset)), caption),)
-    return Section(
+    return PageSection(
         name=part.name,
         title=part.title,
         refusal=failures,
@@ -126,14 +126,14 @@ def _section(part: Part, caption: str, notes: tuple[str, ...] = ()) -> Section:
     )
 
 
-def _operating_point(request: Request, part: Part) -> Section:
+def _operating_point(request: Request, part: Part) -> PageSection:
     load, speed = load_of(request), request.case.operation.speed
     turning = f"Speed {cell('speed', speed).value} rpm"
     where = "position of the case" if load is None else f"load {load_text(load)}"
     return _section(part, f"{turning}, {where}: film, petals and contacts.", (f"{turning}, {where}.",))
 
 
-def _margins(asked: Part, others: Sequence[Part]) -> Section:
+def _margins(asked: Part, others: Sequence[Part]) -> PageSection:
     """Results under several loads beside each other."""
     ordered = sorted([*zip(LOAD_FACTORS, others, strict=True), (1.0, asked)], key=lambda one: one[0])
     heads, columns = [], []
@@ -144,13 +144,13 @@ def _margins(asked: Part, others: Sequence[Part]) -> Section:
     names = in_order(set().union(*columns))
     lines = [(cell(n, 0.0).label, *(column.get(n, "–") for column in columns), cell(n, 0.0).unit) for n in names]
     refusals = [f"{part.title}: {_reason(part)}" for part in others if part.refusal is not None]
-    return Section(
+    return PageSection(
         name="loads",
         title="Operating points under other loads",
         refusal=" ".join(refusals),
         failed=any(part.is_failed for part in others),
         notes=("Without error bars, on the grid of the case.",),
-        tables=(TextTable(("load over the load above", *heads, ""), tuple(lines), left=(0, -1)),),
+        tables=(PageTable(("load over the load above", *heads, ""), tuple(lines), left=(0, -1)),),
     )
 
 

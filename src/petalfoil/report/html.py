@@ -14,7 +14,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from petalfoil.report.page_tables import TextTable
+from petalfoil.report.page_tables import PageTable
 
 
 @cache
@@ -53,7 +53,7 @@ def section(name: str, heading: str) -> str:
     return _element("section", name, heading)
 
 
-def table(content: TextTable, marked: Iterable[int] = ()) -> str:
+def table(content: PageTable, marked: Iterable[int] = ()) -> str:
     """A table. Columns of numbers are aligned to the right; the rows `marked` are highlighted."""
     return _element("table", content, kinds(content), set(marked))
 
@@ -77,7 +77,7 @@ def image(fig: Figure, width: float | None = None) -> str:
     return f"data:image/svg+xml;base64,{base64.b64encode(buffer.getvalue()).decode('ascii')}"
 
 
-def kinds(content: TextTable) -> list[str]:
+def kinds(content: PageTable) -> list[str]:
     """Style class of each column: "n" for numbers, by the table's own word or because all cells are."""
     width = max(len(line) for line in (content.head, *content.rows))
     if content.left:

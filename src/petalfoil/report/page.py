@@ -12,7 +12,7 @@ from petalfoil.report import html, page_figures, page_tables
 from petalfoil.report.assumptions import ALMOST_TWOFOLD, TWO_TO_FOUR
 from petalfoil.report.claims import Claim, Evidence, Verdict, agreeing, claims
 from petalfoil.report.load_characteristics import CharacteristicFamily
-from petalfoil.report.page_tables import TextTable
+from petalfoil.report.page_tables import PageTable
 from petalfoil.report.paper_cases import CITATION, DEPARTURES, DOI, STATED, UNSTATED
 
 TITLE = "Figures and claims of the petal bearing paper, computed again"
@@ -197,7 +197,7 @@ def unstated_inputs() -> Iterator[str]:
     """Inputs that the paper does not state, and departures from its equations."""
     yield html.section("unstated", SECTIONS["unstated"])
     rows = tuple((one.what, one.paper, one.assumed) for one in UNSTATED)
-    yield html.table(TextTable(("", "the paper", "assumed here"), rows))
+    yield html.table(PageTable(("", "the paper", "assumed here"), rows))
     yield html.paragraph("Departures of this computation from the printed equations:")
     yield html.bullets(DEPARTURES)
 

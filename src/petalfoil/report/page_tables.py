@@ -21,7 +21,7 @@ SMALLEST_LOAD = 1e-3
 
 
 @dataclass(frozen=True)
-class TextTable:
+class PageTable:
     """Headings and cells.
 
     Attributes
@@ -42,15 +42,15 @@ class TextTable:
     left: tuple[int, ...] = ()
 
 
-def of_answer(answer: Answer) -> tuple[TextTable, ...]:
+def of_answer(answer: Answer) -> tuple[PageTable, ...]:
     """The tables of an answer."""
     return tuple(map(_plain, tables_of(answer)))
 
 
-def _plain(table: tables.TextTable) -> TextTable:
+def _plain(table: tables.TextTable) -> PageTable:
     head = tuple(f"{column.heading}\n{column.unit}".rstrip() for column in table.columns)
     words = tuple(k for k, column in enumerate(table.columns) if not column.of_numbers)
-    return TextTable(head, tuple(table.lines), table.title, words if head else (0, -1))
+    return PageTable(head, tuple(table.lines), table.title, words if head else (0, -1))
 
 
 def text(value: float, digits: int) -> str:
@@ -58,7 +58,7 @@ def text(value: float, digits: int) -> str:
     return f"{value:.{digits}f}" if math.isfinite(value) else MISSING
 
 
-def loads(family: CharacteristicFamily) -> TextTable:
+def loads(family: CharacteristicFamily) -> PageTable:
     """Loads of a family at its displacements."""
     columns = [curve.values("bearing_force") for curve in family.curves]
     rows = [
@@ -66,14 +66,14 @@ def loads(family: CharacteristicFamily) -> TextTable:
         for k, e in enumerate(family.curves[0].displacements())
     ]
     few, many = family.curves[0].count, family.curves[-1].count
-    return TextTable(("e, µm", *(f"{curve.label}, N" for curve in family.curves), f"{many} / {few}"), tuple(rows))
+    return PageTable(("e, µm", *(f"{curve.label}, N" for curve in family.curves), f"{many} / {few}"), tuple(rows))
 
 
 def _ratio(few: float, many: float) -> float:
     return many / few if few > SMALLEST_LOAD else math.nan
 
 
-def assumption_ratios(results: tuple[AssumptionResult, ...]) -> TextTable:
+def assumption_ratios(results: tuple[AssumptionResult, ...]) -> PageTable:
     """Ratios of the loads under every assumption."""
     few, many = (results[0].packs[which].count for which in (0, -1))
     head = ("assumption", *(f"{many} / {few} at {e * 1e6:.0f} µm" for e in COMPARED))
@@ -88,22 +88,22 @@ def assumption_ratios(results: tuple[AssumptionResult, ...]) -> TextTable:
         )
         for row in results
     ]
-    return TextTable(head, tuple(rows))
+    return PageTable(head, tuple(rows))
 
 
-def assumption_loads(results: tuple[AssumptionResult, ...]) -> TextTable:
+def assumption_loads(results: tuple[AssumptionResult, ...]) -> PageTable:
     """Loads under every assumption."""
     counts = [pack.count for pack in results[0].packs]
     head = ("assumption", *(f"n = {n}, {e * 1e6:.0f} µm [N]" for n in counts for e in COMPARED))
     rows = [
         (row.assumption.description, *(text(load, 2) for pack in row.packs for load in pack.loads)) for row in results
     ]
-    return TextTable(head, tuple(rows))
+    return PageTable(head, tuple(rows))
 
 
 def interpretations(
     reference: tuple[Interpretation, ...], tangent: tuple[Interpretation, ...], counts: tuple[int, ...]
-) -> TextTable:
+) -> PageTable:
     """Other quantities and their ratios."""
     few, many = counts[0], counts[-1]
     head = ("quantity", "unit", *(f"n = {n}" for n in counts), f"{many} / {few}")
@@ -112,14 +112,14 @@ def interpretations(
         (one.description, one.unit, *_values(one), *_values(other))
         for one, other in zip(reference, tangent, strict=True)
     ]
-    return TextTable(head, tuple(rows))
+    return PageTable(head, tuple(rows))
 
 
 def _values(one: Interpretation) -> tuple[str, ...]:
     return (*(text(value, 2) for value in one.values), text(one.ratio, 2))
 
 
-def grids(loads: tuple[GridLoad, ...]) -> TextTable:
+def grids(loads: tuple[GridLoad, ...]) -> PageTable:
     """Loads on the grids of the paper."""
     head = ("nodes per petal", "cells per pitch", "load, N", "factorisations, cold start", "largest residual")
     rows = []
@@ -127,10 +127,10 @@ def grids(loads: tuple[GridLoad, ...]) -> TextTable:
         is_2d = grid.nodes[1] == 1
         nodes, cells = (f"{pair[0]}" if is_2d else f"{pair[0]}×{pair[1]}" for pair in (grid.nodes, grid.cells))
         rows.append((nodes, cells, text(grid.load, 2), f"{grid.factorizations}", f"{grid.residual:.0e}"))
-    return TextTable(head, tuple(rows))
+    return PageTable(head, tuple(rows))
 
 
-def profiles(family: CharacteristicFamily) -> TextTable:
+def profiles(family: CharacteristicFamily) -> PageTable:
     """Pressure and film over the first petal around the centred journal: the data of Figures 6 and 7."""
     rows = []
     for curve in family.curves:
@@ -142,7 +142,7 @@ def profiles(family: CharacteristicFamily) -> TextTable:
             for j, z in enumerate(centred.coords["z"]):
                 p, h = (float(centred.fields[name][0, i, j]) for name in ("pressure", "film_thickness"))
                 rows.append((f"{curve.count}", f"{phi:.9g}", f"{z:.9g}", f"{p / p_a:.9g}", f"{h:.9g}"))
-    return TextTable(("petals", "phi [rad]", "z [m]", "p/p_a [1]", "h [m]"), tuple(rows))
+    return PageTable(("petals", "phi [rad]", "z [m]", "p/p_a [1]", "h [m]"), tuple(rows))
 
 
 CHARACTERISTIC = {
@@ -155,7 +155,7 @@ CHARACTERISTIC = {
 }
 
 
-def characteristics(evidence: Evidence) -> TextTable:
+def characteristics(evidence: Evidence) -> PageTable:
     """All points of all characteristics: the data of Figure 8."""
     rows = []
     for family in evidence.families:
@@ -163,4 +163,4 @@ def characteristics(evidence: Evidence) -> TextTable:
             columns = [curve.values(name) for name in CHARACTERISTIC]
             for k, e in enumerate(curve.displacements()):
                 rows.append((family.name, f"{curve.count}", f"{e:.9g}", *(f"{column[k]:.9g}" for column in columns)))
-    return TextTable(("assumptions", "petals", "e [m]", *CHARACTERISTIC.values()), tuple(rows))
+    return PageTable(("assumptions", "petals", "e [m]", *CHARACTERISTIC.values()), tuple(rows))

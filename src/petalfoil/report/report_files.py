@@ -14,7 +14,7 @@ from petalfoil.report import page, page_tables
 from petalfoil.report.assumptions import AssumptionResult
 from petalfoil.report.claims import Evidence, claims
 from petalfoil.report.interpretations import Interpretation
-from petalfoil.report.page_tables import TextTable
+from petalfoil.report.page_tables import PageTable
 from petalfoil.results.atomic import replacing
 from petalfoil.results.store import save
 from petalfoil.results.summary import as_json
@@ -52,7 +52,7 @@ def write(evidence: Evidence, folder: Path) -> Path:
     return folder / PAGE
 
 
-def csv_text(sheet: TextTable) -> str:
+def csv_text(sheet: PageTable) -> str:
     """A table as comma-separated values."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")

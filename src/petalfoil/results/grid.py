@@ -20,7 +20,7 @@ DIMS = ("load", "speed")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Grid(Layout):
+class LoadSpeedGrid(Layout):
     """Results over load and speed, in JSON as ``[load][speed]``; null where nothing was computed.
 
     Attributes

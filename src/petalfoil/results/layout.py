@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 from petalfoil.results.estimate import Estimate
 from petalfoil.results.record import Record, Scalar
 from petalfoil.results.schema import SCALARS, DataType
-from petalfoil.results.summary import Row, as_json, without_rounding
+from petalfoil.results.summary import TableRow, as_json, without_rounding
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -159,7 +159,7 @@ class Layout(ABC):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Point(Layout):
+class SinglePoint(Layout):
     """One record.
 
     Attributes
@@ -168,7 +168,7 @@ class Point(Layout):
         Lines of the table; by default the scalars that tables show.
     """
 
-    rows: Callable[[Record], Iterable[Row]] | None = None
+    rows: Callable[[Record], Iterable[TableRow]] | None = None
 
     def to_json(self, records: Sequence[Record]) -> dict[str, Json]:
         """The record as one object."""
@@ -252,7 +252,7 @@ class Series(Layout):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Columns(Series):
+class ColumnarSeries(Series):
     """Points whose JSON object has a list for each result, in the order of the points.
 
     Attributes

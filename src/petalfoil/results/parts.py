@@ -38,6 +38,13 @@ class Position:
     tilt_y: float | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """Part of a path: up or down in speed; loading, unloading or reloading."""
+
+    leg: str
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AppliedLoad:
     """Load on the journal."""
@@ -73,7 +80,7 @@ class Forces:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Film:
+class FilmResults:
     """Extremes of the film, friction and leakage.
 
     A 2-D film has no axial place and does not model the leakage.
@@ -124,7 +131,7 @@ class Effort:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Outcome:
+class RunOutcome:
     """How the run ended."""
 
     converged: bool = True

@@ -34,7 +34,7 @@ class Role(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class TableLabel:
     """How a table shows a scalar: label, unit for engineers, factor from the SI unit."""
 
     label: str
@@ -60,7 +60,7 @@ class Variable:
         Type of the values.
     role : Role
         Given, bookkeeping, answer or geometry.
-    shown : Shown, optional
+    shown : TableLabel, optional
         How tables show a scalar that an analysis declares for itself.
     """
 
@@ -70,7 +70,7 @@ class Variable:
     symbol: str
     kind: DataType = DataType.FLOAT
     role: Role = Role.ANSWER
-    shown: Shown | None = None
+    shown: TableLabel | None = None
 
 
 def _given(units: str, long_name: str, symbol: str) -> Variable:

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.results.record import Record, Scalar
-from petalfoil.results.schema import SCALARS, DataType, Shown
+from petalfoil.results.schema import SCALARS, DataType, TableLabel
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-class Row(NamedTuple):
+class TableRow(NamedTuple):
     """One line of the printed table: what, how much, in which unit."""
 
     label: str
@@ -41,105 +41,105 @@ _VECTORS = (
 _DEG = 180.0 / math.pi
 _RPM = 30.0 / math.pi
 
-_SHOWN: dict[str, Shown] = {
-    "status": Shown("status"),
-    "carried_by": Shown("carried by"),
-    "speed": Shown("speed", "rpm", _RPM),
-    "load_x": Shown("load x", "N"),
-    "load_y": Shown("load y", "N"),
-    "load_moment_x": Shown("moment of the load x", "mN·m", 1e3),
-    "load_moment_y": Shown("moment of the load y", "mN·m", 1e3),
-    "whirl_amplitude": Shown("whirl amplitude", "µm", 1e6),
-    "contact_fraction_limit": Shown("contact fraction limit", "%", 100.0),
-    "liftoff_speed": Shown("lift-off speed", "rpm", _RPM),
-    "touchdown_speed": Shown("touchdown speed", "rpm", _RPM),
-    "liftoff_by_contact_film_thickness": Shown("d ln lift-off / d ln contact film"),
-    "liftoff_by_contact_fraction": Shown("d ln lift-off / d ln limit"),
-    "critical_mass": Shown("critical mass", "kg"),
-    "whirl_ratio": Shown("whirl ratio"),
-    "rotor_mass": Shown("rotor mass", "kg"),
-    "threshold_speed": Shown("threshold speed", "rpm", _RPM),
-    "eccentricity_x": Shown("displacement x", "µm", 1e6),
-    "eccentricity_y": Shown("displacement y", "µm", 1e6),
-    "tilt_x": Shown("tilt x", "µrad", 1e6),
-    "tilt_y": Shown("tilt y", "µrad", 1e6),
-    "shaft_growth": Shown("growth of the shaft", "µm", 1e6),
-    "bushing_growth": Shown("growth of the bushing", "µm", 1e6),
-    "bearing_force": Shown("bearing force", "N"),
-    "force_x": Shown("force x", "N"),
-    "force_y": Shown("force y", "N"),
-    "moment_x": Shown("moment x", "mN·m", 1e3),
-    "moment_y": Shown("moment y", "mN·m", 1e3),
-    "attitude_angle": Shown("attitude angle", "deg", _DEG),
-    "contact_normal_force": Shown("contact normal force", "N"),
-    "contact_fraction": Shown("contact fraction", "%", 100.0),
-    "min_film_thickness": Shown("minimum film thickness", "µm", 1e6),
-    "min_film_thickness_angle": Shown("  at angle", "deg", _DEG),
-    "min_film_thickness_z": Shown("  at z", "mm", 1e3),
-    "knudsen_number": Shown("Knudsen number", "%", 100.0),
-    "peak_pressure": Shown("peak pressure", "kPa", 1e-3),
-    "peak_pressure_angle": Shown("  at angle", "deg", _DEG),
-    "friction_torque": Shown("friction torque", "mN·m", 1e3),
-    "starting_torque": Shown("starting torque", "mN·m", 1e3),
-    "power_loss": Shown("power loss", "W"),
-    "film_temperature": Shown("film temperature", "K"),
-    "shaft_temperature": Shown("shaft temperature", "K"),
-    "pack_temperature": Shown("pack temperature", "K"),
-    "bushing_temperature": Shown("bushing temperature", "K"),
-    "heat_to_shaft": Shown("heat to shaft", "W"),
-    "heat_to_pack": Shown("heat to pack", "W"),
-    "heat_to_gas": Shown("heat to side leakage", "W"),
-    "side_leakage": Shown("side leakage", "mg/s", 1e6),
-    "max_backing_deflection": Shown("maximum backing deflection", "µm", 1e6),
-    "max_deflection": Shown("maximum deflection", "µm", 1e6),
-    "max_bending_stress": Shown("maximum bending stress", "MPa", 1e-6),
-    "max_membrane_stress": Shown("maximum membrane stress", "MPa", 1e-6),
-    "shaft_slope_x": Shown("slope of the shaft x", "µrad", 1e6),
-    "shaft_slope_y": Shown("slope of the shaft y", "µrad", 1e6),
-    "other_eccentricity_x": Shown("other bearing: displacement x", "µm", 1e6),
-    "other_eccentricity_y": Shown("  displacement y", "µm", 1e6),
-    "other_force_x": Shown("  force x", "N"),
-    "other_force_y": Shown("  force y", "N"),
-    "other_contact_fraction": Shown("  contact fraction", "%", 100.0),
-    "other_min_film_thickness": Shown("  minimum film thickness", "µm", 1e6),
-    "other_peak_pressure": Shown("  peak pressure", "kPa", 1e-3),
-    "other_power_loss": Shown("  power loss", "W"),
-    "other_film_temperature": Shown("  film temperature", "K"),
-    "other_bushing_temperature": Shown("  bushing temperature", "K"),
-    "other_shaft_temperature": Shown("  shaft temperature", "K"),
-    "other_pack_temperature": Shown("  pack temperature", "K"),
-    "overlap": Shown("overlap"),
-    "layers": Shown("layers"),
-    "petal_angle": Shown("petal angle", "deg", _DEG),
-    "pitch": Shown("pitch", "deg", _DEG),
-    "covered_angle": Shown("covered angle", "deg", _DEG),
-    "metric_radius": Shown("metric radius", "mm", 1e3),
-    "radial_clearance": Shown("least radial clearance", "µm", 1e6),
-    "pack_clearance": Shown("clearance above solid pack", "µm", 1e6),
-    "root_tilt": Shown("root tilt", "deg", _DEG),
-    "free_petal_height": Shown("free petal height", "µm", 1e6),
-    "first_contact_angle": Shown("first contact at", "deg", _DEG),
-    "foundation_stiffness": Shown("foundation stiffness", "GPa/m", 1e-9),
-    "bending_stiffness": Shown("bending stiffness", "N·mm", 1e3),
-    "compressibility_number": Shown("compressibility number on radial clearance"),
-    "viscosity": Shown("viscosity", "µPa·s", 1e6),
-    "mean_free_path": Shown("mean free path", "nm", 1e9),
-    "stable": Shown("stable"),
-    "growth_rate": Shown("growth rate", "1/s"),
-    "growth_frequency": Shown("growth frequency", "Hz", 0.5 / math.pi),
-    "solution_path": Shown("solution path"),
-    "friction_path": Shown("petal friction"),
-    "contact_model": Shown("contacts"),
-    "nodal_force_difference": Shown("force from that at nodes", "%", 100.0),
-    "known_equilibria": Shown("known equilibria"),
-    "jump": Shown("jump"),
-    "cells_per_pitch": Shown("cells per pitch"),
-    "axial_cells": Shown("axial cells"),
-    "residual": Shown("residual"),
-    "force_residual": Shown("force residual"),
-    "iterations": Shown("iterations"),
-    "factorizations": Shown("factorisations"),
-    "wall_time": Shown("time", "s"),
+_SHOWN: dict[str, TableLabel] = {
+    "status": TableLabel("status"),
+    "carried_by": TableLabel("carried by"),
+    "speed": TableLabel("speed", "rpm", _RPM),
+    "load_x": TableLabel("load x", "N"),
+    "load_y": TableLabel("load y", "N"),
+    "load_moment_x": TableLabel("moment of the load x", "mN·m", 1e3),
+    "load_moment_y": TableLabel("moment of the load y", "mN·m", 1e3),
+    "whirl_amplitude": TableLabel("whirl amplitude", "µm", 1e6),
+    "contact_fraction_limit": TableLabel("contact fraction limit", "%", 100.0),
+    "liftoff_speed": TableLabel("lift-off speed", "rpm", _RPM),
+    "touchdown_speed": TableLabel("touchdown speed", "rpm", _RPM),
+    "liftoff_by_contact_film_thickness": TableLabel("d ln lift-off / d ln contact film"),
+    "liftoff_by_contact_fraction": TableLabel("d ln lift-off / d ln limit"),
+    "critical_mass": TableLabel("critical mass", "kg"),
+    "whirl_ratio": TableLabel("whirl ratio"),
+    "rotor_mass": TableLabel("rotor mass", "kg"),
+    "threshold_speed": TableLabel("threshold speed", "rpm", _RPM),
+    "eccentricity_x": TableLabel("displacement x", "µm", 1e6),
+    "eccentricity_y": TableLabel("displacement y", "µm", 1e6),
+    "tilt_x": TableLabel("tilt x", "µrad", 1e6),
+    "tilt_y": TableLabel("tilt y", "µrad", 1e6),
+    "shaft_growth": TableLabel("growth of the shaft", "µm", 1e6),
+    "bushing_growth": TableLabel("growth of the bushing", "µm", 1e6),
+    "bearing_force": TableLabel("bearing force", "N"),
+    "force_x": TableLabel("force x", "N"),
+    "force_y": TableLabel("force y", "N"),
+    "moment_x": TableLabel("moment x", "mN·m", 1e3),
+    "moment_y": TableLabel("moment y", "mN·m", 1e3),
+    "attitude_angle": TableLabel("attitude angle", "deg", _DEG),
+    "contact_normal_force": TableLabel("contact normal force", "N"),
+    "contact_fraction": TableLabel("contact fraction", "%", 100.0),
+    "min_film_thickness": TableLabel("minimum film thickness", "µm", 1e6),
+    "min_film_thickness_angle": TableLabel("  at angle", "deg", _DEG),
+    "min_film_thickness_z": TableLabel("  at z", "mm", 1e3),
+    "knudsen_number": TableLabel("Knudsen number", "%", 100.0),
+    "peak_pressure": TableLabel("peak pressure", "kPa", 1e-3),
+    "peak_pressure_angle": TableLabel("  at angle", "deg", _DEG),
+    "friction_torque": TableLabel("friction torque", "mN·m", 1e3),
+    "starting_torque": TableLabel("starting torque", "mN·m", 1e3),
+    "power_loss": TableLabel("power loss", "W"),
+    "film_temperature": TableLabel("film temperature", "K"),
+    "shaft_temperature": TableLabel("shaft temperature", "K"),
+    "pack_temperature": TableLabel("pack temperature", "K"),
+    "bushing_temperature": TableLabel("bushing temperature", "K"),
+    "heat_to_shaft": TableLabel("heat to shaft", "W"),
+    "heat_to_pack": TableLabel("heat to pack", "W"),
+    "heat_to_gas": TableLabel("heat to side leakage", "W"),
+    "side_leakage": TableLabel("side leakage", "mg/s", 1e6),
+    "max_backing_deflection": TableLabel("maximum backing deflection", "µm", 1e6),
+    "max_deflection": TableLabel("maximum deflection", "µm", 1e6),
+    "max_bending_stress": TableLabel("maximum bending stress", "MPa", 1e-6),
+    "max_membrane_stress": TableLabel("maximum membrane stress", "MPa", 1e-6),
+    "shaft_slope_x": TableLabel("slope of the shaft x", "µrad", 1e6),
+    "shaft_slope_y": TableLabel("slope of the shaft y", "µrad", 1e6),
+    "other_eccentricity_x": TableLabel("other bearing: displacement x", "µm", 1e6),
+    "other_eccentricity_y": TableLabel("  displacement y", "µm", 1e6),
+    "other_force_x": TableLabel("  force x", "N"),
+    "other_force_y": TableLabel("  force y", "N"),
+    "other_contact_fraction": TableLabel("  contact fraction", "%", 100.0),
+    "other_min_film_thickness": TableLabel("  minimum film thickness", "µm", 1e6),
+    "other_peak_pressure": TableLabel("  peak pressure", "kPa", 1e-3),
+    "other_power_loss": TableLabel("  power loss", "W"),
+    "other_film_temperature": TableLabel("  film temperature", "K"),
+    "other_bushing_temperature": TableLabel("  bushing temperature", "K"),
+    "other_shaft_temperature": TableLabel("  shaft temperature", "K"),
+    "other_pack_temperature": TableLabel("  pack temperature", "K"),
+    "overlap": TableLabel("overlap"),
+    "layers": TableLabel("layers"),
+    "petal_angle": TableLabel("petal angle", "deg", _DEG),
+    "pitch": TableLabel("pitch", "deg", _DEG),
+    "covered_angle": TableLabel("covered angle", "deg", _DEG),
+    "metric_radius": TableLabel("metric radius", "mm", 1e3),
+    "radial_clearance": TableLabel("least radial clearance", "µm", 1e6),
+    "pack_clearance": TableLabel("clearance above solid pack", "µm", 1e6),
+    "root_tilt": TableLabel("root tilt", "deg", _DEG),
+    "free_petal_height": TableLabel("free petal height", "µm", 1e6),
+    "first_contact_angle": TableLabel("first contact at", "deg", _DEG),
+    "foundation_stiffness": TableLabel("foundation stiffness", "GPa/m", 1e-9),
+    "bending_stiffness": TableLabel("bending stiffness", "N·mm", 1e3),
+    "compressibility_number": TableLabel("compressibility number on radial clearance"),
+    "viscosity": TableLabel("viscosity", "µPa·s", 1e6),
+    "mean_free_path": TableLabel("mean free path", "nm", 1e9),
+    "stable": TableLabel("stable"),
+    "growth_rate": TableLabel("growth rate", "1/s"),
+    "growth_frequency": TableLabel("growth frequency", "Hz", 0.5 / math.pi),
+    "solution_path": TableLabel("solution path"),
+    "friction_path": TableLabel("petal friction"),
+    "contact_model": TableLabel("contacts"),
+    "nodal_force_difference": TableLabel("force from that at nodes", "%", 100.0),
+    "known_equilibria": TableLabel("known equilibria"),
+    "jump": TableLabel("jump"),
+    "cells_per_pitch": TableLabel("cells per pitch"),
+    "axial_cells": TableLabel("axial cells"),
+    "residual": TableLabel("residual"),
+    "force_residual": TableLabel("force residual"),
+    "iterations": TableLabel("iterations"),
+    "factorizations": TableLabel("factorisations"),
+    "wall_time": TableLabel("time", "s"),
 }
 
 
@@ -167,7 +167,7 @@ def as_json(record: Record) -> dict[str, float | int | bool | str | None]:
     return {name: _or_null(reported[name]) for name in SCALARS if name in reported}
 
 
-def rows(record: Record) -> list[Row]:
+def rows(record: Record) -> list[TableRow]:
     """Lines of the printed table, in the units an engineer reads.
 
     Parameters
@@ -177,14 +177,14 @@ def rows(record: Record) -> list[Row]:
 
     Returns
     -------
-    list of Row
+    list of TableRow
         Label, value and unit.
     """
     reported = without_rounding(record)
     return [row(name, reported) for name in in_order(reported)]
 
 
-def row(name: str, reported: Mapping[str, Scalar]) -> Row:
+def row(name: str, reported: Mapping[str, Scalar]) -> TableRow:
     """Line of one scalar of a record; where the journal is in contact, the minimum film thickness has many places.
 
     Parameters
@@ -196,7 +196,7 @@ def row(name: str, reported: Mapping[str, Scalar]) -> Row:
 
     Returns
     -------
-    Row
+    TableRow
         Label, value and unit.
     """
     line, touching = cell(name, reported[name]), float(reported.get("contact_fraction", 0.0)) > 0.0
@@ -259,7 +259,7 @@ def _largest(ds: xr.Dataset, name: str) -> float:
     return float(np.max(values[np.isfinite(values)], initial=0.0))
 
 
-def cell(name: str, value: Scalar) -> Row:
+def cell(name: str, value: Scalar) -> TableRow:
     """Show one scalar, e.g. as a cell of a curve's table.
 
     Parameters
@@ -271,15 +271,15 @@ def cell(name: str, value: Scalar) -> Row:
 
     Returns
     -------
-    Row
+    TableRow
         Label, value and unit.
     """
     shown = shown_as(name)
     if isinstance(value, bool):
-        return Row(shown.label, "yes" if value else "no", shown.unit)
+        return TableRow(shown.label, "yes" if value else "no", shown.unit)
     if isinstance(value, str) or SCALARS[name].kind is DataType.INT:
-        return Row(shown.label, str(value), shown.unit)
-    return Row(shown.label, number(value * shown.factor), shown.unit)
+        return TableRow(shown.label, str(value), shown.unit)
+    return TableRow(shown.label, number(value * shown.factor), shown.unit)
 
 
 def in_order(names: Iterable[str]) -> list[str]:
@@ -324,9 +324,9 @@ def _beside(bar: float, value: float) -> str:
     return "0" if abs(value) < 0.05 * bar else f"{value:.2e}"
 
 
-def shown_as(name: str) -> Shown:
+def shown_as(name: str) -> TableLabel:
     """How a scalar is shown: as the table says, as its analysis declares, or plainly in SI units."""
-    plain = Shown(name.replace("_", " "), SCALARS[name].units.removeprefix("1"))
+    plain = TableLabel(name.replace("_", " "), SCALARS[name].units.removeprefix("1"))
     return _SHOWN.get(name) or SCALARS[name].shown or plain
 
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from petalfoil.results.estimate import Estimate
-from petalfoil.results.grid import Grid
-from petalfoil.results.layout import Answer, Cell, Layout, Point, Series
+from petalfoil.results.grid import LoadSpeedGrid
+from petalfoil.results.layout import Answer, Cell, Layout, Series, SinglePoint
 from petalfoil.results.record import Record, Scalar
 from petalfoil.results.study import GridStudy, grid_text
 from petalfoil.results.summary import ABSENT, cell, in_order, number, row, rows, with_bar, without_rounding
@@ -62,13 +62,13 @@ def tables_of(answer: Answer) -> Iterator[TextTable]:
         A point gives lines of label, value and unit; a series a line for each point; a grid a table for each result.
     """
     layout, records = answer.layout, answer.records
-    if isinstance(layout, Grid):
+    if isinstance(layout, LoadSpeedGrid):
         yield from _grids(layout, records)
     elif isinstance(layout, GridStudy):
         yield _study(records, answer.estimates)
     elif isinstance(layout, Series) and layout.table is None:
         yield _series(layout, records)
-    if isinstance(layout, Point):
+    if isinstance(layout, SinglePoint):
         lines = layout.rows(records[-1]) if layout.rows else _with_bars(records[-1])
         yield TextTable(lines=[tuple(line) for line in lines])
     if layout.table is not None and any(list(layout.table.lines(record)) for record in records):
@@ -130,7 +130,7 @@ def _remark(record: Record) -> str:
     return str(record.scalars.get("status", "")).removeprefix("converged").removeprefix("; ")
 
 
-def _grids(layout: Grid, records: Sequence[Record]) -> Iterator[TextTable]:
+def _grids(layout: LoadSpeedGrid, records: Sequence[Record]) -> Iterator[TextTable]:
     """One table for each result: a row for each load, a column for each speed."""
     speeds = [TextColumn(cell("speed", speed).value, "rpm") for speed in layout.speeds(records)]
     for name, title in layout.tables.items():

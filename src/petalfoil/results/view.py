@@ -14,7 +14,7 @@ from itertools import zip_longest
 
 import xarray as xr
 
-from petalfoil.results.layout import Answer, Layout, Point, Series
+from petalfoil.results.layout import Answer, Layout, Series, SinglePoint
 from petalfoil.results.study import GridStudy
 from petalfoil.results.tables import TextTable, tables_of
 
@@ -65,7 +65,7 @@ def _layout(ds: xr.Dataset) -> Layout | None:
         return None
     if "grid" in ds.dims:
         return GridStudy(conclude=lambda records: ())
-    return Series() if "point" in ds.dims else Point()
+    return Series() if "point" in ds.dims else SinglePoint()
 
 
 def _aligned(rows: list[tuple[str, ...]]) -> Iterator[str]:

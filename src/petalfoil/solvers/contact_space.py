@@ -74,7 +74,7 @@ class KnownState:
 
 
 @dataclass(frozen=True)
-class Columns:
+class UnitResponses:
     """Changes of the unknowns by a unit of each opening, reaction and friction force.
 
     Attributes
@@ -102,7 +102,7 @@ class Columns:
         contacts: Index,
         rubbing: RubbingContacts,
         answered: Callable[[Unit], Unit] = lambda unit: unit,
-    ) -> Columns:
+    ) -> UnitResponses:
         """A solve for each; `answered` adds what bordered unknowns do in answer to a unit."""
         held, at = tangent.constraints.held, rubbing.at(contacts)
         rows, slips, none = sp.csr_array(G[contacts]), sp.csr_array(rubbing.slip[at]), np.zeros(G.shape[1])

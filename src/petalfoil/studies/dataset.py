@@ -19,7 +19,7 @@ from petalfoil.results.record import Scalar, blank
 from petalfoil.results.schema import SCALARS, DataType, Role, Variable
 from petalfoil.studies.definition import Study
 from petalfoil.studies.plan import Plan
-from petalfoil.studies.question import NOT_CONVERGED, Outcome
+from petalfoil.studies.question import NOT_CONVERGED, CaseOutcome
 from petalfoil.studies.variation import Variation
 
 _DTYPES = {DataType.FLOAT: np.float64, DataType.INT: np.int64, DataType.BOOL: np.bool_, DataType.STR: np.str_}
@@ -27,7 +27,7 @@ MISSING = "not asked"
 """Status of a case that is not finished."""
 
 
-def dataset(study: Study, plan: Plan, found: Sequence[Outcome | None]) -> xr.Dataset:
+def dataset(study: Study, plan: Plan, found: Sequence[CaseOutcome | None]) -> xr.Dataset:
     """Lay out the outcomes of a study.
 
     Parameters
@@ -36,7 +36,7 @@ def dataset(study: Study, plan: Plan, found: Sequence[Outcome | None]) -> xr.Dat
         What was asked.
     plan : Plan
         Its cases.
-    found : sequence of Outcome or None
+    found : sequence of CaseOutcome or None
         Their outcomes in that order; None of a case that is not finished.
 
     Returns
@@ -94,12 +94,12 @@ def _of_parameter(variation: Variation) -> dict[str, str]:
     return {"long_name": parameter.meaning, "symbol": parameter.symbol, "units": units, "path": parameter.path}
 
 
-def _names(found: Sequence[Outcome | None]) -> list[str]:
+def _names(found: Sequence[CaseOutcome | None]) -> list[str]:
     given = {name for outcome in found if outcome for record in outcome.records for name in record}
     return [name for name in SCALARS if name in given]
 
 
-def _values(variable: Variable, name: str, found: Sequence[Outcome | None], points: int) -> NDArray[Any]:
+def _values(variable: Variable, name: str, found: Sequence[CaseOutcome | None], points: int) -> NDArray[Any]:
     """Values of one result, shape (cases, points)."""
     absent: Scalar = -1 if variable.kind is DataType.INT else blank(variable)
     rows = []
@@ -157,7 +157,7 @@ def write_table(path: Path, ds: xr.Dataset) -> None:
         writer.writerows(zip(*(array.tolist() for array in arrays), strict=True))
 
 
-def reasons(found: Sequence[Outcome | None]) -> dict[str, int]:
+def reasons(found: Sequence[CaseOutcome | None]) -> dict[str, int]:
     """How often each reason keeps a case from an answer, the most frequent first."""
     told: dict[str, int] = {}
     for outcome in found:

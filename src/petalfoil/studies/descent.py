@@ -9,8 +9,8 @@ import numpy as np
 
 from petalfoil.errors import ConvergenceError
 from petalfoil.studies.goals import FEASIBLE
-from petalfoil.studies.question import Outcome
-from petalfoil.studies.search import BudgetSpent, FloatArray, Search, Slopes, interval_of
+from petalfoil.studies.question import CaseOutcome
+from petalfoil.studies.search import BudgetSpent, DesignSearch, FloatArray, Slopes, interval_of
 from petalfoil.studies.variation import Variation
 
 STEP = 1e-4
@@ -33,7 +33,7 @@ GAIN = 1e-3
 class Descent:
     """Objective and limits over the unit cube, with their gradients."""
 
-    search: Search
+    search: DesignSearch
     scale: float = 1.0
 
     def cost(self, unit: FloatArray) -> float:
@@ -60,10 +60,10 @@ class Descent:
         slopes: FloatArray = self._jacobian(unit)[1:]
         return slopes
 
-    def _at(self, unit: FloatArray) -> Outcome:
+    def _at(self, unit: FloatArray) -> CaseOutcome:
         return self.search.outcomes([self.search.point(np.clip(unit, 0.0, 1.0))])[0]
 
-    def _costs(self, outcome: Outcome) -> FloatArray:
+    def _costs(self, outcome: CaseOutcome) -> FloatArray:
         """Objective and margins; a design without an answer costs much and keeps nothing."""
         goals = self.search.goals
         found = np.concatenate([goals.costs(outcome) / self.scale, goals.margins(outcome)])
@@ -104,7 +104,7 @@ class Descent:
         return np.ascontiguousarray(np.where(answered[None, :], slopes, 0.0))  # SciPy 1.17 reads rows of others wrongly
 
 
-def along_gradients(search: Search, seed: int = 0) -> None:
+def along_gradients(search: DesignSearch, seed: int = 0) -> None:
     """Sequential quadratic programming (SLSQP; Kraft 1988) from the best of the case and a few other designs.
 
     A descent that ends at a kink, such as another place of the minimum film thickness, begins anew from there as long
@@ -125,7 +125,7 @@ def along_gradients(search: Search, seed: int = 0) -> None:
         search.ended = "SLSQP: the budget is spent"
 
 
-def _explored(search: Search, seed: int) -> list[FloatArray]:
+def _explored(search: DesignSearch, seed: int) -> list[FloatArray]:
     """Places of the case and of a Latin hypercube, which all workers answer together, the best first."""
     from scipy.stats import qmc
 

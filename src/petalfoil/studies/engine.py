@@ -19,7 +19,7 @@ import psutil
 
 from petalfoil import __version__
 from petalfoil.errors import UsageError
-from petalfoil.studies.question import DIED, Outcome, Task, analysis_of, answered
+from petalfoil.studies.question import DIED, CaseOutcome, CaseTask, analysis_of, answered
 
 AHEAD = 3
 """Tasks for each worker that wait on the cluster: the next one is there when a worker has finished, and no more of the
@@ -40,7 +40,7 @@ EXTRA = "studies on several workers need the package dask: pip install 'petalfoi
 
 
 @dataclass
-class Effort:
+class ProcessorTime:
     """Processor time that a study took [s].
 
     Attributes
@@ -61,9 +61,9 @@ class Effort:
 class Engine(Protocol):
     """What answers cases."""
 
-    effort: Effort
+    effort: ProcessorTime
 
-    def outcomes(self, tasks: Iterable[Task]) -> Iterator[Outcome]:
+    def outcomes(self, tasks: Iterable[CaseTask]) -> Iterator[CaseOutcome]:
         """Answer tasks; outcomes come in any order."""
 
 
@@ -71,9 +71,9 @@ class Engine(Protocol):
 class InThisProcess:
     """One case after another, in this process."""
 
-    effort: Effort = field(default_factory=Effort)
+    effort: ProcessorTime = field(default_factory=ProcessorTime)
 
-    def outcomes(self, tasks: Iterable[Task]) -> Iterator[Outcome]:
+    def outcomes(self, tasks: Iterable[CaseTask]) -> Iterator[CaseOutcome]:
         """Answer tasks in order."""
         for task in tasks:
             begun = time.process_time()
@@ -97,9 +97,9 @@ class OnCluster:
 
     client: Any
     workers: int
-    effort: Effort = field(default_factory=Effort)
+    effort: ProcessorTime = field(default_factory=ProcessorTime)
 
-    def outcomes(self, tasks: Iterable[Task]) -> Iterator[Outcome]:
+    def outcomes(self, tasks: Iterable[CaseTask]) -> Iterator[CaseOutcome]:
         """Answer tasks; outcomes come as they are ready."""
         from distributed import as_completed
 
@@ -126,7 +126,7 @@ class OnCluster:
             self.effort.driver += time.process_time() - own
             self.effort.workers += sum(now - before.get(pid, 0.0) for pid, now in self._times().items())
 
-    def _submit(self, task: Task) -> Any:
+    def _submit(self, task: CaseTask) -> Any:
         return self.client.submit(answered, task, key=name_of(task), pure=False)
 
     def _times(self) -> dict[tuple[str, int], float]:
@@ -134,7 +134,7 @@ class OnCluster:
         return {(name, pid): spent for name, (pid, spent) in self.client.run(_process_time).items()}
 
 
-def name_of(task: Task) -> str:
+def name_of(task: CaseTask) -> str:
     """Name of a task on the cluster, which keeps a record for good of each first part of a name that it meets."""
     return f"case-{task.key}"
 
@@ -149,16 +149,16 @@ def _process_time() -> tuple[int, float]:
     return os.getpid(), used.user + used.system
 
 
-def _outcome(future: Any, task: Task) -> Outcome:
+def _outcome(future: Any, task: CaseTask) -> CaseOutcome:
     from distributed import KilledWorker
 
     error = future.exception()
     if error is None:
-        outcome: Outcome = future.result()
+        outcome: CaseOutcome = future.result()
         return outcome
     if isinstance(error, KilledWorker):
         reason = f"{ATTEMPTS + 1} workers died while they answered it: too little memory for its grid?"
-        return Outcome(task.key, dict(task.values), DIED, reason)
+        return CaseOutcome(task.key, dict(task.values), DIED, reason)
     raise error
 
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.errors import UsageError
-from petalfoil.studies.limits import Limit, result_of, value_of
-from petalfoil.studies.question import Outcome
+from petalfoil.studies.limits import ResultLimit, result_of, value_of
+from petalfoil.studies.question import CaseOutcome
 
 FloatArray = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ class Goals:
     """Objectives and limits of an optimisation."""
 
     objectives: tuple[Objective, ...]
-    limits: tuple[Limit, ...]
+    limits: tuple[ResultLimit, ...]
 
     @classmethod
     def read(cls, maximize: Sequence[str], minimize: Sequence[str], subject: Sequence[str]) -> Goals:
@@ -64,20 +64,20 @@ class Goals:
         for name in names:
             if names.count(name) > 1:
                 raise UsageError(f"{name} is an objective twice: leave one of them out")
-        return cls(tuple(objectives), tuple(Limit.read(text) for text in subject))
+        return cls(tuple(objectives), tuple(ResultLimit.read(text) for text in subject))
 
     @property
     def names(self) -> list[str]:
         """All results that matter, each once."""
         return list(dict.fromkeys([*(o.name for o in self.objectives), *(limit.name for limit in self.limits)]))
 
-    def costs(self, outcome: Outcome) -> FloatArray:
+    def costs(self, outcome: CaseOutcome) -> FloatArray:
         """Objectives as minima [SI]; NaN of a design without an answer."""
         if not outcome.converged:
             return np.full(len(self.objectives), np.nan)
         return np.array([o.sign * value_of(outcome.records, o.name) for o in self.objectives])
 
-    def margins(self, outcome: Outcome) -> FloatArray:
+    def margins(self, outcome: CaseOutcome) -> FloatArray:
         """Margins of the limits over their values [1], negative where one is not kept; of a limit at 0 plain."""
         if not outcome.converged:
             return np.full(len(self.limits), np.nan)
@@ -85,13 +85,13 @@ class Goals:
             [limit.margin(value_of(outcome.records, limit.name)) / scale_of(limit) for limit in self.limits]
         )
 
-    def is_feasible(self, outcome: Outcome) -> bool:
+    def is_feasible(self, outcome: CaseOutcome) -> bool:
         """Whether a design has an answer, and keeps every limit."""
         finite = bool(np.isfinite(self.costs(outcome)).all())
         return outcome.converged and finite and bool((self.margins(outcome) >= -FEASIBLE).all())
 
 
-def scale_of(limit: Limit) -> float:
+def scale_of(limit: ResultLimit) -> float:
     """Size of the value of a limit."""
     return abs(limit.value) or 1.0
 

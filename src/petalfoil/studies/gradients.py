@@ -9,10 +9,10 @@ from typing import TypeAlias
 from petalfoil.analysis.known_verbs import summaries
 from petalfoil.studies.definition import Study
 from petalfoil.studies.plan import Point
-from petalfoil.studies.question import Outcome, Question
+from petalfoil.studies.question import CaseOutcome, Question
 from petalfoil.studies.search import Gradients, Slopes
 
-Ask: TypeAlias = Callable[[Sequence[Point], Question], list[Outcome]]
+Ask: TypeAlias = Callable[[Sequence[Point], Question], list[CaseOutcome]]
 
 VERB = "sensitivity"
 DIFFERENTIABLE = ("solve", "balance", "liftoff", "capacity", "static", "stability")
@@ -70,7 +70,7 @@ def _names(study: Study) -> list[str]:
     return Goals.read(*(list(study.settings[name]) for name in ("maximize", "minimize", "subject"))).names
 
 
-def slopes_of(outcome: Outcome | None) -> Slopes:
+def slopes_of(outcome: CaseOutcome | None) -> Slopes:
     """Derivatives by result and path: the mean of both sides of a kink; empty where there is no answer."""
     found: Slopes = {}
     if outcome is None or not outcome.converged:

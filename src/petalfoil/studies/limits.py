@@ -24,7 +24,7 @@ LIMIT = re.compile(r"\s*(?P<name>\w+)\s*(?P<sign><=?|>=?)\s*(?P<value>.+?)\s*")
 
 
 @dataclass(frozen=True)
-class Limit:
+class ResultLimit:
     """A result on one side of a value.
 
     Attributes
@@ -42,7 +42,7 @@ class Limit:
     value: float
 
     @classmethod
-    def read(cls, text: str) -> Limit:
+    def read(cls, text: str) -> ResultLimit:
         """Read ``"min_film_thickness > 5 um"``.
 
         Raises

@@ -20,10 +20,10 @@ from petalfoil.studies.goals import Goals, front
 from petalfoil.studies.gradients import gradients_of
 from petalfoil.studies.limits import refuse_absent, value_of
 from petalfoil.studies.plan import Plan, Point, names_of, refuse_repeated, refuse_too_many
-from petalfoil.studies.question import CONVERGED, Outcome, Question
+from petalfoil.studies.question import CONVERGED, CaseOutcome, Question
 from petalfoil.studies.run import Execution, Kind, Runner, run
 from petalfoil.studies.sampling import by_sampling
-from petalfoil.studies.search import Answer, Gradients, Search, interval_of
+from petalfoil.studies.search import Answer, DesignSearch, Gradients, interval_of
 from petalfoil.studies.store import Store
 from petalfoil.studies.variation import Interval, Variation, read_range
 from petalfoil.units.reading import shown
@@ -152,9 +152,9 @@ def method_of(study: Study) -> str:
     return asked if asked != "auto" else "slsqp" if smooth else "tpe"
 
 
-def searched(study: Study, answer: Answer, gradients: Gradients, journal: Path | None = None) -> Search:
+def searched(study: Study, answer: Answer, gradients: Gradients, journal: Path | None = None) -> DesignSearch:
     """The search as far as its questions are answered."""
-    search = Search(variations_of(study), goals_of(study), answer, int(study.settings["budget"]), gradients)
+    search = DesignSearch(variations_of(study), goals_of(study), answer, int(study.settings["budget"]), gradients)
     method = method_of(study)
     try:
         if method == "slsqp":
@@ -170,7 +170,7 @@ def conduct(study: Study, runner: Runner) -> None:
     """Search, asking what is not answered yet."""
     names, asked = goals_of(study).names, 0
 
-    def answer(points: Sequence[Point]) -> list[Outcome]:
+    def answer(points: Sequence[Point]) -> list[CaseOutcome]:
         nonlocal asked
         outcomes = runner.outcomes(points)
         for outcome in outcomes:
@@ -189,7 +189,7 @@ def assemble(study: Study, store: Store) -> xr.Dataset:
     """Lay out the designs in the order in which the search asks them."""
     base = study.case.to_toml()
 
-    def look_up(points: Sequence[Point], question: Question | None = None) -> list[Outcome]:
+    def look_up(points: Sequence[Point], question: Question | None = None) -> list[CaseOutcome]:
         found = [store.get((question or study.question).key(base, point)) for point in points]
         if None in found:
             raise Unanswered
@@ -207,7 +207,7 @@ def assemble(study: Study, store: Store) -> xr.Dataset:
     return ds.assign_attrs(optimum=json.dumps(told(study, search, best)))
 
 
-def told(study: Study, search: Search, best: Any) -> dict[str, Any]:
+def told(study: Study, search: DesignSearch, best: Any) -> dict[str, Any]:
     """The best designs, and what they cost to find."""
     names = dict(zip([v.path for v in search.variations], names_of(search.variations), strict=True))
     return {

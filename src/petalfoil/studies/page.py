@@ -10,7 +10,7 @@ import xarray as xr
 
 from petalfoil import plot
 from petalfoil.report import html
-from petalfoil.report.page_tables import TextTable
+from petalfoil.report.page_tables import PageTable
 from petalfoil.results.atomic import replacing
 from petalfoil.studies import summary
 from petalfoil.studies.store import FIGURES, PAGE
@@ -28,7 +28,7 @@ def write_page(folder: Path, ds: xr.Dataset) -> None:
     body = [
         f"<h1>{escape(str(ds.attrs['title']) or ds.attrs['analysis'])}</h1>",
         html.paragraph(summary.headline(ds)),
-        *(html.table(TextTable(heads, lines)) for heads, lines in summary.tables(ds)),
+        *(html.table(PageTable(heads, lines)) for heads, lines in summary.tables(ds)),
         *pictures,
         *_failures(ds),
         html.section("asked", "What was asked"),
@@ -45,4 +45,4 @@ def _failures(ds: xr.Dataset) -> list[str]:
     if not told:
         return []
     rows = tuple((str(count), text) for text, count in told)
-    return [html.section("failed", "Cases without an answer"), html.table(TextTable(("cases", "reason"), rows))]
+    return [html.section("failed", "Cases without an answer"), html.table(PageTable(("cases", "reason"), rows))]

@@ -52,7 +52,7 @@ class Plan:
         return self.names if self.shape else ("case",)
 
 
-class Grid(Sequence[Point]):
+class LevelGrid(Sequence[Point]):
     """All combinations of levels; the last parameter runs fastest."""
 
     def __init__(self, levels: Sequence[Levels]) -> None:
@@ -87,7 +87,7 @@ def grid(levels: Sequence[Variation]) -> Plan:
             raise UsageError(f"{level.path}: an interval is for samples; write start : stop : count, or add --sample")
     chosen = [level for level in levels if isinstance(level, Levels)]
     refuse_repeated(chosen)
-    points = Grid(chosen)
+    points = LevelGrid(chosen)
     refuse_too_many(len(points))
     return Plan(tuple(chosen), points, tuple(len(level.values) for level in chosen))
 

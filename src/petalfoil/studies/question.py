@@ -104,7 +104,7 @@ class Question:
 
 
 @dataclass(frozen=True)
-class Task:
+class CaseTask:
     """One case to be answered.
 
     Attributes
@@ -132,7 +132,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class CaseOutcome:
     """What became of one case.
 
     Attributes
@@ -171,7 +171,7 @@ class Outcome:
         return json.dumps(asdict(self))
 
     @classmethod
-    def from_json(cls, text: str) -> Outcome:
+    def from_json(cls, text: str) -> CaseOutcome:
         """Read `to_json` back."""
         return cls(**json.loads(text))
 
@@ -191,7 +191,7 @@ def analysis_of(verb: str) -> Analysis:
     return analysis
 
 
-def answered(task: Task) -> Outcome:
+def answered(task: CaseTask) -> CaseOutcome:
     """Answer one case: build it, ask, and put what comes of it into an outcome."""
     begun = time.thread_time()
     values = dict(task.values)
@@ -205,10 +205,10 @@ def answered(task: Task) -> Outcome:
         status, reason = INVALID, str(error)
     except Exception as error:  # a mistake of the program in one case is reported with that case
         status, reason, trace = ERROR, f"{type(error).__name__}: {error}", traceback.format_exc()
-    return Outcome(task.key, values, status, reason, records, time.thread_time() - begun, trace)
+    return CaseOutcome(task.key, values, status, reason, records, time.thread_time() - begun, trace)
 
 
-def _asked(task: Task) -> tuple[list[dict[str, Scalar]], str, str]:
+def _asked(task: CaseTask) -> tuple[list[dict[str, Scalar]], str, str]:
     """Scalars of all points, status and reason."""
     under_load = any(name in task.question.arguments for name in ("load", "loads"))
     case = with_values(_base(task.base, centred=under_load), task.values)
@@ -227,7 +227,7 @@ def _asked(task: Task) -> tuple[list[dict[str, Scalar]], str, str]:
     return scalars, CONVERGED, _words(records[-1]) if records else ""
 
 
-def _beside_others(task: Task) -> AbstractContextManager[None]:
+def _beside_others(task: CaseTask) -> AbstractContextManager[None]:
     """The solutions of other cases of the study at hand, where the task may use them."""
     if not task.neighbours:
         return nullcontext()

@@ -22,9 +22,9 @@ from petalfoil.results.store import save
 from petalfoil.studies import store as folders
 from petalfoil.studies.dataset import write_table
 from petalfoil.studies.definition import FILE, NEIGHBOURS, Study
-from petalfoil.studies.engine import Effort, Engine, engine
+from petalfoil.studies.engine import Engine, ProcessorTime, engine
 from petalfoil.studies.plan import Point
-from petalfoil.studies.question import ERROR, Outcome, Question, Task
+from petalfoil.studies.question import ERROR, CaseOutcome, CaseTask, Question
 from petalfoil.studies.store import Store
 
 Progress: TypeAlias = Callable[[float, str], None]
@@ -118,11 +118,11 @@ class Runner:
             failed += not outcome.converged
             pace.tell(self.execution.progress, failed)
 
-    def outcomes(self, points: Sequence[Point]) -> list[Outcome]:
+    def outcomes(self, points: Sequence[Point]) -> list[CaseOutcome]:
         """Outcomes of points, answered where they are not yet."""
         return self.ask(points, self.study.question)
 
-    def ask(self, points: Sequence[Point], question: Question) -> list[Outcome]:
+    def ask(self, points: Sequence[Point], question: Question) -> list[CaseOutcome]:
         """Outcomes of points under any question, answered where they are not yet; nothing is told of the progress."""
         keys = [question.key(self.base, point) for point in points]
         finished = {key for key in keys if self.store.get(key) is not None}
@@ -131,7 +131,9 @@ class Runner:
         found = [self.store.get(key) for key in keys]
         return [outcome for outcome in found if outcome is not None]
 
-    def _tasks(self, points: Sequence[Point], finished: set[str], question: Question | None = None) -> Iterator[Task]:
+    def _tasks(
+        self, points: Sequence[Point], finished: set[str], question: Question | None = None
+    ) -> Iterator[CaseTask]:
         """Tasks of the points that are not finished, each once."""
         met: set[str] = set()
         asked = question or self.study.question
@@ -141,7 +143,7 @@ class Runner:
                 continue
             met.add(key)
             path = str(self.store.fields_of(key).resolve()) if self.execution.fields else ""
-            yield Task(key, self.base, point, asked, path, self.study.from_neighbours)
+            yield CaseTask(key, self.base, point, asked, path, self.study.from_neighbours)
 
 
 class _Pace:
@@ -216,7 +218,7 @@ def run(study: Study, out: str | Path | None = None, execution: Execution | None
 
 def run_with_effort(
     study: Study, out: str | Path | None = None, execution: Execution | None = None
-) -> tuple[xr.Dataset, Effort]:
+) -> tuple[xr.Dataset, ProcessorTime]:
     """The same, and the processor time that it took in this run."""
     how = execution or Execution()
     if how.neighbours:

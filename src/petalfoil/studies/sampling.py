@@ -11,8 +11,8 @@ import numpy as np
 
 from petalfoil.errors import UsageError
 from petalfoil.studies.goals import Goals
-from petalfoil.studies.question import Outcome
-from petalfoil.studies.search import Search, interval_of
+from petalfoil.studies.question import CaseOutcome
+from petalfoil.studies.search import DesignSearch, interval_of
 from petalfoil.studies.variation import Interval, Levels, Number, Variation
 
 BATCH = 4
@@ -21,12 +21,12 @@ POPULATION = 20
 """Designs of a generation of NSGA-II."""
 
 
-def by_sampling(search: Search, method: str, journal: Path | None, seed: int) -> None:
+def by_sampling(search: DesignSearch, method: str, journal: Path | None, seed: int) -> None:
     """Optuna's TPE for one objective, NSGA-II for several; limits are constraints of both, the case is the first trial.
 
     Parameters
     ----------
-    search : Search
+    search : DesignSearch
         The search.
     method : str
         ``"tpe"`` or ``"nsga2"``.
@@ -107,7 +107,7 @@ def _is_finite(variations: Sequence[Variation]) -> bool:
     return all(isinstance(v, Levels) or v.parameter.is_count for v in variations)
 
 
-def _tell(trials: Any, trial: Any, goals: Goals, outcome: Outcome) -> None:
+def _tell(trials: Any, trial: Any, goals: Goals, outcome: CaseOutcome) -> None:
     """Tell the sampler what came of a trial; one without an answer has failed."""
     from optuna.trial import TrialState
 

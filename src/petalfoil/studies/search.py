@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from petalfoil.errors import UsageError
 from petalfoil.studies.goals import Goals
 from petalfoil.studies.plan import Point
-from petalfoil.studies.question import Outcome
+from petalfoil.studies.question import CaseOutcome
 from petalfoil.studies.variation import Interval, Number, Variation
 
 FloatArray = NDArray[np.float64]
-Answer: TypeAlias = Callable[[Sequence[Point]], list[Outcome]]
+Answer: TypeAlias = Callable[[Sequence[Point]], list[CaseOutcome]]
 Slopes: TypeAlias = dict[str, dict[str, float]]
 """Derivatives of results by parameters, by result and path, SI."""
 Gradients: TypeAlias = Callable[[Point], Slopes | None]
@@ -32,7 +32,7 @@ class BudgetSpent(Exception):
 
 
 @dataclass
-class Search:
+class DesignSearch:
     """A search under way.
 
     Attributes
@@ -47,7 +47,7 @@ class Search:
         Number of designs that may be asked.
     gradients : callable
         Exact derivatives at a point, where there are some.
-    asked : list of Outcome
+    asked : list of CaseOutcome
         Designs in the order in which they were asked, each once.
     ended : str
         How it ended.
@@ -58,11 +58,11 @@ class Search:
     answer: Answer
     budget: int
     gradients: Gradients = lambda point: None
-    asked: list[Outcome] = field(default_factory=list)
+    asked: list[CaseOutcome] = field(default_factory=list)
     ended: str = ""
 
     def __post_init__(self) -> None:
-        self._known: dict[tuple[Number, ...], Outcome] = {}
+        self._known: dict[tuple[Number, ...], CaseOutcome] = {}
         self._places: dict[tuple[Number, ...], FloatArray] = {}
         self._slopes: dict[tuple[Number, ...], Slopes | None] = {}
 
@@ -78,7 +78,7 @@ class Search:
             self._slopes[at] = self.gradients(point)
         return self._slopes[at]
 
-    def outcomes(self, points: Sequence[Point]) -> list[Outcome]:
+    def outcomes(self, points: Sequence[Point]) -> list[CaseOutcome]:
         """Outcomes of points; those that are new count.
 
         Raises
@@ -94,10 +94,10 @@ class Search:
             self.asked.append(outcome)
         return [self._known[tuple(point.values())] for point in points]
 
-    def ranked(self) -> list[Outcome]:
+    def ranked(self) -> list[CaseOutcome]:
         """Designs that have an answer, for one objective: those that keep the limits, then by how little they miss."""
 
-        def rank(outcome: Outcome) -> tuple[float, float]:
+        def rank(outcome: CaseOutcome) -> tuple[float, float]:
             missed = (
                 0.0 if self.goals.is_feasible(outcome) else -float(np.minimum(self.goals.margins(outcome), 0.0).sum())
             )
@@ -106,7 +106,7 @@ class Search:
         answered = [outcome for outcome in self.asked if np.isfinite(self.goals.costs(outcome)).all()]
         return sorted(answered, key=rank)
 
-    def place(self, outcome: Outcome) -> FloatArray:
+    def place(self, outcome: CaseOutcome) -> FloatArray:
         """Place in the unit cube of a design that `point` has given."""
         return self._places[tuple(outcome.values.values())]
 

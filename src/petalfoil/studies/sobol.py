@@ -26,7 +26,7 @@ from petalfoil.studies.dataset import dataset
 from petalfoil.studies.definition import Study
 from petalfoil.studies.limits import refuse_absent, result_of, value_of
 from petalfoil.studies.plan import Plan, names_of, points_at, refuse_repeated, refuse_too_many
-from petalfoil.studies.question import Outcome, Question
+from petalfoil.studies.question import CaseOutcome, Question
 from petalfoil.studies.run import Execution, Kind, Runner, run
 from petalfoil.studies.store import Store
 from petalfoil.studies.summary import plain, results
@@ -155,14 +155,16 @@ def assemble(study: Study, store: Store) -> xr.Dataset:
     return ds.assign_attrs(sobol=json.dumps(told, allow_nan=False))
 
 
-def indices(variations: Sequence[Variation], found: Sequence[Outcome | None], name: str, seed: int) -> dict[str, Any]:
+def indices(
+    variations: Sequence[Variation], found: Sequence[CaseOutcome | None], name: str, seed: int
+) -> dict[str, Any]:
     """Indices of one result; blocks with a case that has no answer are left out.
 
     Parameters
     ----------
     variations : sequence of Variation
         What varies.
-    found : sequence of Outcome or None
+    found : sequence of CaseOutcome or None
         Outcomes in the order of the plan.
     name : str
         The result.

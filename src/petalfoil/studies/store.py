@@ -23,7 +23,7 @@ from pathlib import Path
 
 from petalfoil.errors import StoreError, UsageError
 from petalfoil.studies.definition import FILE, Study
-from petalfoil.studies.question import Outcome
+from petalfoil.studies.question import CaseOutcome
 
 INDEX, FIELDS, LOCK = "index.sqlite", "fields", ".lock"
 DATA, TABLE, FIGURES, PAGE = "study.nc", "table.csv", "figures", "index.html"
@@ -73,7 +73,7 @@ class Store:
             raise StoreError(f"{self.folder / INDEX} cannot be read: {error}") from error
         return index
 
-    def add(self, outcome: Outcome) -> None:
+    def add(self, outcome: CaseOutcome) -> None:
         """Keep an outcome; one that is there already stays."""
         row = (outcome.key, outcome.status, outcome.to_json())
         try:
@@ -85,15 +85,15 @@ class Store:
         """Keys of the finished cases."""
         return {key for (key,) in self._index.execute("SELECT key FROM cases")}
 
-    def get(self, key: str) -> Outcome | None:
+    def get(self, key: str) -> CaseOutcome | None:
         """Outcome of a case; None where it is not finished."""
         found = self._index.execute("SELECT outcome FROM cases WHERE key = ?", (key,)).fetchone()
-        return None if found is None else Outcome.from_json(found[0])
+        return None if found is None else CaseOutcome.from_json(found[0])
 
-    def outcomes(self) -> Iterator[Outcome]:
+    def outcomes(self) -> Iterator[CaseOutcome]:
         """All outcomes in the order in which they came."""
         for (text,) in self._index.execute("SELECT outcome FROM cases ORDER BY number"):
-            yield Outcome.from_json(text)
+            yield CaseOutcome.from_json(text)
 
     def forget(self, status: str) -> int:
         """Remove the cases of a status, so that they are asked again; how many there were."""

@@ -19,9 +19,9 @@ from petalfoil.errors import UsageError
 from petalfoil.studies.dataset import dataset
 from petalfoil.studies.definition import Study
 from petalfoil.studies.gradients import ALL, derivative_question, slopes_of
-from petalfoil.studies.limits import Limit, refuse_absent, value_of
+from petalfoil.studies.limits import ResultLimit, refuse_absent, value_of
 from petalfoil.studies.plan import Plan, Point, points_at, read_sample, refuse_repeated, unit_sample
-from petalfoil.studies.question import Outcome, Question
+from petalfoil.studies.question import CaseOutcome, Question
 from petalfoil.studies.run import Execution, Kind, Runner, key_of, run
 from petalfoil.studies.search import Slopes
 from petalfoil.studies.store import Store
@@ -29,7 +29,7 @@ from petalfoil.studies.summary import plain, results
 from petalfoil.studies.variation import Scatter, read_scatter
 
 FloatArray = NDArray[np.float64]
-Outcomes: TypeAlias = Sequence[Outcome | None]
+Outcomes: TypeAlias = Sequence[CaseOutcome | None]
 
 QUANTILES = (0.05, 0.5, 0.95)
 CONFIDENCE = 0.95
@@ -99,7 +99,7 @@ def tolerance_study(
 ) -> Study:
     """The definition of a tolerance study, checked."""
     for text in limits:
-        Limit.read(text)
+        ResultLimit.read(text)
     settings = {"sample": sample or f"sobol {SAMPLES}", "limits": list(limits)}
     study = Study(kind="tolerance", case=case, question=question, vary=dict(scatter), settings=settings)
     question.refuse_overridden(list(scatter))
@@ -130,14 +130,14 @@ def differences_of(study: Study) -> list[Point]:
 
 def slopes_asked(study: Study) -> Question | None:
     """The question for the derivatives of all results by what scatters; None where the analysis has none."""
-    names = [Limit.read(text).name for text in study.settings["limits"]]
+    names = [ResultLimit.read(text).name for text in study.settings["limits"]]
     paths = [scatter.path for scatter in scatters_of(study)]
     return derivative_question(study.question, paths, [ALL, *(name for name in names if name in GROWTH)])
 
 
 def conduct(study: Study, runner: Runner) -> None:
     """Answer the nominal bearing, its derivatives or else its differences, then the sample."""
-    limits = [Limit.read(text) for text in study.settings["limits"]]
+    limits = [ResultLimit.read(text) for text in study.settings["limits"]]
     (nominal,) = runner.outcomes([{}])
     if nominal.converged:
         refuse_absent([limit.name for limit in limits], nominal.records, study.question.verb)
@@ -151,7 +151,7 @@ def assemble(study: Study, store: Store) -> xr.Dataset:
     plan = plan_of(study)
     found = [store.get(key_of(study, study.case.to_toml(), point)) for point in plan.points]
     ds = dataset(study, plan, found)
-    limits = [Limit.read(text) for text in study.settings["limits"]]
+    limits = [ResultLimit.read(text) for text in study.settings["limits"]]
     names = list(dict.fromkeys([*(limit.name for limit in limits), *results(ds)]))
     first_order = FirstOrder.of(study, store)
     told = {
@@ -170,16 +170,16 @@ class FirstOrder:
     ----------
     scatters : list of Scatter
         What scatters.
-    nominal : Outcome or None
+    nominal : CaseOutcome or None
         The nominal bearing.
     slopes : dict
         Exact derivatives by result and path; empty where the analysis has none.
-    sides : list of Outcome or None
+    sides : list of CaseOutcome or None
         Without derivatives: each parameter one standard deviation below and above its nominal value.
     """
 
     scatters: list[Scatter]
-    nominal: Outcome | None
+    nominal: CaseOutcome | None
     slopes: Slopes
     sides: Outcomes
 
@@ -204,7 +204,7 @@ class FirstOrder:
         return [0.5 * (above - below) for below, above in zip(values[::2], values[1::2], strict=True)]
 
 
-def _value(outcome: Outcome | None, name: str) -> float:
+def _value(outcome: CaseOutcome | None, name: str) -> float:
     return value_of(outcome.records, name) if outcome and outcome.converged else math.nan
 
 
@@ -237,7 +237,7 @@ def statistics(values: FloatArray) -> dict[str, float]:
     return told
 
 
-def kept(limit: Limit, found: Outcomes) -> dict[str, Any]:
+def kept(limit: ResultLimit, found: Outcomes) -> dict[str, Any]:
     """Probability that a limit is kept, with its confidence interval (Clopper and Pearson 1934).
 
     A case without an answer does not keep it.

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from petalfoil.errors import UsageError
-from petalfoil.studio.engine import Engine, default_size
+from petalfoil.studio.engine import WorkerPool, default_size
 
 LOOPBACK = "127.0.0.1"
 
@@ -73,7 +73,7 @@ async def run_studio(
     DefinitionError
         The case is refused.
     """
-    engine = Engine(default_size())
+    engine = WorkerPool(default_size())
     await engine.start()
     try:
         from petalfoil.studio.design import Design

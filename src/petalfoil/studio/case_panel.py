@@ -8,7 +8,7 @@ from typing import Any
 from nicegui import ui
 
 from petalfoil.case import Case
-from petalfoil.studio.form import Control, Entry, Section, Slider, sections, sliders_of
+from petalfoil.studio.form import Control, FormEntry, FormSection, Slider, sections, sliders_of
 from petalfoil.studio.session import Session
 
 THROTTLE = 0.08
@@ -24,13 +24,13 @@ class KeyControl:
 
     Parameters
     ----------
-    entry : Entry
+    entry : FormEntry
         The key.
     session : Session
         Whose case it is a part of.
     """
 
-    def __init__(self, entry: Entry, session: Session) -> None:
+    def __init__(self, entry: FormEntry, session: Session) -> None:
         self.entry, self._session = entry, session
         self._field: Any = None
         self._sliders: Any = None
@@ -169,7 +169,7 @@ class CasePanel:
         self._general.set_text("; ".join(others))
         self._general.set_visibility(bool(others))
 
-    def _build(self, section: Section) -> None:
+    def _build(self, section: FormSection) -> None:
         """A table that is folded is built when it is opened: most pages never need it."""
         is_there = not section.name or section.name in self._session.design.tables or not section.is_optional
         opened = section.name in OPEN_AT_FIRST and is_there
@@ -183,12 +183,12 @@ class CasePanel:
         else:
             fold.on_value_change(lambda event: self._unfold(section, place, is_there=is_there) if event.value else None)
 
-    def _unfold(self, section: Section, place: ui.element, *, is_there: bool) -> None:
+    def _unfold(self, section: FormSection, place: ui.element, *, is_there: bool) -> None:
         if not place.default_slot.children:
             self._fill(section, place, is_there=is_there)
             self.show_problems()
 
-    def _fill(self, section: Section, place: ui.element, *, is_there: bool) -> None:
+    def _fill(self, section: FormSection, place: ui.element, *, is_there: bool) -> None:
         with place:
             if section.is_optional:
                 switch = ui.switch(f"with {section.name}", value=is_there)

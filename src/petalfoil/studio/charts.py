@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from petalfoil.results.schema import SCALARS, VARIABLES, Shown
+from petalfoil.results.schema import SCALARS, VARIABLES, TableLabel
 from petalfoil.results.summary import shown_as
 from petalfoil.studio.motion_chart import motion_chart
 from petalfoil.studio.protocol import Found, Mapped, Searched
@@ -132,14 +132,14 @@ def _short(values: Floats) -> list[list[float]]:
 # ---------------------------------------------------------------------------------------------- series
 
 
-def label_of(name: str) -> Shown:
+def label_of(name: str) -> TableLabel:
     """Label, unit and factor of a result or an array of the schema."""
     if name in SCALARS:
         return shown_as(name)
     variable = VARIABLES[name]
     lengths = {"m": ("µm", 1e6), "s": ("ms", 1e3), "rad s-1": ("rpm", 30.0 / math.pi)}
     unit, factor = lengths.get(variable.units, (variable.units.removeprefix("1"), 1.0))
-    return Shown(name.replace("_", " "), unit, factor)
+    return TableLabel(name.replace("_", " "), unit, factor)
 
 
 def titled(name: str) -> str:

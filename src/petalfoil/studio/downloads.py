@@ -12,7 +12,7 @@ from nicegui import ui
 
 from petalfoil.studio.protocol import Found, Work
 from petalfoil.studio.session import Session
-from petalfoil.studio.state import Shown
+from petalfoil.studio.state import ShownResult
 from petalfoil.text import for_terminal
 
 MADE = {
@@ -58,7 +58,7 @@ def file_name(session: Session, suffix: str) -> str:
     return f"{plain or 'bearing'}.{suffix}"
 
 
-def download_menu(session: Session, shown: Callable[[], Shown | None], *, with_case: bool) -> None:
+def download_menu(session: Session, shown: Callable[[], ShownResult | None], *, with_case: bool) -> None:
     """A button with a menu of files of a result.
 
     Parameters
@@ -84,7 +84,7 @@ def save_case(session: Session) -> None:
     ui.download.content(session.design.to_toml(), file_name(session, "toml"), "application/toml")
 
 
-def show_python(session: Session, shown: Shown | None) -> None:
+def show_python(session: Session, shown: ShownResult | None) -> None:
     """Show the lines of Python that ask the same."""
     verb = "solve" if shown is None else shown.found.verb
     text = session.design.python(verb, {} if shown is None else shown.arguments)
@@ -95,14 +95,14 @@ def show_python(session: Session, shown: Shown | None) -> None:
     dialog.on("hide", dialog.delete)
 
 
-def _save_csv(session: Session, shown: Shown | None) -> None:
+def _save_csv(session: Session, shown: ShownResult | None) -> None:
     if shown is None:
         ui.notify("there is no result yet")
         return
     ui.download.content(csv_of(shown.found), file_name(session, "csv"), "text/csv")
 
 
-async def _save_made(session: Session, shown: Shown | None, work: Work, kind: str) -> None:
+async def _save_made(session: Session, shown: ShownResult | None, work: Work, kind: str) -> None:
     """Let a worker make a file, and download it."""
     if shown is None:
         ui.notify("there is no result yet")

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from petalfoil.studio.protocol import Cancelled, Done, Failure, Progress, Task, Work
+from petalfoil.studio.protocol import Cancelled, Done, Failure, Progress, Work, WorkerTask
 from petalfoil.studio.worker_process import WorkerProcess
 
 PATIENCE = 5.0
@@ -38,7 +38,7 @@ class Job:
 
     Attributes
     ----------
-    task : Task
+    task : WorkerTask
         What is to be done.
     owner : str
         Session that asked.
@@ -50,7 +50,7 @@ class Job:
         Called with the part done and a text.
     """
 
-    task: Task
+    task: WorkerTask
     owner: str
     is_long: bool
     outcome: asyncio.Future[Outcome]
@@ -58,7 +58,7 @@ class Job:
     worker: WorkerProcess | None = field(default=None, repr=False)
 
 
-class Engine:
+class WorkerPool:
     """The workers and their queue.
 
     Parameters
@@ -122,7 +122,7 @@ class Engine:
         **asked
             Further fields of the task.
         """
-        task = Task(number=next(self._numbers), work=work, **asked)
+        task = WorkerTask(number=next(self._numbers), work=work, **asked)
         job = Job(task, owner, is_long, asyncio.get_running_loop().create_future(), on_progress)
         refusal = self._refusal(owner)
         if refusal:

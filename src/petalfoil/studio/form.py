@@ -39,7 +39,7 @@ class Control(Enum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Entry:
+class FormEntry:
     """A key of a case and how it is edited.
 
     Attributes
@@ -116,7 +116,7 @@ class Entry:
 
 
 @dataclass(frozen=True)
-class Section:
+class FormSection:
     """A table of a case.
 
     Attributes
@@ -127,20 +127,20 @@ class Section:
         What it describes.
     is_optional : bool
         Whether a case may be without it.
-    entries : tuple of Entry
+    entries : tuple of FormEntry
         Its keys.
     """
 
     name: str
     title: str
     is_optional: bool
-    entries: tuple[Entry, ...]
+    entries: tuple[FormEntry, ...]
 
 
-def sections(model: type[BaseModel] = Case) -> list[Section]:
+def sections(model: type[BaseModel] = Case) -> list[FormSection]:
     """The tables of a case in order, keys of the case itself in front."""
-    own: list[Entry] = []
-    tables: list[Section] = []
+    own: list[FormEntry] = []
+    tables: list[FormSection] = []
     for name, field in model.model_fields.items():
         table = _table_of(field)
         if table is None:
@@ -148,8 +148,8 @@ def sections(model: type[BaseModel] = Case) -> list[Section]:
             continue
         entries = tuple(_entry(f"{name}.{key}", inner) for key, inner in table.model_fields.items())
         title = (table.__doc__ or name).strip().partition("\n")[0].rstrip(".")
-        tables.append(Section(name, title, not field.is_required() and field.default is None, entries))
-    return [Section("", "Case", False, tuple(own)), *tables]
+        tables.append(FormSection(name, title, not field.is_required() and field.default is None, entries))
+    return [FormSection("", "Case", False, tuple(own)), *tables]
 
 
 def _table_of(field: FieldInfo) -> type[Definition] | None:
@@ -159,7 +159,7 @@ def _table_of(field: FieldInfo) -> type[Definition] | None:
     return None
 
 
-def _entry(path: str, field: FieldInfo) -> Entry:
+def _entry(path: str, field: FieldInfo) -> FormEntry:
     """The entry of a key, by what its definition declares."""
     declared = list(_declared(field))
     number = next((one for one in declared if isinstance(one, Quantity | Count)), None)
@@ -169,16 +169,16 @@ def _entry(path: str, field: FieldInfo) -> Entry:
     shared: dict[str, Any] = {"path": path, "default": default, "is_required": field.is_required()}
     words = next((kind for kind in kinds if issubclass(kind, StrEnum)), None)
     if words is not None:
-        return Entry(**shared, control=Control.CHOICE, meaning="", choices=tuple(word.value for word in words))
+        return FormEntry(**shared, control=Control.CHOICE, meaning="", choices=tuple(word.value for word in words))
     if number is None:
         control = Control.FLAG if bool in kinds else Control.TEXT
-        return Entry(**shared, control=control, meaning="")
+        return FormEntry(**shared, control=control, meaning="")
     unit = number.unit if isinstance(number, Quantity) else ""
     control = Control.COUNT if isinstance(number, Count) else _control_of_quantity(field)
     if isinstance(number, PerPetal | PerPetalOrWord):
         control = Control.QUANTITY
     choices = (number.word,) if isinstance(number, QuantityOrWord) else ()
-    return Entry(
+    return FormEntry(
         **shared,
         control=control,
         meaning=number.meaning,
@@ -279,7 +279,7 @@ class Slider:
         return f"{value:.{digits}f} {self.unit}".rstrip()
 
 
-def sliders_of(entry: Entry, text: str) -> list[Slider]:
+def sliders_of(entry: FormEntry, text: str) -> list[Slider]:
     """The sliders for a text: one of a number, two of a pair, none where nothing can be slid.
 
     The ends are a quarter and twice the value, inside the range of the key; of a pair twice the larger component to
@@ -300,7 +300,7 @@ def sliders_of(entry: Entry, text: str) -> list[Slider]:
     return [] if slider is None else [slider]
 
 
-def _slider(entry: Entry, value: float, unit: str, ends: tuple[float, float]) -> Slider | None:
+def _slider(entry: FormEntry, value: float, unit: str, ends: tuple[float, float]) -> Slider | None:
     """A slider between two ends, inside the range of the key."""
     low, high = _limits(entry, unit)
     start, stop = max(ends[0], low), min(ends[1], high)
@@ -314,7 +314,7 @@ def _slider(entry: Entry, value: float, unit: str, ends: tuple[float, float]) ->
     return Slider(first, last, step, value, unit) if first < last else None
 
 
-def _limits(entry: Entry, unit: str) -> tuple[float, float]:
+def _limits(entry: FormEntry, unit: str) -> tuple[float, float]:
     """Range of a key in a unit that is written."""
     bounds = entry.bounds
     low = bounds.at_least if bounds.above is None else bounds.above

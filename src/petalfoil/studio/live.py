@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 from petalfoil.analysis.declaration import ERROR
 from petalfoil.case import Case, Method, ModelKind
-from petalfoil.studio.engine import Engine, Job, words_of
+from petalfoil.studio.engine import Job, WorkerPool, words_of
 from petalfoil.studio.protocol import Cancelled, Done, Failure, Found, Work
-from petalfoil.studio.state import Aspect, Shown
+from petalfoil.studio.state import Aspect, ShownResult
 from petalfoil.walls import Capability, wall_kind
 
 if TYPE_CHECKING:
@@ -34,11 +34,11 @@ class Live:
     ----------
     session : Session
         Whose design is followed, and who is told.
-    engine : Engine
+    engine : WorkerPool
         Who computes.
     """
 
-    def __init__(self, session: Session, engine: Engine) -> None:
+    def __init__(self, session: Session, engine: WorkerPool) -> None:
         self._session, self._engine = session, engine
         self._is_due = False
         self._change = asyncio.Event()
@@ -99,11 +99,11 @@ class Live:
         job = self._engine.submit(self._session.key, Work.ANSWER, verb=verb, case_toml=design.to_toml(), coarse=True)
         outcome = await job.outcome
         if isinstance(outcome, Done) and isinstance(outcome.result, Found):
-            self._session.state = Shown(outcome.result, design.to_toml(), is_coarse=True)
+            self._session.state = ShownResult(outcome.result, design.to_toml(), is_coarse=True)
             self._session.tell(Aspect.STATE)
         return not isinstance(outcome, Cancelled)
 
-    async def _answer_fine(self, design: Design, verb: str) -> Shown | None:
+    async def _answer_fine(self, design: Design, verb: str) -> ShownResult | None:
         """Show the answer on the case's own grid; None where there is none."""
         case, toml = design.case(), design.to_toml()
         is_long = case.model.kind is ModelKind.THREE_D
@@ -114,7 +114,7 @@ class Live:
         outcome = await self._fine.outcome
         self._fine = None
         if isinstance(outcome, Done) and isinstance(outcome.result, Found):
-            self._session.state = Shown(outcome.result, toml)
+            self._session.state = ShownResult(outcome.result, toml)
             self._session.remember(design, outcome.result)
             self._session.tell(Aspect.STATE)
             self._session.say(f"converged in {outcome.result.seconds:.2g} s", None)
@@ -125,7 +125,7 @@ class Live:
             self._session.tell(Aspect.PROBLEMS)
         return None
 
-    async def _add_bars(self, shown: Shown) -> None:
+    async def _add_bars(self, shown: ShownResult) -> None:
         """Compute the answer with error bars, and show it where nothing newer is."""
         before = self._session.status
         asked: dict[str, Any] = {"verb": shown.found.verb, "case_toml": shown.toml}

@@ -7,7 +7,7 @@ from typing import Any
 from nicegui import ui
 
 from petalfoil.studio.design import Design
-from petalfoil.studio.form import Control, Entry, sections, sliders_of
+from petalfoil.studio.form import Control, FormEntry, sections, sliders_of
 from petalfoil.units import format_quantity
 
 NOTHING = "none"
@@ -65,7 +65,7 @@ class ParameterChoice:
         return f"{ends[0]} : {ends[1]}" + ("" if self._is_range else f" : {LEVELS}")
 
 
-def entries(design: Design) -> dict[str, Entry]:
+def entries(design: Design) -> dict[str, FormEntry]:
     """Keys that can vary, by path: numbers that the case gives."""
     every = (entry for section in sections() for entry in section.entries)
     numbers = {entry.path: entry for entry in every if entry.control in (Control.QUANTITY, Control.COUNT)}

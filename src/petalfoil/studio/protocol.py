@@ -1,7 +1,7 @@
 """What the server and its workers say to each other: tasks one way, reports the other, as frames on pipes.
 
 Both ends are processes of this program, started by the server on the same machine with pipes that no one else has.
-What comes from a browser reaches a worker as texts and numbers inside a `Task` and never as a pickle of its own.
+What comes from a browser reaches a worker as texts and numbers inside a `WorkerTask` and never as a pickle of its own.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Work(Enum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Task:
+class WorkerTask:
     """One piece of work.
 
     Attributes
@@ -232,7 +232,7 @@ class Done:
     result: Found | Mapped | Searched | bytes
 
 
-Message = Task | Cancel | Ready | Progress | Cancelled | Failure | Done
+Message = WorkerTask | Cancel | Ready | Progress | Cancelled | Failure | Done
 
 
 def frame(message: Message) -> bytes:

@@ -17,7 +17,7 @@ from petalfoil.studio.downloads import download_menu
 from petalfoil.studio.form import label_of_argument, with_labels
 from petalfoil.studio.protocol import Found
 from petalfoil.studio.session import Session
-from petalfoil.studio.state import Shown
+from petalfoil.studio.state import ShownResult
 from petalfoil.studio.tasks import found_analysis
 from petalfoil.studio.themes import DARK, LIGHT, Theme
 
@@ -25,7 +25,7 @@ EXAMPLES = re.compile(r'"([^"]+)"')
 """Examples in the help text of an argument: the first stands in the field of one that must be given."""
 
 
-class Question:
+class QuestionPanel:
     """One analysis: its arguments and its answer.
 
     Parameters
@@ -42,7 +42,7 @@ class Question:
         self._fields: dict[str, Any] = {}
         self._axes: list[str] = []
         self._drawn: Any = None
-        self._built_for: Shown | None = None
+        self._built_for: ShownResult | None = None
         ui.label(self._analysis.summary).classes("summary")
         with ui.element("div").classes("arguments"):
             for name, argument in self._analysis.arguments.items():
@@ -163,7 +163,7 @@ class Questions:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._open: dict[str, Question] = {}
+        self._open: dict[str, QuestionPanel] = {}
         verbs = known_verbs.summaries()
         with ui.tabs().props("dense no-caps inline-label align=left outside-arrows mobile-arrows") as tabs:
             for verb, summary in verbs.items():
@@ -188,4 +188,4 @@ class Questions:
             panel.set_visibility(name == verb)
         if verb not in self._open:
             with self._panels[verb]:
-                self._open[verb] = Question(verb, self._session)
+                self._open[verb] = QuestionPanel(verb, self._session)

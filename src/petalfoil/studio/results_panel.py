@@ -12,7 +12,7 @@ from petalfoil.results.summary import cell, in_order, shown_as, with_bar
 from petalfoil.studio.downloads import quiet_button
 from petalfoil.studio.protocol import Found
 from petalfoil.studio.session import Session
-from petalfoil.studio.state import Shown
+from petalfoil.studio.state import ShownResult
 
 HIDDEN = {
     "solution_path", "known_equilibria", "factorizations", "iterations", "wall_time", "force_residual",
@@ -85,7 +85,7 @@ class ResultsPanel:
                 ui.label(warning).classes("warning")
 
 
-def _heading(shown: Shown) -> str:
+def _heading(shown: ShownResult) -> str:
     grid = f"{shown.found.grid}, {shown.found.seconds:.2g} s"
     return f"first answer, coarse 2-D: {grid}" if shown.is_coarse else f"{shown.found.verb}: {grid}"
 

@@ -18,7 +18,7 @@ from nicegui.dependencies import esm_modules
 
 from petalfoil.studio.address import Address
 from petalfoil.studio.design import Design
-from petalfoil.studio.engine import Engine
+from petalfoil.studio.engine import WorkerPool
 from petalfoil.studio.guard import Guard
 from petalfoil.studio.page import Page
 from petalfoil.studio.session import Session
@@ -54,7 +54,7 @@ class Sessions:
 
     Parameters
     ----------
-    engine : Engine
+    engine : WorkerPool
         Who computes.
     design : Design
         What a new session begins with.
@@ -66,7 +66,7 @@ class Sessions:
         them the others are kept alive, and a busy machine would otherwise let all of them time out.
     """
 
-    def __init__(self, engine: Engine, design: Design) -> None:
+    def __init__(self, engine: WorkerPool, design: Design) -> None:
         self._engine, self._design = engine, design
         self.building = asyncio.Lock()
         self._sessions: OrderedDict[str, Session] = OrderedDict()
@@ -100,13 +100,13 @@ class Sessions:
 
 
 async def serve(
-    engine: Engine, design: Design, address: Address, listening: socket.socket, told: Callable[[str], None]
+    engine: WorkerPool, design: Design, address: Address, listening: socket.socket, told: Callable[[str], None]
 ) -> None:
     """Serve the page until Ctrl-C, and end the workers.
 
     Parameters
     ----------
-    engine : Engine
+    engine : WorkerPool
         Workers that have been started.
     design : Design
         The case that a new page begins with.

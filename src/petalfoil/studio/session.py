@@ -16,10 +16,10 @@ from typing import Any
 from petalfoil.case import Case
 from petalfoil.errors import DefinitionError
 from petalfoil.studio.design import Design
-from petalfoil.studio.engine import Engine, Job, words_of
+from petalfoil.studio.engine import Job, WorkerPool, words_of
 from petalfoil.studio.live import Live, live_verb
 from petalfoil.studio.protocol import Done, Failure, Found, Mapped, Searched, Work
-from petalfoil.studio.state import Aspect, Shown, Status, Tried
+from petalfoil.studio.state import Aspect, ShownResult, Status, Tried
 
 MOST_TRIED, MOST_LINES = 40, 200
 """Designs and lines of the log that a session remembers."""
@@ -34,19 +34,19 @@ class Session:
 
     Parameters
     ----------
-    engine : Engine
+    engine : WorkerPool
         Who computes.
     design : Design
         The case to begin with.
     """
 
-    def __init__(self, engine: Engine, design: Design) -> None:
+    def __init__(self, engine: WorkerPool, design: Design) -> None:
         self.key = secrets.token_urlsafe(16)
         self.design = design
         self.problems: dict[str, str] = {}
-        self.state: Shown | None = None
-        self.pinned: Shown | None = None
-        self.answers: dict[str, Shown] = {}
+        self.state: ShownResult | None = None
+        self.pinned: ShownResult | None = None
+        self.answers: dict[str, ShownResult] = {}
         self.failures: dict[str, str] = {}
         self.map: Mapped | None = None
         self.optimum: Searched | None = None
@@ -161,7 +161,7 @@ class Session:
         self._engine.leave(self.key)
         self.say("cancelled", None)
 
-    async def file(self, work: Work, shown: Shown) -> bytes | str:
+    async def file(self, work: Work, shown: ShownResult) -> bytes | str:
         """A file of a result, or why there is none; a result that was slimmed down is computed again."""
         records = shown.found.records
         asked: dict[str, Any] = {"verb": shown.found.verb, "case_toml": shown.toml}
@@ -205,7 +205,7 @@ class Session:
             elif isinstance(outcome.result, Searched):
                 self.optimum = outcome.result
             else:
-                self.answers[name] = Shown(outcome.result, toml, asked["arguments"])
+                self.answers[name] = ShownResult(outcome.result, toml, asked["arguments"])
             self.say(f"{name}: done in {outcome.result.seconds:.2g} s", None)
         self.tell(Aspect.ANSWERS)
 

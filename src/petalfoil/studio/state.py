@@ -18,7 +18,7 @@ class Aspect(Enum):
 
 
 @dataclass(frozen=True)
-class Shown:
+class ShownResult:
     """A result and the case that it belongs to.
 
     Attributes

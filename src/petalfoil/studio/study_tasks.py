@@ -19,13 +19,13 @@ from petalfoil.studies.question import Question
 from petalfoil.studies.run import Execution, run
 from petalfoil.studies.sweep import sweep
 from petalfoil.studies.variation import read_levels
-from petalfoil.studio.protocol import Arrays, Mapped, Searched, Task
+from petalfoil.studio.protocol import Arrays, Mapped, Searched, WorkerTask
 
 MOST_CASES = 400
 """Largest map, and largest budget of a search: some minutes of 2-D cases."""
 
 
-def mapped(task: Task, case: Case, progress: Progress) -> Mapped:
+def mapped(task: WorkerTask, case: Case, progress: Progress) -> Mapped:
     """Run an analysis over one or two parameters, here and one case after another.
 
     Raises
@@ -51,7 +51,7 @@ def mapped(task: Task, case: Case, progress: Progress) -> Mapped:
     )
 
 
-def searched(task: Task, case: Case, progress: Progress) -> Searched:
+def searched(task: WorkerTask, case: Case, progress: Progress) -> Searched:
     """Look for the best design, beginning at the case.
 
     Raises

@@ -21,7 +21,7 @@ from petalfoil.results.summary import without_rounding
 from petalfoil.results.tables import tables_of
 from petalfoil.studio.arrays import arrays_of
 from petalfoil.studio.design import Design, without_files
-from petalfoil.studio.protocol import Found, Mapped, Searched, Task, Work
+from petalfoil.studio.protocol import Found, Mapped, Searched, Work, WorkerTask
 from petalfoil.walls import Capability, wall_kind
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ MOST_UNKNOWNS = 150_000
 """Largest grid that the page runs: a minute or two on one core, and some 2 GB."""
 
 
-def perform(task: Task, progress: Progress) -> Found | Mapped | Searched | bytes:
+def perform(task: WorkerTask, progress: Progress) -> Found | Mapped | Searched | bytes:
     """Do what a task asks for.
 
     Raises
@@ -70,7 +70,7 @@ def found_analysis(verb: str) -> Analysis:
     return analysis
 
 
-def answered(task: Task, analysis: Analysis, progress: Progress) -> Found:
+def answered(task: WorkerTask, analysis: Analysis, progress: Progress) -> Found:
     """Run an analysis and lay out its answer for the page."""
     start = time.perf_counter()
     case = Case(**without_files(task.case_toml))
@@ -141,7 +141,7 @@ def without_stored(analysis: Analysis, arguments: Mapping[str, Any]) -> dict[str
 # ---------------------------------------------------------------------------------------------- files
 
 
-def file_of(task: Task, analysis: Analysis) -> bytes:
+def file_of(task: WorkerTask, analysis: Analysis) -> bytes:
     """The bytes of a file of an answer."""
     answer = stored_answer(task.records, analysis)
     if task.work is Work.REPORT:

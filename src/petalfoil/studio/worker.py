@@ -16,7 +16,7 @@ from queue import SimpleQueue
 from typing import BinaryIO
 
 from petalfoil.errors import ConvergenceError, DefinitionError, PetalfoilError
-from petalfoil.studio.protocol import Cancel, Cancelled, Done, Failure, Message, Progress, Ready, Task, read_frame
+from petalfoil.studio.protocol import Cancel, Cancelled, Done, Failure, Message, Progress, Ready, WorkerTask, read_frame
 from petalfoil.studio.protocol import frame as framed
 from petalfoil.studio.tasks import perform, warm_up
 
@@ -32,7 +32,7 @@ class Inbox:
     """Messages of the server, read by a thread."""
 
     def __init__(self, stream: BinaryIO) -> None:
-        self.tasks: SimpleQueue[Task] = SimpleQueue()
+        self.tasks: SimpleQueue[WorkerTask] = SimpleQueue()
         self.cancelled: set[int] = set()
         self._stream = stream
         threading.Thread(target=self._read, daemon=True).start()
@@ -45,7 +45,7 @@ class Inbox:
                 os._exit(0)  # the server is gone, and nobody waits for the task at work
             if isinstance(message, Cancel):
                 self.cancelled.add(message.number)
-            elif isinstance(message, Task):
+            elif isinstance(message, WorkerTask):
                 self.tasks.put(message)
 
 
@@ -57,7 +57,7 @@ def run(inbox: Inbox, tell: Callable[[Message], None]) -> None:
         inbox.cancelled.discard(task.number)
 
 
-def outcome(task: Task, inbox: Inbox, tell: Callable[[Message], None]) -> Message:
+def outcome(task: WorkerTask, inbox: Inbox, tell: Callable[[Message], None]) -> Message:
     """Perform a task; whatever happens is told."""
     told = [-1.0]
 

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 import petalfoil
 from petalfoil.analysis.accuracy import finer, remark_on, shortfalls, size_of
-from petalfoil.analysis.arguments import Quantity
+from petalfoil.analysis.arguments import NumberWithUnit
 from petalfoil.analysis.error_bars import WithErrorBars
 from petalfoil.analysis.richardson import SAFETY
 from petalfoil.analysis.runs import Single
@@ -20,7 +20,7 @@ from petalfoil.results.record import Record
 from tests.cases import case
 
 FLAT = case("paper_n8", **{"model.cells_per_pitch": 64})
-Number = Annotated[float | None, Quantity(unit="1", help="A number.")]
+Number = Annotated[float | None, NumberWithUnit(unit="1", help="A number.")]
 
 
 def toy(bearing: Case, *, fails_from: int = 4096, factor: float = 50.0) -> Record:

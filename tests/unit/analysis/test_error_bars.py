@@ -24,7 +24,7 @@ from petalfoil.case import Case
 from petalfoil.cli.tables import render
 from petalfoil.equilibrium.run_context import Progress
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.results.layout import Answer, Point, Series
+from petalfoil.results.layout import Answer, Series, SinglePoint
 from petalfoil.results.record import Record
 from tests.cases import FAULTS, case
 
@@ -61,7 +61,7 @@ def toys(case: Case, load: Load = None, *, progress: Progress | None = None) -> 
 
 @pytest.fixture
 def point() -> Iterator[Analysis]:
-    yield analysis(Point(), error_bars=True)(toy)
+    yield analysis(SinglePoint(), error_bars=True)(toy)
     forget("toy")
 
 

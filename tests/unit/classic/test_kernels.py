@@ -8,10 +8,10 @@ from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
 from petalfoil.classic import numpy_kernels
-from petalfoil.classic.columns import Columns
+from petalfoil.classic.columns import ContactColumns
 from petalfoil.classic.descent import PackDescent
 from petalfoil.classic.film_cells import film_cells
-from petalfoil.classic.kernels import DescentSettings, Engine, MarchSettings, kernels
+from petalfoil.classic.kernels import DescentSettings, KernelBackend, MarchSettings, kernels
 from petalfoil.classic.method_options import ClassicOptions
 from tests.unit.classic.bearings import KINDS, bearing
 
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.compiled
 Array = NDArray[np.float64]
 
 
-def stacks(layers: int, count: int = 200) -> tuple[Columns, Array]:
+def stacks(layers: int, count: int = 200) -> tuple[ContactColumns, Array]:
     """Columns of `layers` and fewer over random nodes, and deflections for them."""
     rng = np.random.default_rng(layers)
     heights = rng.integers(1, layers + 1, count)
@@ -29,7 +29,7 @@ def stacks(layers: int, count: int = 200) -> tuple[Columns, Array]:
     between = np.vstack([np.zeros(count), rng.normal(size=(layers - 1, count))])
     shift = np.where(node >= 0, np.cumsum(between, axis=0), np.inf)
     low = rng.normal(size=count) - 1.0
-    return Columns(node, shift, low, low + rng.uniform(0.5, 3.0, count), heights), rng.normal(size=heights.sum())
+    return ContactColumns(node, shift, low, low + rng.uniform(0.5, 3.0, count), heights), rng.normal(size=heights.sum())
 
 
 @pytest.mark.parametrize("layers", [1, 2, 3, 4, 6])
@@ -50,7 +50,7 @@ def test_the_marches_are_equal(kind: str) -> None:
     cells = film_cells(problem.layout.balance, rng.uniform(0.3, 3.0, mesh.shape), problem.bearing_number)
     start = problem.layout.balance.nodal_pressure(rng.uniform(0.7, 2.0, mesh.n_unknown)).ravel()
     ends = []
-    for engine in Engine:
+    for engine in KernelBackend:
         P = start.copy()
         ends.append((P, kernels(engine).march(P, cells, MarchSettings(0.95, 0.1, -1.0, 320))))
     (P_numba, (steps_numba, left_numba)), (P_numpy, (steps_numpy, left_numpy)) = ends
@@ -67,7 +67,7 @@ def test_the_descents_are_equal(kind: str, momentum: bool) -> None:
     pack = PackDescent(problem, ClassicOptions(momentum=momentum))
     load = np.random.default_rng(3).normal(size=problem.layout.n_wall)
     ends = []
-    for engine in Engine:
+    for engine in KernelBackend:
         W = np.zeros(problem.layout.n_wall)
         settings = DescentSettings(pack.step, momentum, -1.0, 400)
         ends.append((W, kernels(engine).descend(W, load, pack.shell, pack.columns, settings)))

@@ -114,7 +114,7 @@ def no_numba(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 def test_without_numba_the_numpy_loops_run() -> None:
     assert inner.kernels() == (numpy_kernels.march, numpy_kernels.descend)
     state = relax(ClassicRun(pack(4), ClassicOptions(epsilon=1.0)))
-    twin = relax(ClassicRun(pack(4), ClassicOptions(epsilon=1.0), inner.Engine.NUMPY))
+    twin = relax(ClassicRun(pack(4), ClassicOptions(epsilon=1.0), inner.KernelBackend.NUMPY))
     assert state.film_steps > 0
     assert state.pack_steps > 0
     assert (state.film_steps, state.pack_steps) == (twin.film_steps, twin.pack_steps)

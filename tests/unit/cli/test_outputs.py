@@ -12,7 +12,7 @@ import pytest
 from petalfoil.cli.outputs import FIGURE_SUFFIXES
 from petalfoil.errors import StoreError
 from petalfoil.plot.canvas import figure_format
-from petalfoil.results.layout import Point
+from petalfoil.results.layout import SinglePoint
 from petalfoil.results.store import load, save
 
 from .conftest import point
@@ -103,7 +103,7 @@ def test_known_suffixes_are_those_the_figures_can_be_written_in() -> None:
 def test_a_foreign_file_brings_no_control_character_to_the_terminal(cli, tmp_path: Path) -> None:
     title, status = "a\x1b]0;owned\x07", "converged; \x1b[2Jgone"
     record = replace(point(0.0, -1e-4, status=status), title=title)
-    save(Point().to_dataset([record], "solve"), tmp_path / "foreign.nc")
+    save(SinglePoint().to_dataset([record], "solve"), tmp_path / "foreign.nc")
     result = cli("show", str(tmp_path / "foreign.nc"))
     assert result.exit_code == 0
     assert "\x1b" not in result.stdout + result.stderr

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
 from petalfoil.physics.contact import Contacts, GapLines
-from petalfoil.physics.contact_points import ContactPoints, cubic_slopes
+from petalfoil.physics.contact_points import IsolatedContacts, cubic_slopes
 
 Array = NDArray[np.float64]
 N = 12
@@ -23,14 +23,14 @@ def contacts(phi: Array, lines: int = 1, stations: int = 1) -> Contacts:
     )
 
 
-def points(phi: Array, gaps: Array, reactions: dict[int, float]) -> ContactPoints:
+def points(phi: Array, gaps: Array, reactions: dict[int, float]) -> IsolatedContacts:
     """The points of one line with these reactions, which alone are closed."""
     lam = np.zeros(len(gaps))
     lam[list(reactions)] = list(reactions.values())
-    return ContactPoints.of(contacts(phi), gaps, lam, lam > 0.0)
+    return IsolatedContacts.of(contacts(phi), gaps, lam, lam > 0.0)
 
 
-def position(found: ContactPoints) -> float:
+def position(found: IsolatedContacts) -> float:
     return float(found.groups[0].position[0])
 
 
@@ -112,5 +112,5 @@ def test_points_of_one_petal_form_contact_lines_along_the_shaft() -> None:
     lam[:, 4] = 1.0
     lam[1, 8] = 1.0
     gaps = np.tile(0.1 * np.minimum((phi - 4.0) ** 2, (phi - 8.0) ** 2), 6)
-    found = ContactPoints.of(contacts(phi, 6, 3), gaps, lam.ravel(), lam.ravel() > 0.0)
+    found = IsolatedContacts.of(contacts(phi, 6, 3), gaps, lam.ravel(), lam.ravel() > 0.0)
     assert found.contact_line.tolist() == [0, 0, 1, 0, 2, 2, 2]

@@ -6,7 +6,7 @@ import math
 
 from petalfoil.report import html, page_tables
 from petalfoil.report.assumptions import REFERENCE, AssumptionResult, PackLoads, ratio
-from petalfoil.report.page_tables import TextTable
+from petalfoil.report.page_tables import PageTable
 
 
 def test_text_is_escaped_and_its_indices_set_low() -> None:
@@ -15,7 +15,7 @@ def test_text_is_escaped_and_its_indices_set_low() -> None:
 
 
 def test_columns_of_numbers_stand_to_the_right() -> None:
-    page = html.table(TextTable(("what", "N"), (("a", "1.5"), ("b", "–"))), marked=[1])
+    page = html.table(PageTable(("what", "N"), (("a", "1.5"), ("b", "–"))), marked=[1])
     assert '<th>what</th><th class="n">N</th>' in page
     assert '<tr><td>a</td><td class="n">1.5</td></tr>' in page
     assert '<tr class="marked"><td>b</td><td class="n">–</td></tr>' in page

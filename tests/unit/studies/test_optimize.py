@@ -17,10 +17,10 @@ from petalfoil.studies.descent import along_gradients
 from petalfoil.studies.goals import Goals, front
 from petalfoil.studies.optimize import optimize
 from petalfoil.studies.plan import Point
-from petalfoil.studies.question import CONVERGED, NOT_CONVERGED, Outcome
+from petalfoil.studies.question import CONVERGED, NOT_CONVERGED, CaseOutcome
 from petalfoil.studies.run import Execution, stored
 from petalfoil.studies.sampling import by_sampling
-from petalfoil.studies.search import Search
+from petalfoil.studies.search import DesignSearch
 from petalfoil.studies.variation import Interval, Levels, Variation
 from tests.cases import case
 
@@ -38,7 +38,7 @@ def _no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("petalfoil.studies.page.write_page", lambda folder, ds: None)
 
 
-def played(points: Sequence[Point]) -> list[Outcome]:
+def played(points: Sequence[Point]) -> list[CaseOutcome]:
     """A design problem with a known optimum: ``x y`` is largest for ``x² + y² < 2`` at (1, 1)."""
     found = []
     for point in points:
@@ -46,7 +46,7 @@ def played(points: Sequence[Point]) -> list[Outcome]:
         results = {"bearing_force": float(x * y), "max_bending_stress": float(x**2 + y**2)}
         failed = x + y > 6.0
         status = NOT_CONVERGED if failed else CONVERGED
-        found.append(Outcome(str(point), dict(point), status, records=[] if failed else [results]))
+        found.append(CaseOutcome(str(point), dict(point), status, records=[] if failed else [results]))
     return found
 
 
@@ -58,8 +58,10 @@ def slopes(point: Point) -> dict[str, dict[str, float]]:
     }
 
 
-def search(budget: int = 200, variations: Sequence[Variation] = (THICKNESS, LENGTH), goals: Goals = GOALS) -> Search:
-    return Search(tuple(variations), goals, played, budget)
+def search(
+    budget: int = 200, variations: Sequence[Variation] = (THICKNESS, LENGTH), goals: Goals = GOALS
+) -> DesignSearch:
+    return DesignSearch(tuple(variations), goals, played, budget)
 
 
 @pytest.mark.parametrize("exact", [True, False])
@@ -85,8 +87,8 @@ def test_a_search_stays_within_its_budget() -> None:
 
 
 def test_a_search_that_has_no_design_with_an_answer_is_an_error() -> None:
-    failing = Search(
-        (THICKNESS, LENGTH), GOALS, lambda points: [Outcome("", dict(p), NOT_CONVERGED, "why") for p in points], 9
+    failing = DesignSearch(
+        (THICKNESS, LENGTH), GOALS, lambda points: [CaseOutcome("", dict(p), NOT_CONVERGED, "why") for p in points], 9
     )
     with pytest.raises(
         ConvergenceError, match="no design that the search could begin from has an answer; the case: why"
@@ -107,14 +109,15 @@ def test_sampling_is_the_same_again_and_keeps_limits(method: str, tmp_path: Path
 
 
 def test_counts_and_lists_are_sampled_as_such() -> None:
-    def counted(points: Sequence[Point]) -> list[Outcome]:
+    def counted(points: Sequence[Point]) -> list[CaseOutcome]:
         forces = [-((point["petals.count"] - 7.0) ** 2) - (point["petals.thickness"] - 2e-4) ** 2 for point in points]
         return [
-            Outcome("", dict(p), CONVERGED, records=[{"bearing_force": f}]) for p, f in zip(points, forces, strict=True)
+            CaseOutcome("", dict(p), CONVERGED, records=[{"bearing_force": f}])
+            for p, f in zip(points, forces, strict=True)
         ]
 
     levels = Levels(parameter_of(PAPER, "petals.thickness"), (1e-4, 2e-4, 3e-4))
-    found = Search((COUNT, levels), Goals.read(["bearing_force"], [], []), counted, 40)
+    found = DesignSearch((COUNT, levels), Goals.read(["bearing_force"], [], []), counted, 40)
     by_sampling(found, "tpe", None, seed=0)
     assert found.ranked()[0].values == {"petals.count": 7, "petals.thickness": 2e-4}
     assert all(isinstance(outcome.values["petals.count"], int) for outcome in found.asked)

@@ -11,7 +11,7 @@ import pytest
 from petalfoil.case import parameter_of
 from petalfoil.errors import UsageError
 from petalfoil.studies.plan import points_at
-from petalfoil.studies.question import CONVERGED, NOT_CONVERGED, Outcome, Question
+from petalfoil.studies.question import CONVERGED, NOT_CONVERGED, CaseOutcome, Question
 from petalfoil.studies.run import Execution
 from petalfoil.studies.sobol import indices, plan_of, sobol_indices, sobol_study
 from petalfoil.studies.variation import Interval
@@ -28,13 +28,13 @@ def _no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("petalfoil.studies.page.write_page", lambda folder, ds: None)
 
 
-def ishigami(points: Sequence[dict[str, float | int]], fail: Sequence[int] = ()) -> list[Outcome]:
+def ishigami(points: Sequence[dict[str, float | int]], fail: Sequence[int] = ()) -> list[CaseOutcome]:
     found = []
     for number, point in enumerate(points):
         x, y, z = (np.pi * (2.0 * float(value) - 1.0) for value in point.values())
         force = float(np.sin(x) + 7.0 * np.sin(y) ** 2 + 0.1 * z**4 * np.sin(x))
         status = NOT_CONVERGED if number in fail else CONVERGED
-        found.append(Outcome("", dict(point), status, records=[{"bearing_force": force}]))
+        found.append(CaseOutcome("", dict(point), status, records=[{"bearing_force": force}]))
     return found
 
 

@@ -19,7 +19,7 @@ from petalfoil.results.store import load
 from petalfoil.studies import store as folders
 from petalfoil.studies.definition import Study
 from petalfoil.studies.engine import InThisProcess
-from petalfoil.studies.question import CONVERGED, INVALID, Outcome, Question, Task, answered
+from petalfoil.studies.question import CONVERGED, INVALID, CaseOutcome, CaseTask, Question, answered
 from petalfoil.studies.run import Execution, resume, stored
 from petalfoil.studies.summary import results
 from petalfoil.studies.sweep import sweep, sweep_study
@@ -95,7 +95,7 @@ class Dying(InThisProcess):
         super().__init__()
         self.after = after
 
-    def outcomes(self, tasks: Iterable[Task]) -> Iterator[Outcome]:
+    def outcomes(self, tasks: Iterable[CaseTask]) -> Iterator[CaseOutcome]:
         for number, outcome in enumerate(super().outcomes(tasks)):
             if number == self.after:
                 raise Killed
@@ -196,8 +196,8 @@ def test_one_key_for_one_case_and_question() -> None:
 def test_the_index_keeps_one_row_a_case(tmp_path: Path) -> None:
     study = sweep_study(PLAIN, {"operation.speed": [3000.0]}, Question("solve"))
     with folders.begun(tmp_path, study) as store:
-        store.add(Outcome("k", {}, CONVERGED, records=[{"bearing_force": 1.0 / 3.0}]))
-        store.add(Outcome("k", {}, CONVERGED, records=[{"bearing_force": 2.0}]))
+        store.add(CaseOutcome("k", {}, CONVERGED, records=[{"bearing_force": 1.0 / 3.0}]))
+        store.add(CaseOutcome("k", {}, CONVERGED, records=[{"bearing_force": 2.0}]))
         kept = store.get("k")
     assert kept is not None
     assert kept.records == [{"bearing_force": 1.0 / 3.0}]

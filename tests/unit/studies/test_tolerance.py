@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from petalfoil.case import Case
 from petalfoil.errors import UnitError, UsageError
 from petalfoil.studies.gradients import derivative_question
-from petalfoil.studies.limits import Limit, unit_of
+from petalfoil.studies.limits import ResultLimit, unit_of
 from petalfoil.studies.plan import unit_sample
-from petalfoil.studies.question import CONVERGED, NOT_CONVERGED, Outcome, Question
+from petalfoil.studies.question import CONVERGED, NOT_CONVERGED, CaseOutcome, Question
 from petalfoil.studies.run import Execution
 from petalfoil.studies.sweep import sweep
 from petalfoil.studies.tolerance import kept, statistics, tolerance
@@ -81,18 +81,18 @@ def test_quantiles_are_those_of_the_sample() -> None:
     assert (told["mean"], told["quantile_50"], told["quantile_95"]) == (2.5, 3.0, math.inf)
 
 
-def outcomes(*values: float | None) -> list[Outcome]:
+def outcomes(*values: float | None) -> list[CaseOutcome]:
     """Cases with these films; None of one without an answer."""
     return [
-        Outcome(str(number), {}, CONVERGED, records=[{"min_film_thickness": value}])
+        CaseOutcome(str(number), {}, CONVERGED, records=[{"min_film_thickness": value}])
         if value is not None
-        else Outcome(str(number), {}, NOT_CONVERGED)
+        else CaseOutcome(str(number), {}, NOT_CONVERGED)
         for number, value in enumerate(values)
     ]
 
 
 def test_the_interval_of_a_probability_is_that_of_clopper_and_pearson() -> None:
-    limit = Limit.read("min_film_thickness > 5 um")
+    limit = ResultLimit.read("min_film_thickness > 5 um")
     found = kept(limit, outcomes(*[6e-6] * 8, 4e-6, None))
     assert found["probability"] == 0.8
     assert (found["low"], found["high"]) == pytest.approx((0.44390, 0.97479), abs=2e-5)  # tables of 8 in 10
@@ -111,14 +111,14 @@ def test_the_interval_of_a_probability_is_that_of_clopper_and_pearson() -> None:
 )
 def test_a_limit_that_cannot_be_is_refused(text: str, words: str) -> None:
     with pytest.raises((UsageError, UnitError)) as refused:
-        Limit.read(text)
+        ResultLimit.read(text)
     assert words in str(refused.value)
 
 
 def test_limits_have_units() -> None:
-    assert Limit.read("liftoff_speed < 15000 rpm").value == pytest.approx(500.0 * math.pi, rel=1e-15)
-    assert Limit.read("contact_fraction <= 5 %").value == pytest.approx(0.05, rel=1e-15)
-    assert Limit.read("friction_torque < 20 mN*m").value == pytest.approx(0.02, rel=1e-15)
+    assert ResultLimit.read("liftoff_speed < 15000 rpm").value == pytest.approx(500.0 * math.pi, rel=1e-15)
+    assert ResultLimit.read("contact_fraction <= 5 %").value == pytest.approx(0.05, rel=1e-15)
+    assert ResultLimit.read("friction_torque < 20 mN*m").value == pytest.approx(0.02, rel=1e-15)
     assert (unit_of("side_leakage"), unit_of("growth_rate"), unit_of("overlap")) == ("kg/s", "1/s", "1")
 
 

@@ -17,7 +17,7 @@ from petalfoil.case import toml as case_toml
 from petalfoil.errors import DefinitionError, UsageError
 from petalfoil.studio.charts import chart_of, film_chart, is_drawn, map_chart, space_chart, unit_of, usual_axes
 from petalfoil.studio.downloads import csv_of
-from petalfoil.studio.protocol import Found, Mapped, Task, Work
+from petalfoil.studio.protocol import Found, Mapped, Work, WorkerTask
 from petalfoil.studio.results_panel import rows_of
 from petalfoil.studio.section_chart import has_section, section_chart
 from petalfoil.studio.study_tasks import MOST_CASES
@@ -26,7 +26,7 @@ from petalfoil.studio.themes import DARK, LIGHT
 from tests.cases import case, tables
 
 
-def task(verb: str = "balance", arguments: dict[str, Any] | None = None, **changes: Any) -> Task:
+def task(verb: str = "balance", arguments: dict[str, Any] | None = None, **changes: Any) -> WorkerTask:
     """A task on a small grid of the paper's eight petals under 15 N."""
     data = tables("paper_n8")
     data["operation"] = {"speed": "8000 rad/s", "load": "15 N"}
@@ -35,7 +35,7 @@ def task(verb: str = "balance", arguments: dict[str, Any] | None = None, **chang
         section, _, key = path.partition(".")
         data[section][key] = value
     text = case_toml.write(data)
-    return Task(number=1, work=Work.ANSWER, verb=verb, case_toml=text, arguments=arguments or {}, **changes)
+    return WorkerTask(number=1, work=Work.ANSWER, verb=verb, case_toml=text, arguments=arguments or {}, **changes)
 
 
 def found(*given: Any, **named: Any) -> Found:
@@ -101,7 +101,7 @@ def test_a_series_is_drawn_over_what_was_varied() -> None:
 
 @pytest.mark.slow
 def test_files_are_made_of_the_records(state: Found) -> None:
-    made = Task(number=2, work=Work.REPORT, verb="balance", case_toml="title = '<script>'", records=state.records)
+    made = WorkerTask(number=2, work=Work.REPORT, verb="balance", case_toml="title = '<script>'", records=state.records)
     page = perform(made, lambda part, text: None)
     assert isinstance(page, bytes)
     assert b"<script>" not in page
@@ -194,7 +194,7 @@ def test_axes_are_in_units_that_a_reader_likes(values: tuple[float, ...], unit: 
 
 def test_a_foil_that_deflects_stands_inside_the_bushing() -> None:
     text = case("bump_foil").to_toml()
-    asked = Task(number=1, work=Work.ANSWER, verb="solve", case_toml=text, coarse=True)
+    asked = WorkerTask(number=1, work=Work.ANSWER, verb="solve", case_toml=text, coarse=True)
     answer = perform(asked, lambda part, text: None)
     assert isinstance(answer, Found)
     shapes = {trace["name"]: trace for trace in section_chart(answer, LIGHT)["data"] if "name" in trace}

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from petalfoil.analysis import known_verbs
 from petalfoil.case import Bearing, Case, Gas, Model, Operation, Petals, Rotor, Surface
 from petalfoil.case.definition import Definition
-from petalfoil.studio.form import Control, Entry, sections, sliders_of, with_labels
+from petalfoil.studio.form import Control, FormEntry, sections, sliders_of, with_labels
 from petalfoil.units import parse_quantity
 
 ENTRIES = {entry.path: entry for section in sections() for entry in section.entries}
@@ -118,7 +118,7 @@ def test_defaults_are_shown_in_units_that_are_read_back() -> None:
 
 
 def test_a_value_without_a_control_of_its_own_is_still_text() -> None:
-    assert Entry(path="a.b_c", control=Control.TEXT, meaning="").label == "b c"
+    assert FormEntry(path="a.b_c", control=Control.TEXT, meaning="").label == "b c"
 
 
 def test_texts_of_the_program_call_arguments_as_their_fields() -> None:

@@ -15,7 +15,7 @@ from petalfoil.studio.charts import optimum_axes, optimum_chart
 from petalfoil.studio.design import Design
 from petalfoil.studio.motion_chart import motion_chart
 from petalfoil.studio.parameter_choice import as_typed, entries
-from petalfoil.studio.protocol import Found, Searched, Task, Work
+from petalfoil.studio.protocol import Found, Searched, Work, WorkerTask
 from petalfoil.studio.study_tasks import MOST_CASES
 from petalfoil.studio.tasks import perform
 from petalfoil.studio.themes import LIGHT
@@ -67,7 +67,9 @@ def test_a_motion_without_pictures_moves_along_its_path() -> None:
 @pytest.mark.slow
 def test_the_section_of_a_motion_is_that_of_its_result() -> None:
     design = COARSE.with_value("rotor", {"mass": "1.5 kg", "unbalance": "1 um"}).with_value("operation.load", None)
-    asked = Task(number=1, work=Work.ANSWER, verb="orbit", case_toml=design.to_toml(), arguments={"revolutions": "2"})
+    asked = WorkerTask(
+        number=1, work=Work.ANSWER, verb="orbit", case_toml=design.to_toml(), arguments={"revolutions": "2"}
+    )
     found = perform(asked, lambda part, text: None)
     assert isinstance(found, Found)
     record = found.records[-1]
@@ -115,7 +117,7 @@ def test_a_design_of_a_study_is_written_as_a_case_has_it() -> None:
 
 def search(vary: dict[str, str], **goals: Any) -> Any:
     given = {"maximize": ["min_film_thickness"], "minimize": [], "subject": [], **goals}
-    asked = Task(number=1, work=Work.OPTIMUM, verb="balance", case_toml=COARSE.to_toml(), vary=vary, goals=given)
+    asked = WorkerTask(number=1, work=Work.OPTIMUM, verb="balance", case_toml=COARSE.to_toml(), vary=vary, goals=given)
     return perform(asked, lambda part, text: None)
 
 
