@@ -45,7 +45,7 @@ AGAIN = 16
 
 
 @dataclass(frozen=True)
-class Known:
+class NeighbourSolution:
     """A solution of another case.
 
     Attributes
@@ -76,7 +76,7 @@ class Memory:
 
     Attributes
     ----------
-    known : list of Known
+    known : list of NeighbourSolution
         The last solutions, the newest last.
     seconds, answers : float, int
         Processor time of the starts from neighbours [s], and how many led to an answer.
@@ -92,7 +92,7 @@ class Memory:
         How many equilibria it has asked for.
     """
 
-    known: list[Known] = field(default_factory=list)
+    known: list[NeighbourSolution] = field(default_factory=list)
     seconds: float = 0.0
     answers: int = 0
     tried: int = 0
@@ -119,7 +119,7 @@ class Memory:
 
     def keep(self, solution: Solution) -> None:
         """Keep a solution for later cases."""
-        self.known = [*self.known, Known(dict(self.place), self.asked, solution)][-MOST:]
+        self.known = [*self.known, NeighbourSolution(dict(self.place), self.asked, solution)][-MOST:]
 
 
 def apart(one: Place, other: Place) -> float:

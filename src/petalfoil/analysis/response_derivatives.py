@@ -24,7 +24,7 @@ from petalfoil.analysis.operating_point import at, operating_point
 from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
 from petalfoil.analysis.sensitivity_table import DAMPING, STIFFNESS
 from petalfoil.analysis.speeds import SpeedLine
-from petalfoil.analysis.threshold import Known, margin, rotor_mass, threshold_speed
+from petalfoil.analysis.threshold import AtOwnSpeed, margin, rotor_mass, threshold_speed
 from petalfoil.case import Case, ModelKind
 from petalfoil.dynamics.critical_mass import Whirl, eigenvalues
 from petalfoil.dynamics.reduced_impedance import factorised
@@ -170,7 +170,7 @@ def threshold_derivatives(case: Case, answer: Solution, mass: float | None, *, a
     """
     rotor = RotorOnBearings(case, rotor_mass(case, None, mass))
     here = rotor.impedance(answer)
-    known = Known(answer, here.motion, rotor.whirl(here, case.operation.speed))
+    known = AtOwnSpeed(answer, here.motion, rotor.whirl(here, case.operation.speed))
     speed, why = threshold_speed(rotor, case.operation.load, known)
     line = None if case.operation.load is None else SpeedLine(case, case.operation.load, known=answer)
 

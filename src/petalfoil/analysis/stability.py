@@ -22,7 +22,7 @@ from petalfoil.analysis.rotor_on_bearings import RotorOnBearings, whole_length
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
 from petalfoil.analysis.speeds import SpeedLine
-from petalfoil.analysis.threshold import Known, rotor_mass, threshold_speed
+from petalfoil.analysis.threshold import AtOwnSpeed, rotor_mass, threshold_speed
 from petalfoil.case import Case
 from petalfoil.dynamics.critical_mass import Whirl
 from petalfoil.dynamics.film_stability import leading_eigenvalue
@@ -191,7 +191,7 @@ def point(case: Case, load: Vector | None, mass: float | None, progress: Progres
         impedance = rotor.impedance(found.answer)
         whirl = rotor.whirl(impedance, speed)
         modes = None if math.isnan(rotor.mass) else rotor.modes(impedance, speed)
-        threshold, ended = threshold_speed(rotor, load, Known(found.answer, impedance.motion, whirl))
+        threshold, ended = threshold_speed(rotor, load, AtOwnSpeed(found.answer, impedance.motion, whirl))
         contacts = ContactModel.of_motion(impedance.motion)
         parts = (
             RotorThreshold(rotor.mass, threshold),

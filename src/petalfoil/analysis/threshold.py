@@ -58,7 +58,7 @@ NEVER = 50.0
 
 
 @dataclass(frozen=True)
-class Known:
+class AtOwnSpeed:
     """What is known at the case's speed: the equilibrium, small motions about it, and its neutral whirl."""
 
     answer: Solution
@@ -66,7 +66,7 @@ class Known:
     whirl: Whirl
 
 
-def threshold_speed(rotor: RotorOnBearings, load: Vector | None, start: Known) -> Threshold:
+def threshold_speed(rotor: RotorOnBearings, load: Vector | None, start: AtOwnSpeed) -> Threshold:
     """Speed at which the rotor becomes unstable, within the range, from what is known at the case's speed.
 
     Upward from a stable bearing, downward from an unstable one. A speed without an equilibrium ends the search.
@@ -119,11 +119,11 @@ JUMP = 0.1
 changes it by some thousandths."""
 
 
-def margins(rotor: RotorOnBearings, load: Vector | None, start: Known) -> Callable[[float], float]:
+def margins(rotor: RotorOnBearings, load: Vector | None, start: AtOwnSpeed) -> Callable[[float], float]:
     """The margin over speed [rad/s], under the load or at the case's position, followed from the case's speed."""
     case = rotor.case
     wanted = None if load is None and case.operation.load is None else applied_load(case, load)
-    balances: Balances
+    balances: EquilibriaOverSpeed
     if wanted is not None:
         balances = SpeedLine(case, wanted, known=start.answer, temperatures=start.answer.problem.temperatures)
     elif case.heat is None and start.answer.friction is None:
@@ -133,7 +133,7 @@ def margins(rotor: RotorOnBearings, load: Vector | None, start: Known) -> Callab
     return FollowedMargin(rotor, wanted, balances, start.motion)
 
 
-class Balances(Protocol):
+class EquilibriaOverSpeed(Protocol):
     """Equilibria over speed."""
 
     seeks: bool
@@ -194,7 +194,7 @@ class FollowedMargin:
         Rotor and bearing.
     load : (x, y) or None
         The load [N]; None at the case's position.
-    balances : Balances
+    balances : EquilibriaOverSpeed
         Equilibria with contacts at nodes, for speeds at which contact points are not followed.
     last : JournalMotion
         Small motions about the last equilibrium.
@@ -202,7 +202,7 @@ class FollowedMargin:
 
     rotor: RotorOnBearings
     load: Vector | None
-    balances: Balances
+    balances: EquilibriaOverSpeed
     last: JournalMotion
 
     def __call__(self, speed: float) -> float:
