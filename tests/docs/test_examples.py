@@ -34,6 +34,7 @@ SMALL = {
     "two_plain_bearings": (64, 16, 20.0, 7.677e-3, 0.002),
     "bump_foil": (64, 32, 50.144, 7.8225e-3, 0.002),
     "single_pad_bump_foil": (64, 32, 537.0, 61.9e-3, 0.1),
+    "measured_bump_foil": (64, 32, 50.0, 5.2748e-3, 0.001),
     "orbit_n8": (32, None, 29.616, 27.634e-3, 0.03),
     "backed_petals": (32, None, 9.50, 27.42e-3, 0.03),
     "unequal_petals": (32, None, 8.15, 27.32e-3, 0.02),
