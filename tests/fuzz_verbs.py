@@ -4,46 +4,79 @@
 
     make fuzz-verbs N=500   # or python -m tests.fuzz_verbs 500 [first] [--verbs orbit static] [--into outcomes.jsonl]
 
-A run that is not done after `SECONDS` of processor time is stopped and counted as slow. Anything else that is not an
-answer or a `PetalfoilError`, a warning of NumPy or SciPy included, is printed with the number of its bearing. Outcomes
-are added to the file line by line, and a run goes on from what its file holds.
+Verbs come one after the other, the cheapest first. A run that is not done after `SECONDS` of processor time, or those
+of `--seconds`, is stopped and counted as slow. Anything else that is not an answer or a `PetalfoilError`, a warning of
+NumPy or SciPy included, is printed with the number of its bearing. Outcomes are added to the file line by line, and a
+run goes on from what its file holds; `--table` prints what it holds and runs nothing.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import signal
+import tempfile
 import time
 import traceback
 import warnings
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
+from typing import NoReturn
 
 import numpy as np
+import xarray as xr
 
 from petalfoil.analysis.known_verbs import find
 from petalfoil.case import Case, Rotor
 from petalfoil.errors import PetalfoilError
+from petalfoil.report.case_report import design_report
+from petalfoil.studies.optimize import optimize
+from petalfoil.studies.question import ERROR
+from petalfoil.studies.run import Execution
+from petalfoil.studies.sweep import sweep
+from petalfoil.studies.tolerance import tolerance
 from tests.random_packs import wide_case
 
 SEED = 13
 SECONDS = 60.0
+POINTS_TAKE = 5.0
+"""Processor time of contacts at points over that of contacts at nodes, at least."""
 Arguments = dict[str, object]
 
 
-class OutOfTimeError(Exception):
-    """The run has had its time."""
+class OutOfTime(BaseException):
+    """The run has had its time. No handler of errors may take it for one."""
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What became of a run: "converged", the name of a typed error, "slow" or "UNTYPED"."""
+
+    number: int
+    verb: str
+    outcome: str
+    text: str = ""
+    seconds: float = 0.0
+    """Processor time."""
 
 
 def drawn(number: int) -> tuple[Case, Arguments]:
-    """A random bearing on a coarse grid, with a rotor; and the arguments of every verb that needs some."""
+    """A random bearing on a coarse grid, with a rotor; and the arguments of every verb that needs some.
+
+    One bearing in sixteen has its contacts at points between nodes, on the coarsest petals that there are. Those take
+    ten times the time of contacts at nodes, which the others have.
+    """
     rng = np.random.default_rng([number, SEED])
-    case = wide_case(rng, **{"model.cells_per_pitch": 16})
+    contacts = {"model.contacts": "nodes"} if number % 16 else {"model.petal_cells": 12}
+    case = wide_case(rng, **{"model.cells_per_pitch": 12, **contacts})
     assert case.pack is not None
     area = case.gas.ambient_pressure * 2.0 * case.bearing.journal_radius * case.bearing.length
-    load = area * 10.0 ** rng.uniform(-4.0, 0.0)
+    load = area * 10.0 ** rng.uniform(-4.0, -1.0)
     span = 2.0 * case.bearing.length if rng.random() < 0.3 else None
     rotor = Rotor(
         mass=max(load / 9.81, 1e-6) * (1.0 if span is None else 2.0),
@@ -54,12 +87,12 @@ def drawn(number: int) -> tuple[Case, Arguments]:
     case = case.replace(rotor=rotor, **{"surface.petal_friction": float(rng.choice([0.0, 0.1]))})
     room = max(case.pack_clearance, 1e-6)
     return case, {
-        "eccentricities": [0.0, 0.4 * room, 0.8 * room],
+        "eccentricities": [0.0, 0.6 * room],
         "load": (0.0, -load),
         "loads": [load],
         "to": 2.0 * case.operation.speed,
-        "points": 4,
-        "revolutions": 0.3,
+        "points": 3,
+        "revolutions": 0.1,
         "levels": 2,
         "mass": rotor.mass,
         "min_film_thickness": 2.0 * case.surface.contact_film_thickness,
@@ -69,49 +102,152 @@ def drawn(number: int) -> tuple[Case, Arguments]:
 GIVEN: dict[str, tuple[str, ...]] = {
     "check": (),
     "solve": (),
-    "converge": ("levels",),
-    "curve": ("eccentricities",),
     "static": ("eccentricities",),
     "balance": ("load",),
+    "curve": ("eccentricities",),
+    "converge": ("levels",),
+    "coefficients": ("load",),
+    "sensitivity": (),
+    "stability": ("load", "mass"),
     "liftoff": ("loads",),
     "runup": ("load", "to", "points"),
-    "coefficients": ("load",),
-    "stability": ("load", "mass"),
     "orbit": ("load", "revolutions"),
     "capacity": ("min_film_thickness",),
-    "sensitivity": (),
 }
-"""Arguments of each verb, of those drawn."""
+"""Arguments of each analysis, of those drawn."""
+
+ALONE = Execution(workers=0)
+"""Studies in this process, whose time is limited."""
 
 
-def ran(number: int, verb: str) -> tuple[str, str]:
-    """What became of a run, and what there is to say about it."""
-    case, arguments = drawn(number)
+def swept(case: Case, arguments: Arguments) -> None:
+    """Two speeds."""
+    speeds = [0.5 * case.operation.speed, case.operation.speed]
+    refuse_mistakes(sweep(case, {"operation.speed": speeds}, execution=ALONE))
+
+
+def scattered(case: Case, arguments: Arguments) -> None:
+    """Two bearings whose petals scatter, under a load."""
+    scatter, load = {"petals.thickness": "± 1 %"}, arguments["load"]
+    refuse_mistakes(tolerance(case, scatter, "balance", samples=2, execution=ALONE, load=load))
+
+
+def optimised(case: Case, arguments: Arguments) -> None:
+    """Three designs under a load."""
+    assert case.petals is not None
+    thin, thick = 0.95 * case.petals.thickness, 1.02 * case.petals.thickness
+    vary, wanted = {"petals.thickness": f"{thin} m : {thick} m"}, "min_film_thickness"
+    load = arguments["load"]
+    refuse_mistakes(optimize(case, vary, "balance", maximize=wanted, budget=3, execution=ALONE, load=load))
+
+
+def reported(case: Case, arguments: Arguments) -> None:
+    """A page for a design review, without error bars."""
+    with tempfile.TemporaryDirectory() as folder:
+        design_report(case, folder, load=arguments["load"], error=False)
+
+
+OF_MANY: dict[str, Callable[[Case, Arguments], None]] = {
+    "sweep": swept,
+    "tolerance": scattered,
+    "optimize": optimised,
+    "report": reported,
+}
+"""Commands that ask analyses many times."""
+
+
+class MistakeError(Exception):
+    """A case of a study ended in an error that nobody gave a type."""
+
+
+def refuse_mistakes(study: xr.Dataset) -> None:
+    """Raise what a study keeps as an internal error of a case.
+
+    Raises
+    ------
+    MistakeError
+        There is one.
+    """
+    for status, reason in zip(np.ravel(study["status"].values), np.ravel(study["reason"].values), strict=True):
+        if status == ERROR:
+            raise MistakeError(reason)
+
+
+def analysed(verb: str, case: Case, arguments: Arguments) -> None:
+    """Ask one analysis."""
     analysis = find(verb)
     assert analysis is not None
+    analysis(case, **{name: arguments[name] for name in GIVEN[verb]})
+
+
+COSTS = (
+    *("check", "balance", "coefficients", "stability", "solve", "sweep", "tolerance", "optimize", "curve", "static"),
+    *("converge", "liftoff", "sensitivity", "orbit", "runup", "report", "capacity"),
+)
+RUNS = {verb: OF_MANY.get(verb, partial(analysed, verb)) for verb in COSTS}
+"""Every verb, the cheapest first."""
+
+
+def ran(number: int, verb: str, seconds: float = SECONDS) -> Ran:
+    """Run one verb on one bearing; contacts at points have longer."""
+    case, arguments = drawn(number)
+    if case.model.contacts == "points":
+        seconds *= POINTS_TAKE
+    begun = time.process_time()
+    outcome, text = "converged", ""
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), limited(seconds):
             warnings.simplefilter("error")
             warnings.filterwarnings("ignore", category=UserWarning)  # remarks on implausible inputs and answers
-            analysis(case, **{name: arguments[name] for name in GIVEN[verb]}, progress=limited())
-    except OutOfTimeError:
-        return "slow", ""
+            RUNS[verb](case, arguments)
+    except OutOfTime:
+        outcome = "slow"
     except PetalfoilError as failure:
-        return type(failure).__name__, str(failure).partition("\n")[0]
+        outcome, text = type(failure).__name__, str(failure).partition("\n")[0]
     except Exception:
-        return "UNTYPED", traceback.format_exc()
-    return "converged", ""
+        outcome, text = "UNTYPED", traceback.format_exc()
+    return Ran(number, verb, outcome, text, round(time.process_time() - begun, 2))
 
 
-def limited() -> Callable[[float, str], None]:
-    """A progress that ends the run when it has had its time."""
-    end = time.process_time() + SECONDS
+@contextmanager
+def limited(seconds: float) -> Iterator[None]:
+    """End what runs within when it has had its processor time."""
 
-    def progress(part: float, text: str) -> None:
-        if time.process_time() > end:
-            raise OutOfTimeError
+    def stop(*_: object) -> NoReturn:
+        raise OutOfTime
 
-    return progress
+    former = signal.signal(signal.SIGPROF, stop)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, former)
+
+
+def table(done: list[Ran]) -> Iterator[str]:
+    """Markdown rows: verb, runs, outcomes, processor time."""
+    yield "| verb | runs | outcomes | processor time of a run |\n|---|---:|---|---:|"
+    for verb in RUNS:
+        of_verb = [one for one in done if one.verb == verb]
+        counts = Counter(one.outcome for one in of_verb)
+        told = ", ".join(f"{n} {kind}" for kind, n in counts.most_common())
+        mean = sum(one.seconds for one in of_verb) / max(len(of_verb), 1)
+        yield f"| {verb} | {len(of_verb)} | {told} | {mean:.2f} s |"
+    for one in done:
+        if one.outcome == "UNTYPED":
+            yield f"bearing {one.number}, {one.verb}: {one.text}"
+
+
+def kept(path: Path) -> list[Ran]:
+    """Outcomes in a file of an earlier run; a line that was not finished is left out."""
+    lines = path.read_text().splitlines(keepends=True) if path.exists() else []
+    return [Ran(**json.loads(one)) for one in lines if one.endswith("\n")]
+
+
+def line(one: Ran) -> str:
+    """One line of such a file."""
+    return json.dumps(asdict(one)) + "\n"
 
 
 def main() -> None:
@@ -119,42 +255,26 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("count", type=int)
     parser.add_argument("first", type=int, nargs="?", default=0)
-    parser.add_argument("--verbs", nargs="+", choices=GIVEN, default=list(GIVEN))
+    parser.add_argument("--verbs", nargs="+", choices=RUNS, default=list(RUNS))
+    parser.add_argument("--seconds", type=float, default=SECONDS)
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--into", type=Path, default=Path("build/fuzz-verbs.jsonl"))
+    parser.add_argument("--table", action="store_true")
     asked = parser.parse_args()
     into: Path = asked.into
     into.parent.mkdir(parents=True, exist_ok=True)
-    wanted = [(number, verb) for number in range(asked.first, asked.first + asked.count) for verb in asked.verbs]
-    outcomes = kept(into)
-    with ProcessPoolExecutor(asked.jobs) as pool, into.open("w") as file:
-        file.writelines(line(run, *outcome) for run, outcome in outcomes.items())
-        runs = {pool.submit(ran, *run): run for run in wanted if run not in outcomes}
-        for done in as_completed(runs):
-            run = runs[done]
-            outcomes[run] = done.result()
-            file.write(line(run, *outcomes[run]))
-            file.flush()
-    print("| analysis | runs | outcomes |\n|---|---|---|")
-    for verb in asked.verbs:
-        counts = Counter(outcomes[run][0] for run in wanted if run[1] == verb)
-        print(f"| {verb} | {asked.count} |", ", ".join(f"{n} {kind}" for kind, n in counts.most_common()), "|")
-    for number, verb in wanted:
-        kind, text = outcomes[number, verb]
-        if kind == "UNTYPED":
-            print(f"bearing {number}, {verb}: {text}")
-
-
-def kept(path: Path) -> dict[tuple[int, str], tuple[str, str]]:
-    """Outcomes in a file of an earlier run by number and verb; a line that was not finished is left out."""
-    lines = path.read_text().splitlines(keepends=True) if path.exists() else []
-    read = [json.loads(one) for one in lines if one.endswith("\n")]
-    return {(one["number"], one["verb"]): (one["outcome"], one["text"]) for one in read}
-
-
-def line(run: tuple[int, str], outcome: str, text: str) -> str:
-    """One line of such a file."""
-    return json.dumps({"number": run[0], "verb": run[1], "outcome": outcome, "text": text}) + "\n"
+    done = kept(into)
+    if not asked.table:
+        known = {(one.number, one.verb) for one in done}
+        numbers = range(asked.first, asked.first + asked.count)
+        wanted = [(number, verb) for verb in asked.verbs for number in numbers if (number, verb) not in known]
+        with ProcessPoolExecutor(asked.jobs) as pool, into.open("w") as file:
+            file.writelines(line(one) for one in done)
+            for run in as_completed(pool.submit(ran, *which, asked.seconds) for which in wanted):
+                done.append(run.result())
+                file.write(line(done[-1]))
+                file.flush()
+    print("\n".join(table(done)))
 
 
 if __name__ == "__main__":

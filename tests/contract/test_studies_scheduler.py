@@ -7,7 +7,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -17,6 +17,7 @@ from petalfoil.cli.app import app
 from petalfoil.errors import UsageError
 from petalfoil.results.store import load
 from petalfoil.studies import engine
+from petalfoil.studies.question import CaseTask, Question
 from petalfoil.studies.run import Execution
 from petalfoil.studies.sweep import sweep
 from tests.cases import EXAMPLES, case
@@ -91,3 +92,56 @@ def test_a_scheduler_that_is_not_there_is_refused(
         sweep(PLAIN, VARY, out=tmp_path / "study", execution=Execution(scheduler=address.format(free=free)))
     assert not (tmp_path / "study").exists()
     assert dask.config.get("scheduler", None) is None, "what is written afterwards would look for it"
+
+
+def raising(error: Exception) -> Callable[..., None]:
+    """What raises whatever it is called with."""
+
+    def call(*_: object, **__: object) -> None:
+        raise error
+
+    return call
+
+
+def test_an_event_loop_that_does_not_start_is_told_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`distributed` asserts that its event loop is there within ten seconds."""
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(distributed, "Client", raising(AssertionError()))
+    with pytest.raises(UsageError, match=r"no scheduler at udp://127\.0\.0\.1:1: its event loop did not start in time"):
+        sweep(PLAIN, VARY, execution=Execution(scheduler="udp://127.0.0.1:1"))
+
+
+@pytest.mark.parametrize(
+    ("error", "text"),
+    [
+        (AssertionError(), "its event loop did not start in time, because this machine is busy; try again"),
+        (RuntimeError("Nanny failed to start."), "Nanny failed to start"),
+        (OSError(24, "Too many open files"), "Too many open files"),
+        (TimeoutError(), "TimeoutError"),
+    ],
+)
+def test_workers_that_do_not_start_are_told_in_words(
+    error: Exception, text: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(distributed, "LocalCluster", raising(error))
+    with pytest.raises(UsageError, match="2 workers did not start on this machine: ") as refusal:
+        sweep(PLAIN, VARY, execution=Execution(workers=2))
+    assert f"{text}. Ask fewer of them with --workers, or --workers 0" in str(refusal.value)
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_goes_away_is_told_in_words() -> None:
+    distributed = pytest.importorskip("distributed")
+    base, question = PLAIN.to_toml(), Question.read("solve", {})
+    tasks = [CaseTask(f"{k}", base, {"operation.speed": 3000.0 + k}, question) for k in range(20)]
+    inside = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+    with (
+        distributed.LocalCluster(**inside, silence_logs=50) as cluster,
+        distributed.Client(cluster.scheduler_address, timeout=10, set_as_default=False) as client,
+    ):
+        outcomes = engine.OnCluster(client, 1).outcomes(tasks)
+        assert next(outcomes).converged
+        cluster.close()
+        with pytest.raises(UsageError, match=r"connection to the workers was lost: .*`petalfoil study resume`"):
+            list(outcomes)

@@ -18,6 +18,7 @@ from petalfoil.case import Case, ModelKind
 from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import ConvergenceError
 from petalfoil.results.estimate import Estimate
+from petalfoil.results.places import MIN_FILM_PLACE, PEAK_PRESSURE_PLACE, films_at_peak
 from petalfoil.results.record import Record
 from petalfoil.results.schema import SCALARS, DataType, Role
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
@@ -53,8 +54,8 @@ BALANCED = {
 }
 """Forces and moments that a balance is given, by the result that tells it."""
 
-PLACES = ("min_film_thickness_angle", "min_film_thickness_z")
-"""Where the film is thinnest: no single place where contact holds it at its least thickness along a stretch."""
+FILM_RESULTS = ("min_film_thickness", "knudsen_number")
+"""Results that are constants of the case where contact holds the film."""
 
 ANGLES = {name for name, variable in SCALARS.items() if variable.units == "rad"}
 
@@ -141,10 +142,13 @@ def table(records: Sequence[Record]) -> list[Estimate]:
         raise ConvergenceError(f"a grid study needs answers on two grids at least ({states})", advice=advice)
     first, good = records[answered.index(True)], [record for record in records if record.converged]
     in_contact = any(float(record.scalars.get("contact_fraction", 0.0)) > 0.0 for record in good)
-    results = [name for name in SCALARS if _is_result(name, first) and not (in_contact and name in PLACES)]
+    results = [name for name in SCALARS if _is_result(name, first) and not (in_contact and name in MIN_FILM_PLACE)]
     names = [name for name in results if all(_known(name, record) for record in good) and not _is_held(name, good)]
     scale = resolution(first)
-    return [_estimate(name, records, scale.get(SCALARS[name].units, 0.0)) for name in names]
+    estimates = [_estimate(name, records, scale.get(SCALARS[name].units, 0.0)) for name in names]
+    peak = next((estimate.error for estimate in estimates if estimate.name == "peak_pressure"), 0.0)
+    several = any(films_at_peak(record, peak) > 1 for record in good)
+    return [estimate for estimate in estimates if not (several and estimate.name == PEAK_PRESSURE_PLACE)]
 
 
 def error_bars(own: Record, point: Point, progress: Progress | None = None) -> dict[str, float]:
@@ -262,9 +266,10 @@ def _is_result(name: str, record: Record) -> bool:
 
 
 def _is_held(name: str, records: Sequence[Record]) -> bool:
-    """Whether the minimum film thickness is that of contact on every grid: a constant of the case."""
-    pairs = [(record.scalars.get(name), record.scalars.get("contact_film_thickness")) for record in records]
-    return name == "min_film_thickness" and all(found == held for found, held in pairs)
+    """Whether a result of the film is a constant of the case: on every grid contact holds it."""
+    scalars = [record.scalars for record in records]
+    held = all(one.get("min_film_thickness") == one.get("contact_film_thickness") for one in scalars)
+    return name in FILM_RESULTS and held and len({one.get(name) for one in scalars}) == 1
 
 
 def _known(name: str, record: Record) -> bool:

@@ -6,6 +6,7 @@ In the order data flows:
 - ``record``   one answer as plain arrays (no xarray), checked against the schema
 - ``parts``    typed parts that a record is put together from
 - ``estimate`` what a sequence of grids tells about a result: limit, order, error bar
+- ``places``   where film and pressure have their extremes: one place, or several alike
 - ``summary``  a record as the object of ``--json`` and as the rows of the printed table
 - ``layout``   what an analysis returns: a point, a series; the answer in its layout, as JSON and as labelled data
 - ``grid``     the same over load and speed

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.results.places import label_of_several
 from petalfoil.results.record import Record, Scalar
 from petalfoil.results.schema import SCALARS, DataType, TableLabel
 
@@ -143,13 +144,6 @@ _SHOWN: dict[str, TableLabel] = {
 }
 
 
-_IN_CONTACT = {
-    "min_film_thickness_angle": "  along contact, such as at",
-    "min_film_thickness_z": "  and at z",
-}
-"""Labels of the place of the minimum film thickness where contact holds the film at it."""
-
-
 def as_json(record: Record) -> dict[str, float | int | bool | str | None]:
     """Scalars as the object that ``--json`` prints.
 
@@ -181,26 +175,28 @@ def rows(record: Record) -> list[TableRow]:
         Label, value and unit.
     """
     reported = without_rounding(record)
-    return [row(name, reported) for name in in_order(reported)]
+    return [row(name, reported, record) for name in in_order(reported)]
 
 
-def row(name: str, reported: Mapping[str, Scalar]) -> TableRow:
-    """Line of one scalar of a record; where the journal is in contact, the minimum film thickness has many places.
+def row(name: str, reported: Mapping[str, Scalar], record: Record) -> TableRow:
+    """Line of one scalar of a record; a place that is one of several alike is said to be that.
 
     Parameters
     ----------
     name : str
         Name in the schema.
     reported : mapping
-        Scalars of the record, SI.
+        Scalars of the record as tables show them, SI.
+    record : Record
+        The record itself.
 
     Returns
     -------
     TableRow
         Label, value and unit.
     """
-    line, touching = cell(name, reported[name]), float(reported.get("contact_fraction", 0.0)) > 0.0
-    return line._replace(label=_IN_CONTACT[name]) if touching and name in _IN_CONTACT else line
+    line = cell(name, reported[name])
+    return line._replace(label=label_of_several(name, record) or line.label)
 
 
 def without_rounding(record: Record) -> dict[str, Scalar]:

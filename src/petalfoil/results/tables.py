@@ -81,9 +81,9 @@ def _with_bars(record: Record) -> Iterator[tuple[str, ...]]:
         yield from rows(record)
         return
     for name in in_order(reported):
-        line, bar = row(name, reported), ""
+        line, bar = row(name, reported, record), ""
         is_rounding = reported[name] == 0.0 != record.scalars[name]
-        if name in errors and not is_rounding:
+        if errors.get(name) and not is_rounding:  # 0 on every grid, such as the force of no contact, needs no bar
             (value,), bar = with_bar(name, [float(reported[name])], errors[name])
             line = line._replace(value=value)
         yield line.label, line.value, bar and f"± {bar}", line.unit
@@ -117,9 +117,10 @@ def _series(layout: Series, records: Sequence[Record]) -> TextTable:
 
 def _with_bar(name: str, value: Scalar, record: Record) -> str:
     """A result of a point, and its error bar where it has one."""
-    if name not in (record.errors or {}):
+    error = (record.errors or {}).get(name)
+    if not error:
         return cell(name, value).value
-    (shown,), bar = with_bar(name, [float(value)], (record.errors or {})[name])
+    (shown,), bar = with_bar(name, [float(value)], error)
     return f"{shown} ± {bar}"
 
 

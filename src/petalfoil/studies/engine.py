@@ -9,7 +9,8 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Iterable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from concurrent.futures import CancelledError
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass, field
 from importlib import metadata
 from itertools import islice
@@ -36,6 +37,9 @@ MESSAGES = 100
 """Messages that each process remembers for whoever looks for a mistake; they hold tasks and outcomes."""
 RETIRE_AT = 0.95
 """Part of its memory at which a worker is ended and begun anew, as `distributed` has it by default."""
+NOT_STARTED = (OSError, ValueError, RuntimeError, TimeoutError, AssertionError)
+"""What `distributed` raises where it does not start: addresses, ports, processes; and where its event loop is not there
+within its ten seconds, an assertion."""
 EXTRA = "studies on several workers need the package dask: pip install 'petalfoil[studies]', or use --workers 0"
 
 
@@ -100,31 +104,44 @@ class OnCluster:
     effort: ProcessorTime = field(default_factory=ProcessorTime)
 
     def outcomes(self, tasks: Iterable[CaseTask]) -> Iterator[CaseOutcome]:
-        """Answer tasks; outcomes come as they are ready."""
+        """Answer tasks; outcomes come as they are ready.
+
+        Raises
+        ------
+        UsageError
+            The scheduler is gone.
+        """
+        try:
+            yield from self._answered(iter(tasks))
+        except (OSError, TimeoutError, CancelledError) as error:
+            raise UsageError(
+                f"the connection to the workers was lost: {told(error)}. Cases that are answered are kept in the "
+                "folder of the study, which goes on with `petalfoil study resume`"
+            ) from error
+
+    def _answered(self, waiting: Iterator[CaseTask]) -> Iterator[CaseOutcome]:
         from distributed import as_completed
 
-        waiting, running = iter(tasks), {}
+        running: dict[str, CaseTask] = {}
         first = list(islice(waiting, AHEAD * self.workers))
         for verb in {task.question.verb for task in first}:
             self.client.run(_load, verb)
         completed = as_completed(loop=self.client.loop)
         before, own = self._times(), time.process_time()
-        try:
-            for task in first:
+        for task in first:
+            running[name_of(task)] = task
+            completed.add(self._submit(task))
+        while running:
+            future = next(completed)
+            outcome = _outcome(future, running.pop(future.key))
+            future.release()
+            for task in islice(waiting, 1):
                 running[name_of(task)] = task
                 completed.add(self._submit(task))
-            while running:
-                future = next(completed)
-                outcome = _outcome(future, running.pop(future.key))
-                future.release()
-                for task in islice(waiting, 1):
-                    running[name_of(task)] = task
-                    completed.add(self._submit(task))
-                self.effort.solver += outcome.seconds
-                yield outcome
-        finally:
-            self.effort.driver += time.process_time() - own
-            self.effort.workers += sum(now - before.get(pid, 0.0) for pid, now in self._times().items())
+            self.effort.solver += outcome.seconds
+            yield outcome
+        self.effort.driver += time.process_time() - own
+        self.effort.workers += sum(now - before.get(pid, 0.0) for pid, now in self._times().items())
 
     def _submit(self, task: CaseTask) -> Any:
         return self.client.submit(answered, task, key=name_of(task), pure=False)
@@ -142,6 +159,13 @@ def name_of(task: CaseTask) -> str:
 def _load(verb: str) -> None:
     """Import an analysis, so that the first case does not wait for it."""
     analysis_of(verb)
+
+
+def told(error: BaseException) -> str:
+    """A failure of `distributed` in words."""
+    if isinstance(error, AssertionError):
+        return "its event loop did not start in time, because this machine is busy; try again"
+    return str(error).partition("\n")[0].rstrip(".") or type(error).__name__
 
 
 def _process_time() -> tuple[int, float]:
@@ -214,22 +238,25 @@ def _local(workers: int, memory: float | None) -> Iterator[Engine]:
         "distributed.admin.tick.interval": LOOK,  # 50 times a second by default, in every process
         "distributed.worker.memory.monitor-interval": LOOK,
     }
-    limit = "auto" if memory is None else int(memory)
-    with (
-        dask.config.set(settings),
-        LocalCluster(
-            n_workers=workers,
-            threads_per_worker=1,
-            host="127.0.0.1",
-            protocol="tls",
-            security=True,
-            dashboard_address="127.0.0.1:0",
-            memory_limit=limit,
-            silence_logs=50,
-        ) as cluster,
-        Client(cluster, set_as_default=False) as client,
-    ):
-        client.wait_for_workers(workers, timeout=START)
+    with dask.config.set(settings), ExitStack() as stack:
+        try:
+            cluster = LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                host="127.0.0.1",
+                protocol="tls",
+                security=True,
+                dashboard_address="127.0.0.1:0",
+                memory_limit="auto" if memory is None else int(memory),
+                silence_logs=50,
+            )
+            client = stack.enter_context(Client(stack.enter_context(cluster), set_as_default=False))
+            client.wait_for_workers(workers, timeout=START)
+        except NOT_STARTED as error:
+            raise UsageError(
+                f"{workers} workers did not start on this machine: {told(error)}. Ask fewer of them with --workers, or "
+                "--workers 0 for this process alone; cases that are answered are kept"
+            ) from error
         yield OnCluster(client, workers)
 
 
@@ -240,8 +267,8 @@ def _remote(address: str) -> Iterator[Engine]:
     try:
         # As default it would stay what every file is written through, even where there is no scheduler.
         client = Client(address, timeout=PATIENCE, set_as_default=False)
-    except (OSError, ValueError, TimeoutError) as error:
-        raise UsageError(f"--scheduler: there is no scheduler at {address}: {error}") from error
+    except NOT_STARTED as error:
+        raise UsageError(f"--scheduler: there is no scheduler at {address}: {told(error)}") from error
     with client:
         threads = sum(client.nthreads().values())
         if not threads:

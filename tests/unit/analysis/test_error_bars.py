@@ -195,7 +195,7 @@ def test_a_film_that_is_held_at_contact_has_no_error_bar() -> None:
     record = solve.record(touching.replace(**{"operation.eccentricity": (0.0, 0.0)}), error=True)
     assert record.scalars["min_film_thickness"] == touching.surface.contact_film_thickness
     assert record.errors is not None
-    assert "min_film_thickness" not in record.errors
+    assert not {"min_film_thickness", "knudsen_number"} & {*record.errors}
     assert record.errors["contact_fraction"] > 0.0
 
 

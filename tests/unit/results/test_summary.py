@@ -1,5 +1,6 @@
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -48,11 +49,21 @@ def test_rows_are_in_the_units_an_engineer_reads() -> None:
 
 
 def test_a_film_that_contact_holds_is_thinnest_along_it() -> None:
-    free = {**factory.solved().scalars, "contact_fraction": 0.0}
-    labels = [
-        [summary.row("min_film_thickness_angle", {**free, "contact_fraction": held}).label] for held in (0.0, 0.1)
-    ]
-    assert labels == [["  at angle"], ["  along contact, such as at"]]
+    record = factory.solved()
+    points = [replace(record, scalars={**record.scalars, "contact_fraction": held}) for held in (0.0, 0.1)]
+    labels = [summary.row("min_film_thickness_angle", point.scalars, point).label for point in points]
+    assert labels == ["  at angle", "  along contact, such as at"]
+
+
+def test_a_peak_that_several_petals_share_is_said_to_be_one_of_them() -> None:
+    """Peaks differ by 2 kPa: more than rounding, less than an error bar of 3 kPa."""
+    record = factory.solved()
+    pressure = np.asarray(record.fields["pressure"]).copy()
+    pressure[0, 3], pressure[1, 4] = 3e5, 3e5 - 2e3
+    apart = replace(record, fields={**record.fields, "pressure": pressure})
+    barred = replace(apart, errors={"peak_pressure": 3e3})
+    labels = [summary.row("peak_pressure_angle", point.scalars, point).label for point in (apart, barred)]
+    assert labels == ["  at angle", "  equal under 2 petals, such as at"]
 
 
 def test_rows_show_a_dash_for_a_missing_figure() -> None:
