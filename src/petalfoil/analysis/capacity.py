@@ -32,6 +32,7 @@ from petalfoil.results.layout import ArrayTable, Series, SinglePoint, at_speed
 from petalfoil.results.parts import RunOutcome
 from petalfoil.results.record import Array, Record
 from petalfoil.results.schema import DataType, Role, TableLabel, Variable
+from petalfoil.solvers.near_factor import FactorAtHand
 from petalfoil.walls import wall_kind
 
 DOWN = -math.pi / 2.0
@@ -182,12 +183,15 @@ class CapacitySearch:
     loads : dict
         By direction, the last two speeds [rad/s] and capacities [N], and by how much the capacity grows with the speed
         there, logarithm over logarithm.
+    hand : FactorAtHand
+        The last factor of a search for a limit.
     """
 
     case: Case
     asked: CapacityRequest
     known: dict[float, Solution] = field(default_factory=dict)
     loads: dict[float, list[tuple[float, float, float]]] = field(default_factory=dict)
+    hand: FactorAtHand = field(default_factory=FactorAtHand)
 
     def at(self, speed: float) -> list[Capacity]:
         """The capacity in each direction at a speed [rad/s]."""
@@ -196,7 +200,14 @@ class CapacitySearch:
         for angle in map(float, self.asked.directions):
             start = (self.guess(angle, speed), self.known[angle]) if angle in self.known else beside
             direction = (round(math.cos(angle), 15), round(math.sin(angle), 15))
-            ray = LoadRay(here, direction, self.asked.limits, None if start is None else start[1], points_alone=True)
+            ray = LoadRay(
+                here,
+                direction,
+                self.asked.limits,
+                None if start is None else start[1],
+                points_alone=True,
+                hand=self.hand,
+            )
             capacity = largest_load(ray, FIRST * ray.unit if start is None else start[0])
             if capacity.at is not None:
                 beside = capacity.at.size, capacity.at.found.answer

@@ -16,7 +16,7 @@ from petalfoil.analysis.heat_results import with_heat
 from petalfoil.analysis.other_bearing import bearing_of
 from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.case import Case
-from petalfoil.equilibrium.at_limit import LoadLimit, at_limit, loaded_state
+from petalfoil.equilibrium.at_limit import LoadLimit, followed_to
 from petalfoil.equilibrium.element_contacts import clear_of_journal
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError
 from petalfoil.equilibrium.nodal_state import sampled_solution
@@ -26,6 +26,7 @@ from petalfoil.equilibrium.small_motion import ElementEquilibrium
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold, from_neighbour, reloaded
 from petalfoil.errors import ConvergenceError
+from petalfoil.solvers.near_factor import FactorAtHand
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.loaded import load_of
@@ -115,6 +116,8 @@ class LoadRay:
         A balance to begin from, at any speed and under any load.
     points_alone : bool
         Whether contact points may be followed without an equilibrium with contacts at nodes beside them.
+    hand : FactorAtHand
+        The last factor of a search for a limit.
     """
 
     case: Case
@@ -122,6 +125,7 @@ class LoadRay:
     limits: Limits
     known: Solution | None = None
     points_alone: bool = False
+    hand: FactorAtHand = field(default_factory=FactorAtHand)
     base: CoupledProblem = field(init=False)
 
     def __post_init__(self) -> None:
@@ -185,13 +189,13 @@ class LoadRay:
             return None
         if known.elements is None:
             return None
-        start = loaded_state(known.elements, self.base, float(np.linalg.norm(known.load) / np.linalg.norm(unit)))
 
         def distance(found: ElementEquilibrium, size: float) -> float:
             return self._judged(size, sampled_solution(found, size * unit)).margin
 
+        size = float(np.linalg.norm(known.load) / np.linalg.norm(unit))
         try:
-            found = at_limit(start, LoadLimit(unit, distance))
+            found = followed_to(self.base, known.elements, size, LoadLimit(unit, distance), self.hand)
             self.known = sampled_solution(clear_of_journal(found.positioned), found.size * unit)
         except NoPointsError as failure:
             current_run().note("limit", outcome=str(failure))

@@ -5,8 +5,10 @@ limit, and `J`, `F`, `F_e`, `R`, `R_e` those of (C10),
 
     J dX + F_e de = -F ,   R dX + R_e de + d dW = -(force + W d) ,   q_X dX + q_e de = -q               (C13)
 
-One factorisation of `J` serves all three. It serves on for as long as its steps halve the error, and contacts are
-looked at whenever it is renewed: what has closed by more than the error gains a contact at once.
+One inverse of `J` serves all three. It serves on for as long as its steps halve the error, and contacts are looked at
+whenever it is renewed: what has closed by more than the error gains a contact at once. A renewed inverse is the factor
+at hand, that of another speed too, improved by GMRES with all contacts as its border (`solvers/near_factor.py`): other
+contacts ask for no factorisation. Only where that factor is too far away, `J` is factorised.
 """
 
 from __future__ import annotations
@@ -27,7 +29,9 @@ from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError,
 from petalfoil.equilibrium.point_contacts import FARTHEST_STATE, PointContacts, admitted, changed
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import ElementEquilibrium
+from petalfoil.solvers.near_factor import FactorAtHand, Inverse, NotNearError
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
+from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.system.asperity_equations import AsperityEquations
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.point_equations import PointEquations
@@ -40,9 +44,12 @@ ElementEquations: TypeAlias = PointEquations | AsperityEquations
 REACHED = 1e-6
 """Relative distance from a limit at which it counts as reached."""
 
-TANGENTS = 12
-"""Most factorisations of one search: two or three between speeds 3 % apart, eight where a petal comes to lie on another
-one between speeds a tenth apart."""
+TANGENTS = 16
+"""Most tangents of one search: three or four between speeds 3 % apart, twelve where a petal comes to lie on another one
+between them."""
+
+LEAST_PART = 0.125
+"""Least part of the way between two speeds that is taken at once: what is lost over an eighth of it jumps."""
 
 STEPS = 60
 """Most steps of one search; those with a factor at hand cost a tenth of a factorisation."""
@@ -105,6 +112,9 @@ class LoadedPoints:
 
     equations: PointEquations
     size: float
+    splitting: bool = True
+    """Whether a point with gaps below zero beside it splits in two: not after points have met again. Then these gaps
+    gain points of their own, as where a petal lies on another one so lightly that nothing holds the two apart."""
 
     @property
     def positioned(self) -> PointContacts:
@@ -116,7 +126,10 @@ class LoadedPoints:
         equations, (dX, move) = self.equations, change
         problem = equations.problem.at(displacement=equations.problem.displacement + length * move)
         state = changed(equations, length * dX, FARTHEST_TRAVEL)
-        return LoadedPoints(replace(equations, problem=problem, state=state), self.size * (1.0 + length * more))
+        size, splitting = self.size * (1.0 + length * more), self.splitting
+        if len(state.points.curve) < len(equations.state.points.curve):
+            splitting = False
+        return LoadedPoints(replace(equations, problem=problem, state=state), size, splitting)
 
     def admitted(self, change: Change) -> float:
         """The part of a change that is taken."""
@@ -124,10 +137,11 @@ class LoadedPoints:
 
     def revised(self, error: float = 0.0) -> LoadedPoints | None:
         """With other contacts."""
-        points = revised(self.equations, error, one_by_one=True)
+        points = revised(self.equations, error, one_by_one=True, splitting=self.splitting)
         if points is None:
             return None
-        return replace(self, equations=replace(self.equations, state=replace(self.equations.state, points=points)))
+        equations = replace(self.equations, state=replace(self.equations.state, points=points))
+        return replace(self, equations=equations)
 
 
 @dataclass(frozen=True)
@@ -195,9 +209,9 @@ class LoadLimit:
         force = scaled_force(at.equations, at.size * self.direction)
         return max(largest(at.equations), float(np.max(np.abs(force))))
 
-    def along(self, at: LoadedState, change: Change) -> float:
-        """Derivative of the distance along a change of unknowns and position."""
-        return (self.of(at.moved(change, length=PROBE)) - self.of(at)) / PROBE
+    def along(self, at: LoadedState, distance: float, change: Change) -> float:
+        """Derivative of the distance, which is known at the state, along a change of unknowns and position."""
+        return (self.of(at.moved(change, length=PROBE)) - distance) / PROBE
 
 
 @dataclass(frozen=True)
@@ -219,34 +233,53 @@ class LimitTangent:
     slope: float
 
     @classmethod
-    def at(cls, at: LoadedState, limit: LoadLimit) -> LimitTangent:
-        """Factorise at a state.
+    def at(cls, at: LoadedState, distance: float, limit: LoadLimit, hand: FactorAtHand) -> LimitTangent:
+        """The tangent at a state, whose distance from the limit is known.
+
+        It is found by the factor at hand if that is near enough, else by one of its own.
 
         Raises
         ------
         NoPointsError
-            A larger load does not lead nearer to the limit.
+            A larger load does not lead nearer to the limit, or the contacts do not determine the petals.
         """
+        solver, matrix, layout = current_run().film_solver, at.equations.steady, at.equations.problem.layout
+        common = len(at.equations.deflection) + len(at.equations.pressures)
+        if near := hand.near(matrix, common, layout, solver):
+            try:
+                return cls.by(at, distance, limit, near)
+            except NotNearError:
+                pass
+        try:
+            factor = solver.factor(matrix)
+        except SingularMatrixError:
+            raise NoPointsError("the contacts do not determine the petals") from None
+        hand.keep(factor, layout)
+        return cls.by(at, distance, limit, factor)
+
+    @classmethod
+    def by(cls, at: LoadedState, distance: float, limit: LoadLimit, factor: Inverse) -> LimitTangent:
+        """The tangent at a state, whose `J` is ready to solve with."""
         load = at.size * limit.direction
-        tangent = ElementTangent.at(at.equations, load, current_run().film_solver)
+        tangent = ElementTangent.of(at.equations, load, factor)
         move = np.asarray(np.linalg.solve(tangent.gradient, -load), dtype=np.float64)
         by_load = tangent.units @ move, move
-        slope = limit.along(at, by_load)
+        slope = limit.along(at, distance, by_load)
         if not slope < 0.0:
             raise NoPointsError("more load does not lead nearer to the limit")
         return cls(tangent, by_load, slope)
 
-    def stepped(self, at: LoadedState, limit: LoadLimit) -> LoadedState:
+    def stepped(self, at: LoadedState, distance: float, limit: LoadLimit) -> LoadedState:
         """The state after a step, shortened where film or pressures would vanish or the journal goes too far."""
         tangent, (dX, move) = self.tangent, self.by_load
         own = tangent.correction(at.equations.newton_residual, unbalanced(at.equations, at.size * limit.direction))
-        more = -(limit.of(at) + limit.along(at, own)) / self.slope
+        more = -(distance + limit.along(at, distance, own)) / self.slope
         more = min(max(more, -MOST_LOAD), MOST_LOAD)
         change = own[0] + more * dX, own[1] + more * move
         return at.moved(change, more, at.admitted(change))
 
 
-def at_limit(start: LoadedState, limit: LoadLimit) -> LoadedState:
+def at_limit(start: LoadedState, limit: LoadLimit, hand: FactorAtHand) -> LoadedState:
     """The state and the size of the load at the limit, followed from a neighbour.
 
     Raises
@@ -257,21 +290,54 @@ def at_limit(start: LoadedState, limit: LoadLimit) -> LoadedState:
     at, errors, left = start, [math.inf, math.inf], TANGENTS
     tangent: LimitTangent | None = None
     for _ in range(STEPS):
-        residual, distance = limit.residual(at), abs(limit.of(at))
-        error = max(residual, distance)
+        residual, distance = limit.residual(at), limit.of(at)
+        error = max(residual, abs(distance))
         if tangent is not None and residual <= SETTLED:
             other = at.revised()
-            if other is None and residual <= RESIDUAL_TOLERANCE and distance <= REACHED:
-                current_run().note("limit", residual=largest(at.equations), factorizations=TANGENTS - left)
+            if other is None and residual <= RESIDUAL_TOLERANCE and abs(distance) <= REACHED:
+                current_run().note("limit", residual=largest(at.equations), tangents=TANGENTS - left)
                 return at
             at, tangent = (at, tangent) if other is None else (other, None)
         if tangent is None or tangent.tangent.n != at.equations.n or slow(error, errors):
             at = at if tangent is None else at.revised(CERTAIN * residual) or at
             if left == 0 or limit.residual(at) > FARTHEST_STATE:
                 break
-            tangent, left, errors = LimitTangent.at(at, limit), left - 1, [math.inf, math.inf]
-        at, errors = tangent.stepped(at, limit), [errors[1], error]
-    raise NoPointsError(f"the limit was not reached with {TANGENTS - left} factorisations")
+            tangent, left, errors = LimitTangent.at(at, distance, limit, hand), left - 1, [math.inf, math.inf]
+        try:
+            at, errors = tangent.stepped(at, distance, limit), [errors[1], error]
+        except NotNearError:
+            hand.drop()
+            tangent = None
+    raise NoPointsError(f"the limit was not reached with {TANGENTS - left} tangents")
+
+
+def followed_to(
+    problem: CoupledProblem, near: ElementEquilibrium, size: float, limit: LoadLimit, hand: FactorAtHand
+) -> LoadedState:
+    """The state at the limit under the equations of `problem`, from that `near` under a load of some `size`.
+
+    Where it is lost between two speeds, those between follow one after the other.
+
+    Raises
+    ------
+    NoPointsError
+        It was lost between speeds `LEAST_PART` of the way apart.
+    """
+    before, ahead = near.equations.problem.bearing_number, problem.bearing_number
+    done, part, at = 0.0, 1.0, near
+    while True:
+        there = before * (ahead / before) ** (done + part)
+        target = problem if done + part == 1.0 else problem.at(bearing_number=there)
+        try:
+            found = at_limit(loaded_state(at, target, size), limit, hand)
+        except NoPointsError:
+            if before == ahead or part <= LEAST_PART:
+                raise
+            part *= 0.5
+            continue
+        done, at, size = done + part, found.positioned, found.size
+        if done == 1.0:
+            return found
 
 
 def slow(error: float, before: list[float]) -> bool:

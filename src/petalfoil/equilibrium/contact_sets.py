@@ -113,7 +113,9 @@ def merged(points: ContactPoints) -> ContactPoints:
 # ------------------------------------------------------------------------------------------ corrected by signs
 
 
-def revised(equations: PointEquations, error: float = 0.0, *, one_by_one: bool = False) -> ContactPoints | None:
+def revised(
+    equations: PointEquations, error: float = 0.0, *, one_by_one: bool = False, splitting: bool = True
+) -> ContactPoints | None:
     """Other contacts, where the signs ask for them; None where they are right.
 
     Parameters
@@ -124,6 +126,8 @@ def revised(equations: PointEquations, error: float = 0.0, *, one_by_one: bool =
         Gaps and slopes up to this may still close or open by themselves; so may what a pull opens.
     one_by_one : bool
         Only the lowest gap of each curve gains a contact: it often opens the others.
+    splitting : bool
+        Points with gaps below zero beside them split; else these gaps gain contacts of their own.
     """
     points = equations.state.points
     inward = np.where(points.position > 0.0, 1.0, -1.0) * equations.gaps.slope[points.ends]
@@ -136,7 +140,7 @@ def revised(equations: PointEquations, error: float = 0.0, *, one_by_one: bool =
     contacts = listed(replace(points, reaction=np.where(pulling, points.reaction, np.maximum(points.reaction, 0.0))))
     for k in np.flatnonzero(released):
         contacts[k].position += 2.0 * MEETING if contacts[k].position == 0.0 else -2.0 * MEETING
-    return packed(without_pulling(with_fresh(contacts, fresh)))
+    return packed(without_pulling(with_fresh(contacts, fresh, splitting=splitting)))
 
 
 def least_pull(equations: PointEquations, opening: float) -> Array:
@@ -186,10 +190,13 @@ def settled(left: list[TravellingContact], k: int) -> TravellingContact:
     return here
 
 
-def with_fresh(contacts: list[TravellingContact], fresh: list[tuple[int, float, int]]) -> list[TravellingContact]:
+def with_fresh(
+    contacts: list[TravellingContact], fresh: list[tuple[int, float, int]], *, splitting: bool = True
+) -> list[TravellingContact]:
     """With contacts at further places: a point split in two, one more in a stretch, a stretch between two, a point."""
     new: list[TravellingContact] = []
-    contacts, fresh = split(contacts, fresh)
+    if splitting:
+        contacts, fresh = split(contacts, fresh)
     for curve, place, before in fresh:
         if before >= 0 and bridges(contacts, before):
             contacts[before].inner.append(0.0)

@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from petalfoil.equilibrium.parameter_response import StateWeights
 from petalfoil.equilibrium.small_motion import TangentEquations
 from petalfoil.equilibrium.under_load import FORCE_TOLERANCE
+from petalfoil.solvers.near_factor import Inverse
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
-from petalfoil.solvers.sparse_lu import Factor, LinearSolver, SingularMatrixError
+from petalfoil.solvers.sparse_lu import LinearSolver, SingularMatrixError
 from petalfoil.system.loaded import load_scale
 
 Array = NDArray[np.float64]
@@ -46,7 +47,7 @@ class ElementTangent:
 
     Attributes
     ----------
-    factor : Factor
+    factor : Inverse
         `J`, ready to solve with.
     units : (n, n_position) array
         Change of the unknowns by a unit of each coordinate of the journal; no columns without a load.
@@ -56,7 +57,7 @@ class ElementTangent:
         Force by the journal's position, unknowns following.
     """
 
-    factor: Factor
+    factor: Inverse
     units: Array
     rows: Array
     gradient: Array
@@ -74,6 +75,11 @@ class ElementTangent:
             factor = solver.factor(equations.steady)
         except SingularMatrixError:
             raise NoPointsError("the contacts do not determine the petals") from None
+        return cls.of(equations, load, factor)
+
+    @classmethod
+    def of(cls, equations: TangentEquations, load: Array | None, factor: Inverse) -> ElementTangent:
+        """The tangent at a state, whose `J` is ready to solve with."""
         if load is None:
             return cls(factor, np.zeros((equations.n, 0)), np.zeros((0, equations.n)), np.zeros((0, 0)))
         units, rows = factor.solve(-equations.forcing()), equations.force_rows

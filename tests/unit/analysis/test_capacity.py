@@ -88,19 +88,23 @@ def test_speeds_a_tenth_apart_take_six_factorisations_at_most(bearing: Case) -> 
 
 
 @pytest.mark.slow
-def test_contact_points_are_followed_over_tenths_of_the_speed() -> None:
-    """Three, three, five, and eight at the last speed, where petals come to lie on each other."""
-    petals = case("paper_n8", **{"model.cells_per_pitch": 32})
-    speeds = list(petals.operation.speed * np.linspace(0.6, 1.0, 5))
+@pytest.mark.parametrize(
+    ("cells", "parts"),
+    [
+        pytest.param(32, np.linspace(0.6, 1.0, 5), id="tenths"),
+        pytest.param(64, np.array([0.95, 0.975, 1.0]), id="petals come to lie on each other"),
+    ],
+)
+def test_contact_points_are_followed_over_speeds(cells: int, parts: np.ndarray) -> None:
+    """Contacts that appear ask for no factorisation: none or one a speed, where it was up to eight and thirty."""
+    petals = case("paper_n8", **{"model.cells_per_pitch": cells})
+    speeds = list(petals.operation.speed * parts)
     found = petalfoil.capacity(petals, min_film_thickness=4e-6, speeds=speeds)
-    warm = found["factorizations"].to_numpy()[1:]
-    assert np.all(warm[:3] <= 6)
-    assert warm[3] <= 8
+    assert np.all(found["factorizations"].to_numpy()[1:] <= 2)
     assert np.all(found["probe_factorizations"].to_numpy()[1:] == 0)
     assert float(found["residual"].max()) <= 1e-8
-    for k in (1, 4):
-        cold = petalfoil.capacity(petals, min_film_thickness=4e-6, speed=speeds[k])
-        assert float(cold["load_capacity"]) == pytest.approx(float(found["load_capacity"][k]), rel=1e-6)
+    cold = petalfoil.capacity(petals, min_film_thickness=4e-6, speed=speeds[-1])
+    assert float(cold["load_capacity"]) == pytest.approx(float(found["load_capacity"][-1]), rel=1e-6)
 
 
 @pytest.mark.slow
