@@ -15,8 +15,8 @@ from petalfoil.analysis.result_gradients import GRADIENTS
 from petalfoil.case import Case
 from petalfoil.equilibrium.element_rates import ElementValues, element_rate
 from petalfoil.equilibrium.run_context import RunContext
-from petalfoil.errors import UsageError
 from tests.cases import case
+from tests.random_packs import random_case
 
 SAME = 1e-12
 """Agreement with the tangent for the same derivatives of equations and result, over the sum of the magnitudes."""
@@ -29,6 +29,7 @@ BEARINGS: dict[str, tuple[Case, float | None]] = {
         case("plain_journal", **{"model.cells_per_pitch": 12, "model.axial_cells": 4}),
         15.0,
     ),
+    "asperities": (random_case(np.random.default_rng(2), **{"model.cells_per_pitch": 16}), None),
     "3-D at a position": (case("paper_n8_spatial", **{"model.cells_per_pitch": 8, "model.axial_cells": 4}), None),
 }
 PATHS = ("gas.viscosity", "bearing.bushing_radius", "operation.speed")
@@ -68,7 +69,9 @@ def test_adjoint_and_tangent_are_transposes(name: str) -> None:
         rate = tangent.held.respond(rates)
         change, lam, displacement = rate.x, rate.lam, rate.displacement
     displacement = displacement if told.load is not None else np.zeros_like(displacement)
-    assert len(adjoint.names) >= len(GRADIENTS) - 2  # all, but the minimum film where contact keeps it
+    assert (
+        len(adjoint.names) >= len(GRADIENTS) - 3
+    )  # all, but the minimum film where contact keeps it, and torque at rest
     for result in adjoint.names:
         by_state = adjoint.gradient(result)
         parts = (by_state.residual * change, by_state.gaps * lam, by_state.force * displacement)
@@ -80,11 +83,14 @@ def test_adjoint_and_tangent_are_transposes(name: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["points under a load", "plain journal under a load", "3-D at a position"])
+@pytest.mark.parametrize(
+    "name", ["points under a load", "asperities", "plain journal under a load", "3-D at a position"]
+)
 def test_derivatives_by_both(name: str) -> None:
     tangent = tangent_of(name)
     adjoint = AdjointDerivatives.of_all(tangent)
-    for path in PATHS + (() if "plain" in name else IN_PETALS):
+    paths = {"asperities": IN_PETALS[:1], "plain journal under a load": PATHS}.get(name, PATHS + IN_PETALS)
+    for path in paths:
         by_tangent, by_adjoint = tangent.by(path), adjoint.by(path)
         for result, value in by_adjoint.above.items():
             size = max(abs(each) for each in by_tangent.above.values()) if "force" in result else 0.0
@@ -106,12 +112,28 @@ def test_one_solve_for_each_result(run: RunContext) -> None:
     assert run.probes.solves - before[0] == 2 + len(PATHS)
 
 
-def test_what_has_no_adjoint_is_refused() -> None:
-    of = case(**{"model.cells_per_pitch": 8})
-    with pytest.raises(UsageError, match=r"no adjoint of max_bending_stress; there is one of .*--method tangent"):
-        petalfoil.sensitivity(of, "gas.viscosity", of="max_bending_stress", method="adjoint")
-    with pytest.raises(UsageError, match="no adjoint of capacity"):
-        petalfoil.sensitivity(of, ask="capacity", min_film_thickness="2 um", method="adjoint")
+@pytest.mark.slow
+def test_what_has_no_adjoint_comes_by_the_tangent_and_says_so() -> None:
+    of, path = case(**{"model.cells_per_pitch": 8}), "gas.viscosity"
+    stress, torque = "max_bending_stress", "friction_torque"
+    by_tangent, by_adjoint = (
+        petalfoil.sensitivity(of, path, of=f"{stress}, {torque}", method=method).to_dataframe().set_index("quantity").T
+        for method in ("tangent", "adjoint")
+    )
+    assert by_adjoint[stress]["status"] == "converged; no adjoint of this result: by the tangent"
+    assert by_adjoint[stress]["derivative"] == by_tangent[stress]["derivative"]
+    assert by_adjoint[torque]["status"] == "converged"
+    assert_allclose(by_adjoint[torque]["derivative"], by_tangent[torque]["derivative"], rtol=1e-5)
+
+
+def test_a_question_without_adjoints_is_answered_by_the_tangent() -> None:
+    plain = case("plain_journal", **{"model.cells_per_pitch": 12, "model.axial_cells": 4})
+    found = [
+        petalfoil.sensitivity(plain, "gas.viscosity", ask="coefficients", of="stiffness_yy", method=method)
+        for method in ("tangent", "adjoint")
+    ]
+    assert float(found[0]["derivative"][0]) == float(found[1]["derivative"][0])
+    assert "by the tangent" in str(found[1]["status"].values[0])
 
 
 @pytest.mark.slow

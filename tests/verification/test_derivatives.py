@@ -21,7 +21,7 @@ from petalfoil.case.parameters import with_values
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.dynamics.leading_mode import LeadingMode
 from petalfoil.equilibrium.run_context import RunContext
-from petalfoil.equilibrium.small_motion import AT_POINTS
+from petalfoil.equilibrium.small_motion import AT_ASPERITIES, AT_POINTS
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError, DefinitionError, UsageError
 from petalfoil.walls import register, unregister
@@ -186,6 +186,18 @@ def test_thirty_random_bearings_with_contact_points(number: int) -> None:
     found = reported(derivatives.case, derivatives.solution)
     assert found.contact_model == AT_POINTS
     assert_exact(replace(derivatives, solution=found, as_points=True), exact=EXACT_WITH_POINTS)
+
+
+@pytest.mark.parametrize(
+    "number",
+    [pytest.param(number, marks=pytest.mark.slow if number == 2 else pytest.mark.long) for number in (2, 10, 23)],
+)
+def test_random_bearings_with_contact_pressures_over_asperities(number: int) -> None:
+    draw = wide_case if number % 2 else random_case
+    derivatives = derivatives_of(draw(np.random.default_rng(number), **{"model.cells_per_pitch": 16}))
+    found = reported(derivatives.case, derivatives.solution)
+    assert found.contact_model == AT_ASPERITIES
+    assert_exact(replace(derivatives, solution=found, as_points=True), FEW if number == 2 else ())
 
 
 def test_one_factorisation_serves_all_parameters(run: RunContext) -> None:

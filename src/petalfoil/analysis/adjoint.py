@@ -26,11 +26,13 @@ from petalfoil.analysis.variation import EquationFamily, VariedCase
 from petalfoil.case import Case
 from petalfoil.equilibrium.element_rates import ElementValues, under
 from petalfoil.equilibrium.parameter_response import Equations, EquationValues, StateWeights
-from petalfoil.equilibrium.point_contacts import PointContacts
+from petalfoil.equilibrium.small_motion import TangentEquations
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.sparsity import add_up
+from petalfoil.system.asperity_equations import AsperityEquations
 from petalfoil.system.point_equations import PointEquations
+from petalfoil.system.point_layout import PointLayout
 from petalfoil.system.unknowns import DEFLECTION
 
 Array = NDArray[np.float64]
@@ -109,14 +111,15 @@ class AdjointDerivatives(ByParameters):
         moved = [self.in_place(equations) for _, equations in there]
         rates = self.rates([equations for _, equations in there], weights)
         sampled = [self.tangent.results(case, state) for (case, _), state in zip(there, moved, strict=True)]
-        found = {}
+        found, lost = {}, lost_reactions(moved, weights)
         for name in self.names:
             direct = sum(weight * results[name] for weight, results in zip(weights, sampled, strict=True))
-            found[name] = float(direct) + self.weights(name).of(rates)
-        return Derivative(found, found, (math.nan, math.nan), False, variation.fineness)
+            found[name] = float(direct) + self.weights(name).of(rates) - self.by_lost_reactions(name, lost)
+        reach = math.nan if lost is None else math.inf  # pressures over asperities neither begin nor end
+        return Derivative(found, found, (reach, reach), False, variation.fineness)
 
     def in_place(self, there: Equations) -> Solution:
-        """The state under other equations, unknowns held; under a load the position too."""
+        """The state under other equations, unknowns and reactions held; under a load the position too."""
         found, problem = self.tangent.told, there.problem
         if found.elements is None:
             problem = problem if there.load is None else problem.at(displacement=found.problem.displacement)
@@ -133,6 +136,13 @@ class AdjointDerivatives(ByParameters):
             return EquationValues.combined([equations.at_state(found) for equations in there], weights)
         values = [ElementValues.at(found.elements, equations) for equations in there]
         return ElementValues.combined([value for value in values if value is not None], weights)
+
+    def by_lost_reactions(self, name: str, lost: Array | None) -> float:
+        """Derivative of a result along reactions that asperities lose, (E, S); these are no unknowns."""
+        fields, equations = gradient(name, self.evaluated), elements_of(self.tangent.told)
+        if lost is None or fields is None or not isinstance(equations, AsperityEquations):
+            return 0.0
+        return float(np.sum(by_reactions(fields, equations) * lost))
 
     def weights(self, name: str) -> StateWeights:
         """`-a` and `-s` of a result; one transposed solve, once."""
@@ -160,9 +170,26 @@ class AdjointDerivatives(ByParameters):
             if self.tangent.with_points is not None or found.lines is not None:
                 raise UsageError(f"no adjoint where contacts are between nodes of the grid: {TANGENT}")
             return by_nodes(fields, found)
-        if not isinstance(found.elements, PointContacts):
-            raise UsageError(f"no adjoint with contact pressures over asperities: {TANGENT}")
-        return by_points(fields, found.elements.equations)
+        equations = found.elements.equations
+        if isinstance(equations, PointEquations):
+            return by_points(fields, equations)
+        if isinstance(equations, AsperityEquations):
+            return by_samples(fields, equations)
+        raise TypeError(f"no adjoint of {type(equations).__name__}")
+
+
+def elements_of(found: Solution) -> TangentEquations | None:
+    """Equations of the petals with continuous slopes, if there are any."""
+    return None if found.elements is None else found.elements.equations
+
+
+def lost_reactions(moved: Sequence[Solution], weights: Sequence[float]) -> Array | None:
+    """Derivative of the reactions that asperities lose at fixed unknowns, (E, S); None where there are none."""
+    there = [equations for state in moved if isinstance(equations := elements_of(state), AsperityEquations)]
+    if not there:
+        return None
+    parts = [weight * each.contact.every(each.contact.left) for weight, each in zip(weights, there, strict=True)]
+    return np.asarray(sum(parts))
 
 
 def by_nodes(fields: FieldGradient, found: Solution) -> StateWeights:
@@ -184,16 +211,38 @@ def by_nodes(fields: FieldGradient, found: Solution) -> StateWeights:
 def by_points(fields: FieldGradient, equations: PointEquations) -> StateWeights:
     """The same with contact points; reactions and places are among the unknowns."""
     whole, points = equations.whole, equations.state.points
+    weights, last = by_film_and_force(fields, equations, whole), whole.n_wall + whole.n_film
+    on_journal = points.every_curve < whole.pack.mesh.count
+    weights.residual[last : last + len(on_journal)] += fields.reactions * on_journal
+    return weights
+
+
+def by_samples(fields: FieldGradient, equations: AsperityEquations) -> StateWeights:
+    """The same with contact pressures over asperities, which follow deflections and position by their law (K14)."""
+    whole = equations.smooth.whole
+    curves, by_gaps = whole.curves, -equations.contact.by_nodal(by_reactions(fields, equations))
+    weights = by_film_and_force(replace(fields, contact_force=0.0 * fields.contact_force), equations, whole)
+    weights.residual[: whole.n_wall] += curves.by_w.T @ by_gaps
+    return replace(weights, force=weights.force + curves.by_e.T @ by_gaps)
+
+
+def by_reactions(fields: FieldGradient, equations: AsperityEquations) -> Array:
+    """Derivatives of a result by the reactions of the samples, (E, S)."""
+    whole, samples = equations.smooth.whole, equations.samples
+    by_nodal = whole.curves.by_e @ fields.contact_force
+    on_journal = samples.curve[:, None] < whole.pack.mesh.count
+    return np.asarray(samples.at_samples(by_nodal) + fields.reactions * on_journal)
+
+
+def by_film_and_force(fields: FieldGradient, equations: TangentEquations, whole: PointLayout) -> StateWeights:
+    """The part of a result that is read from film and forces."""
     first, last = whole.n_wall, whole.n_wall + whole.n_film
     rows = equations.force_rows
     by_x = fields.contact_force @ rows
     by_x[first:last] = fields.film_force @ rows[:, first:last]
     by_x[first:last] += at_unknowns(whole.layout.wall.film.unknown, fields.pressure, whole.n_film)
     by_x[:first] += whole.film_by_w.T @ fields.film.ravel()
-    on_journal = points.every_curve < whole.pack.mesh.count
-    by_x[last : last + len(on_journal)] += fields.reactions * on_journal
-    by_e = fields.displacement + whole.film_by_e.T @ fields.film.ravel()
-    return StateWeights(by_x, np.zeros(0), by_e)
+    return StateWeights(by_x, np.zeros(0), fields.displacement + whole.film_by_e.T @ fields.film.ravel())
 
 
 def at_unknowns(unknown: NDArray[np.intp], by_node: Array, n: int) -> Array:

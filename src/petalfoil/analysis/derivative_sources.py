@@ -6,23 +6,33 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from petalfoil.analysis.adjoint import TANGENT, AdjointDerivatives
+from petalfoil.analysis.adjoint import AdjointDerivatives
 from petalfoil.analysis.capacity_derivatives import capacity_derivatives
 from petalfoil.analysis.contact_model import reported
 from petalfoil.analysis.crossing_derivatives import CrossingDerivatives
-from petalfoil.analysis.derivatives import GROWTH, DerivativesOf, Results, equilibrium_results, results_with_growth
-from petalfoil.analysis.heated_derivatives import derivatives_of
+from petalfoil.analysis.derivatives import (
+    GROWTH,
+    ByParameters,
+    Derivative,
+    DerivativesOf,
+    Results,
+    equilibrium_results,
+    results_with_growth,
+)
+from petalfoil.analysis.heated_derivatives import Derivatives, derivatives_of
 from petalfoil.analysis.liftoff import own_load
 from petalfoil.analysis.liftoff_derivatives import speed_derivatives
 from petalfoil.analysis.load_ray import Limits
 from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.response_derivatives import THRESHOLD, coefficient_results, stability_derivatives
 from petalfoil.analysis.sensitivity_table import ALL, Source
+from petalfoil.analysis.variation import VariedCase
 from petalfoil.case import Case
 from petalfoil.equilibrium.continuation import rest
 from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.small_motion import AT_ASPERITIES
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.errors import ConvergenceError, UsageError
+from petalfoil.errors import ConvergenceError
 from petalfoil.system.build import build_problem
 
 
@@ -79,31 +89,75 @@ def sources_of(case: Case, asked: DerivativeRequest) -> Sequence[Source]:
     ------
     ConvergenceError
         The equilibrium was not found.
-    UsageError
-        A result has no adjoint, and is asked for by one.
     """
-    found = by_tangent(case, asked)
-    return [with_adjoint(source, asked) for source in found] if asked.by_adjoint else found
+    found: list[Source] = []
+    for source in by_tangent(case, asked):
+        found += with_adjoint(source, asked) if asked.by_adjoint or over_asperities(source) else [source]
+    return found
 
 
-def with_adjoint(source: Source, asked: DerivativeRequest) -> Source:
-    """The same by the adjoint.
+def over_asperities(source: Derivatives | CrossingDerivatives) -> bool:
+    """Whether contact pressures over asperities carry: in stiff packs the tangent's differences of them are rounded."""
+    whole = source.balance if isinstance(source, CrossingDerivatives) else source
+    if not isinstance(whole, DerivativesOf) or whole.told.elements is None:
+        return False
+    return whole.told.elements.contact_model == AT_ASPERITIES
 
-    Raises
-    ------
-    UsageError
-        There is none.
+
+@dataclass(frozen=True, eq=False)
+class TangentInstead(ByParameters):
+    """Derivatives by the tangent of results that have no adjoint, which their status tells.
+
+    Attributes
+    ----------
+    source : ByParameters
+        Where they are.
+    why : str
+        What has no adjoint, for people.
     """
-    if isinstance(source, CrossingDerivatives) and isinstance(source.balance, DerivativesOf):
-        return replace(source, balance=AdjointDerivatives(source.balance, [source.limited]))
-    if isinstance(source, DerivativesOf):
-        if ALL in asked.quantities:
-            return AdjointDerivatives.of_all(source)
-        return AdjointDerivatives(source, [name for name in asked.quantities if name in source.values])
-    raise UsageError(f"no adjoint with [heat]: {TANGENT}")
+
+    source: Derivatives | CrossingDerivatives
+    why: str
+
+    @property
+    def values(self) -> Results:
+        """The results."""
+        return self.source.values
+
+    @property
+    def residual(self) -> float:
+        """Residual of the equilibrium."""
+        return self.source.residual
+
+    def variation(self, path: str) -> VariedCase:
+        """The case at values of the parameter `path`; see `DerivativesOf.variation`."""
+        return self.source.variation(path)
+
+    def along(self, variation: VariedCase) -> Derivative:
+        """Derivatives along a variation of the case."""
+        found = self.source.along(variation)
+        remarks = filter(None, [f"no adjoint {self.why}: by the tangent", found.remark])
+        return replace(found, remark="; ".join(remarks))
 
 
-def by_tangent(case: Case, asked: DerivativeRequest) -> Sequence[Source]:
+def with_adjoint(source: Derivatives | CrossingDerivatives, asked: DerivativeRequest) -> Sequence[Source]:
+    """The same by the adjoint, and by the tangent for results that have none."""
+    whole = source.balance if isinstance(source, CrossingDerivatives) else source
+    if not isinstance(whole, DerivativesOf):
+        return [TangentInstead(source, "with [heat]")]
+    if whole.told.elements is None and whole.with_points is not None:
+        return [TangentInstead(source, "where contacts are between nodes of the grid")]
+    adjoint = AdjointDerivatives.of_all(whole)
+    if isinstance(source, CrossingDerivatives):
+        if source.limited not in adjoint.names or source.by_quantity.at_kink:
+            return [TangentInstead(source, f"of {source.limited} here") if asked.by_adjoint else source]
+        return [replace(source, balance=replace(adjoint, names=[source.limited]))]
+    names = [name for name in adjoint.names if ALL in asked.quantities or name in asked.quantities]
+    rest: Source = TangentInstead(source, "of this result") if asked.by_adjoint else source
+    return [rest, replace(adjoint, names=names)] if names else [rest]
+
+
+def by_tangent(case: Case, asked: DerivativeRequest) -> Sequence[Derivatives | CrossingDerivatives]:
     """Where they have them by the tangent; see `sources_of`."""
     if asked.verb == "liftoff":
         return speed_derivatives(case, own_load(case), asked.contact_fraction, as_points=asked.as_points)

@@ -24,6 +24,7 @@ from petalfoil.analysis.variation import (
     ABOVE,
     BELOW,
     FILM_CHANGE,
+    PRESSURE_CHANGE,
     EquationFamily,
     Stencil,
     VariedCase,
@@ -89,8 +90,8 @@ class Derivative:
     remark: str = ""
 
 
+ROUNDED = "over asperities: in stiff packs rounding leaves some 1e-5 of the largest result of this kind"
 POINT_CHANGES = "a contact point begins or ends here: derivatives with contacts at nodes"
-OVER_ASPERITIES = "contact pressures over asperities: known to some 1e-4 of the largest force"
 
 
 class ByParameters(ABC):
@@ -272,14 +273,21 @@ class DerivativesOf(ByParameters):
             raise ConvergenceError(f"no derivative: {failure}", advice="change the case by a millionth") from None
         if min(rate.reach) <= KINK * variation.size:
             return None
-        own, steps = found.equations.film_thickness, variation.stencil[-1][0]
-        ahead = self._moved(rate, steps * variation.step, variation.at(steps)[1]).equations
-        unit = ahead.problem.layout.scales.length / found.equations.problem.layout.scales.length
-        change = float(np.max(np.abs(ahead.film_thickness * unit / own - 1.0))) / abs(steps)
-        finer = variation if change <= FILM_CHANGE else variation.finer(variation.fineness * FILM_CHANGE / change)
+        finer = self._in_small_steps(found, variation, rate)
         along = self._quotients(finer, finer.stencil, rate)
-        remark = OVER_ASPERITIES if found.contact_model == AT_ASPERITIES else ""
+        remark = ROUNDED if found.contact_model == AT_ASPERITIES else ""
         return Derivative(along, along, rate.reach, False, finer.fineness, remark)
+
+    def _in_small_steps(
+        self, found: ElementEquilibrium, variation: EquationFamily, rate: ElementRate
+    ) -> EquationFamily:
+        """The variation in steps that change neither film nor contact pressures much; see `FILM_CHANGE`."""
+        own, steps = found.equations.film_thickness, variation.stencil[-1][0]
+        ahead = self._moved(rate, steps * variation.step, variation.at(steps)[1])
+        unit = ahead.equations.problem.layout.scales.length / found.equations.problem.layout.scales.length
+        film = float(np.max(np.abs(ahead.equations.film_thickness * unit / own - 1.0)))
+        change = max(film / FILM_CHANGE, found.nonlinearity(ahead) / PRESSURE_CHANGE) / abs(steps)
+        return variation if change <= 1.0 else variation.finer(variation.fineness / change)
 
     def _quotients(self, variation: EquationFamily, points: Stencil, rate: ElementRate) -> Results:
         """Derivatives of the results along the line of the state."""

@@ -208,6 +208,7 @@ GRADIENTS: dict[str, Callable[[Evaluation], FieldGradient | None]] = {
     "knudsen_number": knudsen_number,
     "peak_pressure": peak_pressure,
     "friction_torque": friction_torque,
+    "starting_torque": friction_torque,
     "power_loss": power_loss,
     "eccentricity_x": _position(0),
     "eccentricity_y": _position(1),

@@ -119,11 +119,10 @@ Method = Annotated[
     Choice(
         metavar="METHOD",
         words=("tangent", ADJOINT),
-        help="One solve for each parameter, which tells how far contacts hold too; adjoint: one for each result.",
+        help="One solve for each parameter, which tells how far contacts hold too; adjoint: one for each result that "
+        "has one.",
     ),
 ]
-WITH_ADJOINT = ("solve", "balance", "liftoff")
-"""Questions whose results have adjoints."""
 
 Contacts = Annotated[
     str,
@@ -265,8 +264,6 @@ def refuse_limits(case: Case, asked: DerivativeRequest) -> None:
         raise UsageError(f"--min-film and --max-stress are limits of a load capacity: {asked.verb} has none")
     if asked.frequency is not None and asked.verb != "coefficients":
         raise UsageError(f"--frequency is that of stiffness and damping: {asked.verb} has none")
-    if asked.by_adjoint and asked.verb not in WITH_ADJOINT:
-        raise UsageError(f"no adjoint of {asked.verb}: ask {', '.join(WITH_ADJOINT)}, or leave --method out")
     if asked.mass is not None and asked.verb != "stability":
         raise UsageError(f"--mass is that of the rotor whose threshold speed is asked for: {asked.verb} has none")
 

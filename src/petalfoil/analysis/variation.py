@@ -37,6 +37,10 @@ FILM_CHANGE = 1.5e-3
 stiff packs, and these fall with its fourth power. Gaps are differences of radii and rounded with them, to 3e-9 of a
 step of 1.5 nm where the film is 1 um thin."""
 
+PRESSURE_CHANGE = 3e-2
+"""Change of the logarithm of a contact pressure over asperities in a step: quotients of fourth order of an exponential
+are then good to 3e-8, as good as gaps of 5 nm are with the rounding of radii."""
+
 LARGEST_STEP = 1e-4
 """Largest step over the value of the parameter: for those that the gaps do not depend on."""
 

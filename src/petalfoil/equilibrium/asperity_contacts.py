@@ -20,7 +20,7 @@ from petalfoil.equilibrium.small_motion import AT_ASPERITIES
 from petalfoil.physics.asperity_contact import FULL_PRESSURE, ContactSamples
 from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
-from petalfoil.system.asperity_equations import AsperityEquations
+from petalfoil.system.asperity_equations import NO_PRESSURE, AsperityEquations
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.point_equations import PointEquations, PointState
 from petalfoil.system.point_layout import PointLayout
@@ -49,6 +49,9 @@ SHORTEST = 0.05
 
 MATTERS = 1e-6
 """A contact pressure below this, over ambient pressure, does not limit the step."""
+
+BESIDE_A_CHANGE = 1e-10
+"""A contact pressure below this, over ambient pressure, is nothing beside small changes of others."""
 
 LEAST = 1e-9
 """Least pressure that is iterated on, over that at a gap of zero."""
@@ -98,14 +101,19 @@ class AsperityContacts:
         equations = self.equations
         smooth = PointEquations(whole, problem, equations.smooth.state)
         samples = replace(equations.samples, curves=whole.curves)
-        return replace(self, equations=replace(equations, smooth=smooth, samples=samples))
+        return replace(self, equations=replace(equations, smooth=smooth, samples=samples, followed=NO_PRESSURE))
 
     def moved(self, problem: CoupledProblem, change: Array) -> AsperityContacts:
         """The state after a small `change` (n,) of the unknowns, under the equations of `problem`, unsolved."""
         equations = self.equations
         move = problem.displacement - equations.problem.displacement
-        ahead = changed(equations, change, move, 1.0)
+        ahead = changed(replace(equations, followed=NO_PRESSURE), change, move, 1.0)
         return replace(self, equations=replace(ahead, smooth=replace(ahead.smooth, problem=problem)))
+
+    def nonlinearity(self, moved: AsperityContacts) -> float:
+        """Largest change of the logarithm of a contact pressure to the state `moved` [1]."""
+        before, after = self.equations.pressure, moved.equations.pressure
+        return float(np.max(np.abs(np.log(after / before)) * (before > BESIDE_A_CHANGE), initial=0.0))
 
 
 def with_asperities(

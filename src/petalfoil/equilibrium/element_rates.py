@@ -58,7 +58,9 @@ class ElementValues:
             return None
         equations = moved.equations
         load = np.zeros_like(equations.force) if there.load is None else there.load
-        return cls(equations.newton_residual, equations.force + load, equations.problem.displacement, moved.gaps[0])
+        return cls(
+            equations.newton_residual, equations.newton_force + load, equations.problem.displacement, moved.gaps[0]
+        )
 
     @classmethod
     def combined(cls, values: Sequence[ElementValues], weights: Sequence[float]) -> ElementValues:

@@ -30,15 +30,15 @@ class NoPointsError(ArithmeticError):
 
 
 def unbalanced(equations: TangentEquations, load: Array | None) -> Array:
-    """Force on the journal that nothing balances, over the unit of force, (n_position,); nothing without a load."""
-    return np.zeros(len(equations.problem.displacement)) if load is None else equations.force + load
+    """Force that a Newton step balances, over the unit of force, (n_position,); nothing without a load."""
+    return np.zeros(len(equations.problem.displacement)) if load is None else equations.newton_force + load
 
 
 def scaled_force(equations: TangentEquations, load: Array | None) -> Array:
-    """The same in units of what is left of it in a solution, times the residual of a solution: it joins the others."""
+    """What is left of the force over what a solution leaves, times the residual of a solution: it joins the others."""
     if load is None:
         return np.zeros(0)
-    return unbalanced(equations, load) / load_scale(load) * (RESIDUAL_TOLERANCE / FORCE_TOLERANCE)
+    return (equations.force + load) / load_scale(load) * (RESIDUAL_TOLERANCE / FORCE_TOLERANCE)
 
 
 @dataclass(frozen=True)

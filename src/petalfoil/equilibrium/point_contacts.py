@@ -116,6 +116,10 @@ class PointContacts:
         """The state after a small `change` (n,) of the unknowns, under the equations of `problem`, unsolved."""
         return replace(self, equations=replace(self.equations, problem=problem, state=changed(self.equations, change)))
 
+    def nonlinearity(self, moved: PointContacts) -> float:
+        """None: reactions and places are unknowns."""
+        return 0.0
+
 
 def with_points(
     whole: PointLayout, problem: CoupledProblem, state: PointState, load: Array | None = None

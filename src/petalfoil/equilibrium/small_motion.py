@@ -89,6 +89,10 @@ class TangentEquations(Protocol):
         """Residual of Newton's method, (n,)."""
 
     @property
+    def newton_force(self) -> Array:
+        """Force on the journal that Newton's method balances, (n_position,) [1]: with reactions that are to follow."""
+
+    @property
     def wall_forces(self) -> tuple[Array, Array, Array]:
         """Generalised forces on the petals: elastic, by pressure and contacts, and magnitudes of these, (n_wall,)."""
 
@@ -132,6 +136,9 @@ class ElementEquilibrium(Protocol):
 
     def moved(self, problem: CoupledProblem, change: Array) -> ElementEquilibrium:
         """The state after a small `change` (n,) of the unknowns, under the equations of `problem`, unsolved."""
+
+    def nonlinearity(self, moved: Self) -> float:
+        """How far contacts leave their tangent on the way to a state `moved`; 1 is far [1]."""
 
 
 class LineEquilibrium(Protocol):

@@ -70,6 +70,11 @@ class ContactSamples:
         """Elements that are sampled, (E,)."""
         return self._sampled[1]
 
+    @property
+    def curve(self) -> Index:
+        """Curves of these elements, (E,)."""
+        return self._sampled[0]
+
     @cached_property
     def place(self) -> Array:
         """Places of the samples in an element, (S,)."""
@@ -104,8 +109,11 @@ class ContactSamples:
 
     def gaps(self, nodal: Array, pressure: Array) -> Array:
         """Gaps at the samples from all nodal gaps and the pressures (E, S); (E, S)."""
-        smooth = np.einsum("esk,ek->es", self.rows, nodal[self.columns])
-        return np.asarray(smooth + self.compliance[:, None] * ((self.weight * pressure) @ self.bending))
+        return np.asarray(self.at_samples(nodal) + self.compliance[:, None] * ((self.weight * pressure) @ self.bending))
+
+    def at_samples(self, nodal: Array) -> Array:
+        """Values at the samples of all nodal pairs (2 n_node,), (E, S)."""
+        return np.asarray(np.einsum("esk,ek->es", self.rows, nodal[self.columns]))
 
     def nodal(self, reaction: Array) -> Array:
         """Generalised forces on the nodal gaps by reactions (E, S) of the samples; (2 n_node,)."""
@@ -116,7 +124,7 @@ class ContactSamples:
         """One point in each element that carries load, at the centroid of its reactions."""
         reaction = (self.weight * pressure).sum(axis=1)
         loaded = np.flatnonzero(reaction > NOTHING * max(float(reaction.sum()), 1.0))
-        curve = self._sampled[0][loaded]
+        curve = self.curve[loaded]
         place = (pressure[loaded] @ self.place) / pressure[loaded].sum(axis=1)
         position = self.element[loaded] - self.curves.first[curve] + place
         order = np.lexsort((position, curve))
@@ -163,6 +171,11 @@ class ContactResponse:
         columns, n = self.samples.columns[self.loaded], len(self.samples.curves.rest)
         where = np.repeat(columns, 4, axis=1).ravel(), np.tile(columns, (1, 4)).ravel()
         return sp.coo_array((blocks.ravel(), where), shape=(n, n)).tocsr()
+
+    def by_nodal(self, weights: Array) -> Array:
+        """Loss of the sum of the reactions times `weights` (E, S) by the nodal gaps, (2 n_node,)."""
+        loss = np.einsum("es,esk->ek", weights[self.loaded], self.by_gaps)
+        return add_up(self.samples.columns[self.loaded].ravel(), loss.ravel(), len(self.samples.curves.rest))
 
     def every(self, part: Array) -> Array:
         """Values of the loaded elements (L, S) among all, (E, S)."""

@@ -26,6 +26,10 @@ Array = NDArray[np.float64]
 OPEN = 15.0
 """Gap over the asperities from which the pressure is that of (K13) at every iterate."""
 
+NO_PRESSURE = 32.0
+"""Gap over the asperities from which there is none: 1e-14 of the full one. A derivative follows all pressures below:
+those past `OPEN`, few millionths of the largest, still have a thousandth of the stiffness of a film."""
+
 
 @dataclass(frozen=True)
 class AsperityEquations:
@@ -41,12 +45,15 @@ class AsperityEquations:
         Contact pressures over ambient pressure.
     height : float
         Mean height of the asperities, over the reference length [1].
+    followed : float
+        Gap over the asperities up to which pressures are unknowns [1].
     """
 
     smooth: PointEquations
     samples: ContactSamples
     pressure: Array
     height: float
+    followed: float = OPEN
 
     @property
     def problem(self) -> CoupledProblem:
@@ -91,7 +98,7 @@ class AsperityEquations:
     @property
     def bears(self) -> NDArray[np.bool_]:
         """Samples whose pressure is iterated on, (E, S)."""
-        return self.gaps < OPEN * self.height
+        return self.gaps < self.followed * self.height
 
     @cached_property
     def mismatch(self) -> Array:
@@ -178,6 +185,12 @@ class AsperityEquations:
         by_e = self.smooth.whole.curves.by_e
         contact = by_e.T @ self.samples.nodal(self.samples.weight * self.pressure)
         return np.asarray(self.smooth.force + contact)
+
+    @property
+    def newton_force(self) -> Array:
+        """The same with the reactions that the mismatch asks for, as in `newton_residual`."""
+        by_e = self.smooth.whole.curves.by_e
+        return np.asarray(self.force - by_e.T @ self.samples.nodal(self.contact.every(self.contact.left)))
 
     @property
     def points(self) -> ContactPoints:

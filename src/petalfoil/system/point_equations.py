@@ -238,3 +238,8 @@ class PointEquations:
         """Force of film and contacts on the journal over the unit of force, (d,)."""
         film: Array = self.whole.layout.border.row_derivative @ (self.state.P - 1.0)
         return film + self.by_e[0].T @ self.state.points.reaction
+
+    @property
+    def newton_force(self) -> Array:
+        """The same: reactions are unknowns."""
+        return self.force
