@@ -28,7 +28,7 @@ from petalfoil.case import Case, keys
 from petalfoil.case.definition import Definition
 from petalfoil.cli.app import STUDIES, app
 from petalfoil.cli.show import show_command
-from petalfoil.cli.studies import study_command
+from petalfoil.cli.study_commands import study_command
 from petalfoil.results import schema
 from petalfoil.results.schema import Role, Variable
 

@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 from petalfoil.cli.app import app
 from petalfoil.errors import UsageError
 from petalfoil.results.store import load
-from petalfoil.studies import engine
+from petalfoil.studies import case_engine
 from petalfoil.studies.question import CaseTask, Question
 from petalfoil.studies.run import Execution
 from petalfoil.studies.sweep import sweep
@@ -73,7 +73,7 @@ def test_a_sweep_on_a_scheduler_is_that_of_one_process(scheduler: str, tmp_path:
 
 @pytest.mark.slow
 def test_workers_with_another_version_are_refused(scheduler: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(engine, "__version__", "0.0.0")
+    monkeypatch.setattr(case_engine, "__version__", "0.0.0")
     with pytest.raises(UsageError, match=r"this is 0\.0\.0: install the same version on all of them"):
         sweep(PLAIN, VARY, execution=Execution(scheduler=scheduler))
 
@@ -84,7 +84,7 @@ def test_a_scheduler_that_is_not_there_is_refused(
 ) -> None:
     dask = pytest.importorskip("dask")
     pytest.importorskip("distributed")
-    monkeypatch.setattr(engine, "PATIENCE", 0.3)
+    monkeypatch.setattr(case_engine, "PATIENCE", 0.3)
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         free = listener.getsockname()[1]
@@ -140,7 +140,7 @@ def test_a_scheduler_that_goes_away_is_told_in_words() -> None:
         distributed.LocalCluster(**inside, silence_logs=50) as cluster,
         distributed.Client(cluster.scheduler_address, timeout=10, set_as_default=False) as client,
     ):
-        outcomes = engine.OnCluster(client, 1).outcomes(tasks)
+        outcomes = case_engine.OnCluster(client, 1).outcomes(tasks)
         assert next(outcomes).converged
         cluster.close()
         with pytest.raises(UsageError, match=r"connection to the workers was lost: .*`petalfoil study resume`"):

@@ -7,6 +7,9 @@ from collections import defaultdict
 
 from tests.docs.texts import SOURCE, tree
 
+VERBS = {"reproduce"}
+"""Files that may be called alike in two folders: each does, in its folder, what its name says."""
+
 
 def test_a_class_name_occurs_once() -> None:
     places = defaultdict(list)
@@ -16,3 +19,11 @@ def test_a_class_name_occurs_once() -> None:
                 places[node.name].append(str(path.relative_to(SOURCE)))
     assert len(places) > 300  # the walk has found the package
     assert {name: where for name, where in places.items() if len(where) > 1} == {}
+
+
+def test_a_file_name_occurs_in_one_folder() -> None:
+    places = defaultdict(list)
+    for path in SOURCE.rglob("*.py"):
+        places[path.stem].append(str(path.relative_to(SOURCE)))
+    assert len(places) > 300
+    assert {name: where for name, where in places.items() if len(where) > 1 and name not in VERBS | {"__init__"}} == {}

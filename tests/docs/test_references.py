@@ -17,7 +17,7 @@ from petalfoil.case import Case
 from petalfoil.cli.app import STUDIES, app
 from petalfoil.cli.commands import command_of
 from petalfoil.cli.show import show_command
-from petalfoil.cli.studies import study_command
+from petalfoil.cli.study_commands import study_command
 from tests.docs.texts import DOCS, ROOT, SOURCE, labels_in, modules, name_of, pages, text, theory_labels
 
 FILE = re.compile(r"[\w<>.-]*/[\w<>./-]*|[\w<>-]+\.(?:py|md|toml|csv|json)")

@@ -15,8 +15,8 @@ import pytest
 from petalfoil.errors import UsageError
 from petalfoil.studio.address import address_of
 from petalfoil.studio.design import Design
-from petalfoil.studio.engine import Job, WorkerPool
 from petalfoil.studio.protocol import Cancelled, Done, Failure, Found, Work
+from petalfoil.studio.worker_pool import Job, WorkerPool
 from tests.studio.server import running_studio, wait_until
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")]
@@ -90,7 +90,7 @@ def test_a_killed_worker_is_told_and_replaced() -> None:
 
 
 def test_a_worker_that_does_not_stop_is_killed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("petalfoil.studio.engine.PATIENCE", 0.1)
+    monkeypatch.setattr("petalfoil.studio.worker_pool.PATIENCE", 0.1)
 
     async def ask(engine: WorkerPool) -> None:
         job = answer(engine, LONG, is_long=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from petalfoil.analysis.derivatives import Derivative, DerivativesOf, Results, nearest_turn
-from petalfoil.analysis.variation import VariedCase
+from petalfoil.analysis.varied_case import VariedCase
 from petalfoil.case import Case
 from petalfoil.case.parameters import parameters_of
 from petalfoil.equilibrium.element_rates import under

@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 
 from petalfoil import Case, coefficients, orbit, stability
 from petalfoil.analysis.campbell import BRANCHES, Branches
-from petalfoil.cli.tables import render
+from petalfoil.cli.printed_tables import render
 from petalfoil.errors import UsageError
 from petalfoil.plot import campbell
 from petalfoil.results.layout import Answer

@@ -19,7 +19,7 @@ from petalfoil.analysis.solve import solve
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.analysis.stability import stability
 from petalfoil.case import Case, warnings_of
-from petalfoil.cli.tables import render
+from petalfoil.cli.printed_tables import render
 from petalfoil.dynamics.rotor_motion import Inertia
 from petalfoil.errors import DefinitionError
 from petalfoil.results.layout import Answer

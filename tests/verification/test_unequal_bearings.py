@@ -30,7 +30,7 @@ from petalfoil import (
 )
 from petalfoil.analysis.known_verbs import summaries
 from petalfoil.analysis.rotor_balance import RotorInBearings
-from petalfoil.cli.tables import render
+from petalfoil.cli.printed_tables import render
 from petalfoil.equilibrium.run_context import running
 from petalfoil.errors import DefinitionError, UsageError
 from petalfoil.results.layout import Answer

@@ -40,7 +40,7 @@ What they share:
 `load_limit.py`        the largest load in one direction that keeps to limits
 `load_ray.py`          balances of loads of one direction, and how far they are from limits
 `crossings.py`         speeds at which the contact fraction crosses a limit
-`variation.py`         a case at values of one of its parameters
+`varied_case.py`         a case at values of one of its parameters
 `derivatives.py`       exact derivatives of the results of an equilibrium
 `heated_derivatives.py` the same where temperatures follow
 `crossing_derivatives.py`  the same of a quantity that keeps a result at its limit

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from petalfoil.analysis.derivatives import ByParameters, Derivative, DerivativesOf, Results
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.result_gradients import GRADIENTS, FieldGradient, gradient
-from petalfoil.analysis.variation import EquationFamily, VariedCase
+from petalfoil.analysis.varied_case import EquationFamily, VariedCase
 from petalfoil.case import Case
 from petalfoil.equilibrium.element_rates import ElementValues, under
 from petalfoil.equilibrium.parameter_response import Equations, EquationValues, StateWeights

@@ -17,7 +17,7 @@ from petalfoil.analysis.adjoint import AdjointDerivatives
 from petalfoil.analysis.crossings import PRECISION
 from petalfoil.analysis.derivatives import ByParameters, Derivative, Results
 from petalfoil.analysis.heated_derivatives import Derivatives
-from petalfoil.analysis.variation import VariedCase
+from petalfoil.analysis.varied_case import VariedCase
 from petalfoil.case.parameters import parameter_of
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.errors import ConvergenceError

@@ -20,7 +20,7 @@ from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.fields import all_fields
 from petalfoil.analysis.heat_results import heat_results
 from petalfoil.analysis.records import position
-from petalfoil.analysis.variation import (
+from petalfoil.analysis.varied_case import (
     ABOVE,
     BELOW,
     FILM_CHANGE,

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.analysis.derivatives import KINK, ByParameters, Derivative, DerivativesOf, Results, ResultsOf
-from petalfoil.analysis.variation import CENTRAL, EquationFamily, Stencil, VariedCase
+from petalfoil.analysis.varied_case import CENTRAL, EquationFamily, Stencil, VariedCase
 from petalfoil.case import Case
 from petalfoil.equilibrium.parameter_response import Equations, EquationValues
 from petalfoil.equilibrium.solution import Solution

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from petalfoil.analysis.derivatives import Derivative, Results
-from petalfoil.analysis.variation import VariedCase
+from petalfoil.analysis.varied_case import VariedCase
 from petalfoil.case import Case
 from petalfoil.case.parameters import Parameter
 from petalfoil.errors import ConvergenceError, DefinitionError, PetalfoilError

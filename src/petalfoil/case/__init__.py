@@ -14,7 +14,7 @@ In the order data flows:
 - `gas`: the table of the gas.
 - `second_bearing`: what differs in the second bearing of a rotor.
 - `rotor`: the table of the rotor.
-- `heat`: the table of the heat network, and the gas as it warms up.
+- `heat_table`: the table of the heat network, and the gas as it warms up.
 - `growth`: the tables of shaft and bushing, and how they grow.
 - `wall_tables`: base and registry of the tables that describe a wall.
 - `free_shape`: radius of a free petal bent to an arc.
@@ -37,7 +37,7 @@ from petalfoil.case.definitions import Case
 from petalfoil.case.free_shape import arc_radius, chordal_tilt
 from petalfoil.case.gas import Gas
 from petalfoil.case.growth import Bushing, Growth, Shaft
-from petalfoil.case.heat import Heat, HotGas
+from petalfoil.case.heat_table import Heat, HotGas
 from petalfoil.case.implausible_answers import warnings_of_errors
 from petalfoil.case.pack_geometry import PackGeometry, pack_of
 from petalfoil.case.parameters import Parameter, parameter_of, parameters_of, parameters_of_petals, with_values

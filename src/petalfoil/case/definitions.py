@@ -14,7 +14,7 @@ from petalfoil.case.bump_foil_table import Backing, BumpFoil
 from petalfoil.case.definition import Definition
 from petalfoil.case.gas import Gas
 from petalfoil.case.growth import Bushing, Growth, Shaft
-from petalfoil.case.heat import Heat
+from petalfoil.case.heat_table import Heat
 from petalfoil.case.pack_geometry import (
     PackGeometry,
     pack_of,

@@ -13,7 +13,7 @@ from petalfoil.case.bump_foil_table import BumpFoil
 from petalfoil.case.definition import Definition
 from petalfoil.case.gas import Gas
 from petalfoil.case.growth import Bushing, Shaft
-from petalfoil.case.heat import Heat
+from petalfoil.case.heat_table import Heat
 from petalfoil.case.number_fields import VALUE_PROBLEM, Quantity, as_pair, refuse
 from petalfoil.case.petal_table import Petals
 from petalfoil.case.sections import Bearing, Model, Surface

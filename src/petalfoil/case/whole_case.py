@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from petalfoil.case.growth import REFERENCE_TEMPERATURE, growth_problems
-from petalfoil.case.heat import heat_problems
+from petalfoil.case.heat_table import heat_problems
 from petalfoil.case.pack_geometry import bearing_problems, pack_problems
 from petalfoil.case.petal_table import PetalTheory
 from petalfoil.case.problems import Problem, refusal

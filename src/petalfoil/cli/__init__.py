@@ -5,14 +5,14 @@ In the order a call runs through them:
 - ``app``        the verbs under one name; ``main`` is the entry point
 - ``commands``   the declaration of an analysis as a command with its options, and the run of one
 - ``keeping``    follows a run, rewrites its result file as it grows, keeps what is finished when it is stopped
-- ``tables``     an answer as printed tables
+- ``printed_tables``     an answer as printed tables
 - ``outputs``    where an answer goes: checked before the run, written after it
 - ``signals``    interrupts by the terminal or the system, all alike
 - ``streams``    standard output and standard error
 - ``failures``   exit codes and what a user reads when something goes wrong
 - ``exports``    options of files for other programs
 - ``show``       a stored result once more
-- ``studies``    the commands of studies, with the options of the analysis that they ask
+- ``study_commands``    the commands of studies, with the options of the analysis that they ask
 - ``study_outputs`` a study on standard output
 - ``study_folder`` ``petalfoil study``: a stored study shown, gone on with, exported
 - ``report``     what a design review asks about a bearing, on one page

@@ -59,7 +59,7 @@ class Verbs(TyperGroup):
         """The command that is called, with all its options."""
         name, command, rest = super().resolve_command(ctx, args)
         if name in STUDIES or is_sampled(str(name), rest):
-            from petalfoil.cli.studies import study_command
+            from petalfoil.cli.study_commands import study_command
 
             command = study_command(str(name), rest)
         elif name in known_verbs.summaries():

@@ -156,7 +156,7 @@ class Outputs:
         if self.as_json:
             emit(answer.to_json() + "\n")
         else:
-            from petalfoil.cli.tables import render
+            from petalfoil.cli.printed_tables import render
 
             emit(render(answer))
 

@@ -10,10 +10,10 @@ import typer
 from petalfoil.cli.commands import HELP, JSON, PLOT
 from petalfoil.cli.failures import handled
 from petalfoil.cli.outputs import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
-from petalfoil.cli.studies import Memory, Scheduler, Workers, run_and_tell
+from petalfoil.cli.study_commands import Memory, Scheduler, Workers, run_and_tell
 from petalfoil.cli.study_outputs import deliver
 from petalfoil.errors import UsageError
-from petalfoil.studies.definition import Study
+from petalfoil.studies.study_definition import Study
 
 Folder = Annotated[Path, typer.Argument(metavar="FOLDER", help="Folder of the study.")]
 Result = Annotated[list[str] | None, typer.Option("--of", metavar="RESULT", help="Result to draw, as often as needed.")]
@@ -84,9 +84,9 @@ def export(folder: Folder, to: Target, case: Number = None) -> None:
     Example: petalfoil study export study/ --case 17 --to best.toml
     """
     from petalfoil.results.store import save
-    from petalfoil.studies.dataset import write_table
-    from petalfoil.studies.export import write_case
+    from petalfoil.studies.case_files import write_case
     from petalfoil.studies.run import stored
+    from petalfoil.studies.study_dataset import write_table
 
     with handled():
         check_file(to, "--to", (".toml",) if case is not None else (*DATA_SUFFIXES, ".csv"))

@@ -13,15 +13,15 @@ from rich.console import Console
 from rich.table import Table
 
 from petalfoil.cli.failures import NOT_CONVERGED
+from petalfoil.cli.printed_tables import PIPE_WIDTH
 from petalfoil.cli.streams import emit, say
-from petalfoil.cli.tables import PIPE_WIDTH
-from petalfoil.studies import summary
+from petalfoil.studies import study_summary
 from petalfoil.text import for_terminal
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from petalfoil.studies.engine import ProcessorTime
+    from petalfoil.studies.case_engine import ProcessorTime
 
 MOST_REASONS = 5
 
@@ -35,10 +35,10 @@ def deliver(ds: xr.Dataset, folder: Path, *, as_json: bool, effort: ProcessorTim
         No case has an answer.
     """
     if as_json:
-        emit(json.dumps({**summary.to_json(ds), "folder": str(folder)}, allow_nan=False) + "\n")
+        emit(json.dumps({**study_summary.to_json(ds), "folder": str(folder)}, allow_nan=False) + "\n")
     else:
         emit(text_of(ds) + f"\nFolder: {for_terminal(str(folder))}\n")
-    for reason, count in Counter(summary.reasons(ds)).most_common(MOST_REASONS):
+    for reason, count in Counter(study_summary.reasons(ds)).most_common(MOST_REASONS):
         say(f"{count} without an answer: {reason}")
     if effort is not None and effort.solver > 0.0:
         say(
@@ -53,10 +53,10 @@ def text_of(ds: xr.Dataset) -> str:
     """Headline, tables, what was asked."""
     console = Console(width=PIPE_WIDTH, markup=False, highlight=False, emoji=False)
     with console.capture() as capture:
-        console.print(for_terminal(summary.headline(ds)), style="bold")
-        for line in summary.asked(ds):
+        console.print(for_terminal(study_summary.headline(ds)), style="bold")
+        for line in study_summary.asked(ds):
             console.print(for_terminal(line))
-        for heads, lines in summary.tables(ds):
+        for heads, lines in study_summary.tables(ds):
             console.print(_table(heads, lines))
     return "\n".join(line.rstrip() for line in capture.get().rstrip().splitlines()) + "\n"
 

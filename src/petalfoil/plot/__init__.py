@@ -29,7 +29,7 @@ In the order data flows:
 - ``study_tolerance`` scatter of results with limits (`tolerance`)
 - ``study_optimum`` an optimisation and its front (`optimum`)
 - ``study_sobol``  Sobol' indices (`sobol`)
-- ``studies``      the figures of a study by name (`study`, `study_figures`)
+- ``figures_of_study`` the figures of a study by name (`study`, `study_figures`)
 - ``generic``      any other result (`quantities`)
 - ``figure_registry`` the figure of each analysis (`summary`), and new ones (`register`)
 
@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from petalfoil.plot.characteristics import curve, hysteresis, load_characteristic, static
     from petalfoil.plot.dynamic_coefficients import coefficients
     from petalfoil.plot.figure_registry import register, summary
+    from petalfoil.plot.figures_of_study import study, study_figures
     from petalfoil.plot.film_fields import maps, petal_profiles, pressure_and_film
     from petalfoil.plot.generic import quantities
     from petalfoil.plot.grid_convergence import convergence
@@ -62,7 +63,6 @@ if TYPE_CHECKING:
     from petalfoil.plot.spectra import orbit_spectrum, orbit_waterfall
     from petalfoil.plot.speed_sweeps import liftoff, runup
     from petalfoil.plot.stability_maps import stability
-    from petalfoil.plot.studies import study, study_figures
     from petalfoil.plot.study_optimum import optimum
     from petalfoil.plot.study_sobol import sobol
     from petalfoil.plot.study_sweeps import parallel_coordinates, scatter_matrix, sweep
@@ -86,7 +86,7 @@ _MODULES = {
     "spectra": ("orbit_spectrum", "orbit_waterfall"),
     "speed_sweeps": ("liftoff", "runup"),
     "stability_maps": ("stability",),
-    "studies": ("study", "study_figures"),
+    "figures_of_study": ("study", "study_figures"),
     "study_tolerance": ("tolerance",),
     "study_optimum": ("optimum",),
     "study_sobol": ("sobol",),

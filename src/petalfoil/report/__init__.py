@@ -13,7 +13,7 @@ The figures and claims of the paper, computed again under varied assumptions (`r
 `page_figures.py`           figures of the page that no other page has
 `page_tables.py`            results as tables of text
 `html.py`                   elements of a page without external references, from `templates/`
-`page.py`                   the page
+`paper_page.py`                   the page
 `report_files.py`           page, NetCDF, CSV and JSON in a folder
 `reproduce.py`              the whole report
 ==========================  =================================================================================

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from petalfoil.errors import StoreError
-from petalfoil.report import page, page_tables
+from petalfoil.report import page_tables, paper_page
 from petalfoil.report.assumptions import AssumptionResult
 from petalfoil.report.claims import Evidence, claims
 from petalfoil.report.interpretations import Interpretation
@@ -44,7 +44,7 @@ def write(evidence: Evidence, folder: Path) -> Path:
         for name, sheet in sheets.items():
             _put(folder / name, csv_text(sheet))
         _put(folder / SUMMARY, json.dumps(summary(evidence), indent=1, allow_nan=False, ensure_ascii=False) + "\n")
-        _put(folder / PAGE, page.render(evidence, (*sheets, SUMMARY, *curves)))
+        _put(folder / PAGE, paper_page.render(evidence, (*sheets, SUMMARY, *curves)))
     except OSError as error:
         raise StoreError(f"cannot write to {folder}: {error.strerror}") from error
     for name, dataset in curves.items():

@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
 from petalfoil.analysis.known_verbs import summaries
-from petalfoil.studies.definition import Study
 from petalfoil.studies.plan import Point
 from petalfoil.studies.question import CaseOutcome, Question
 from petalfoil.studies.search import Gradients, Slopes
+from petalfoil.studies.study_definition import Study
 
 Ask: TypeAlias = Callable[[Sequence[Point], Question], list[CaseOutcome]]
 

@@ -12,10 +12,7 @@ import xarray as xr
 
 from petalfoil.case import Case
 from petalfoil.errors import UsageError
-from petalfoil.studies.dataset import dataset
-from petalfoil.studies.definition import Study
-from petalfoil.studies.descent import along_gradients
-from petalfoil.studies.export import write_case
+from petalfoil.studies.case_files import write_case
 from petalfoil.studies.goals import Goals, front
 from petalfoil.studies.gradients import gradients_of
 from petalfoil.studies.limits import refuse_absent, value_of
@@ -24,7 +21,10 @@ from petalfoil.studies.question import CONVERGED, CaseOutcome, Question
 from petalfoil.studies.run import Execution, Kind, Runner, run
 from petalfoil.studies.sampling import by_sampling
 from petalfoil.studies.search import Answer, DesignSearch, Gradients, interval_of
-from petalfoil.studies.store import Store
+from petalfoil.studies.slsqp import along_gradients
+from petalfoil.studies.study_dataset import dataset
+from petalfoil.studies.study_definition import Study
+from petalfoil.studies.study_store import Store
 from petalfoil.studies.variation import Interval, Variation, read_range
 from petalfoil.units.reading import shown
 

@@ -19,13 +19,13 @@ import xarray as xr
 
 from petalfoil.errors import StoreError, UsageError
 from petalfoil.results.store import save
-from petalfoil.studies import store as folders
-from petalfoil.studies.dataset import write_table
-from petalfoil.studies.definition import FILE, NEIGHBOURS, Study
-from petalfoil.studies.engine import Engine, ProcessorTime, engine
+from petalfoil.studies import study_store as folders
+from petalfoil.studies.case_engine import Engine, ProcessorTime, engine
 from petalfoil.studies.plan import Point
 from petalfoil.studies.question import ERROR, CaseOutcome, CaseTask, Question
-from petalfoil.studies.store import Store
+from petalfoil.studies.study_dataset import write_table
+from petalfoil.studies.study_definition import FILE, NEIGHBOURS, Study
+from petalfoil.studies.study_store import Store
 
 Progress: TypeAlias = Callable[[float, str], None]
 
@@ -279,7 +279,7 @@ def stored(folder: str | Path) -> xr.Dataset:
 
 def complete(folder: Path, study: Study, ds: xr.Dataset) -> None:
     """Write what a finished study leaves: data, table, figures, page, and what its kind adds."""
-    from petalfoil.studies.page import write_page
+    from petalfoil.studies.study_page import write_page
 
     save(ds, folder / folders.DATA)
     write_table(folder / folders.TABLE, ds)

@@ -22,14 +22,14 @@ from numpy.typing import NDArray
 
 from petalfoil.case import Case
 from petalfoil.errors import UsageError
-from petalfoil.studies.dataset import dataset
-from petalfoil.studies.definition import Study
 from petalfoil.studies.limits import refuse_absent, result_of, value_of
 from petalfoil.studies.plan import Plan, names_of, points_at, refuse_repeated, refuse_too_many
 from petalfoil.studies.question import CaseOutcome, Question
 from petalfoil.studies.run import Execution, Kind, Runner, run
-from petalfoil.studies.store import Store
-from petalfoil.studies.summary import plain, results
+from petalfoil.studies.study_dataset import dataset
+from petalfoil.studies.study_definition import Study
+from petalfoil.studies.study_store import Store
+from petalfoil.studies.study_summary import plain, results
 from petalfoil.studies.variation import SCATTER, Variation, read_range, read_scatter
 
 SAMPLES = 256

@@ -9,12 +9,12 @@ from typing import Any
 import xarray as xr
 
 from petalfoil.case import Case
-from petalfoil.studies.dataset import dataset
-from petalfoil.studies.definition import Study
 from petalfoil.studies.plan import Plan, grid, sample
 from petalfoil.studies.question import Question
 from petalfoil.studies.run import Execution, Kind, Runner, key_of, run
-from petalfoil.studies.store import Store
+from petalfoil.studies.study_dataset import dataset
+from petalfoil.studies.study_definition import Study
+from petalfoil.studies.study_store import Store
 from petalfoil.studies.variation import read_levels, read_range
 
 

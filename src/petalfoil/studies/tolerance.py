@@ -16,16 +16,16 @@ from numpy.typing import NDArray
 from petalfoil.analysis.derivatives import GROWTH
 from petalfoil.case import Case
 from petalfoil.errors import UsageError
-from petalfoil.studies.dataset import dataset
-from petalfoil.studies.definition import Study
 from petalfoil.studies.gradients import ALL, derivative_question, slopes_of
 from petalfoil.studies.limits import ResultLimit, refuse_absent, value_of
 from petalfoil.studies.plan import Plan, Point, points_at, read_sample, refuse_repeated, unit_sample
 from petalfoil.studies.question import CaseOutcome, Question
 from petalfoil.studies.run import Execution, Kind, Runner, key_of, run
 from petalfoil.studies.search import Slopes
-from petalfoil.studies.store import Store
-from petalfoil.studies.summary import plain, results
+from petalfoil.studies.study_dataset import dataset
+from petalfoil.studies.study_definition import Study
+from petalfoil.studies.study_store import Store
+from petalfoil.studies.study_summary import plain, results
 from petalfoil.studies.variation import Scatter, read_scatter
 
 FloatArray = NDArray[np.float64]

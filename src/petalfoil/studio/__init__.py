@@ -4,11 +4,11 @@ What is asked and computed, without widgets:
 
 - ``design``        tables of a case as they were typed
 - ``form``          the fields of a case, read from its definitions
-- ``session``       one tab: its design, its answers, what was tried
+- ``page_session``       one tab: its design, its answers, what was tried
 - ``state``         what of a session is shown
 - ``live``          answers that follow a design while it changes
 - ``protocol``      what server and workers say to each other
-- ``engine``        the workers and their queue
+- ``worker_pool``        the workers and their queue
 - ``worker_process`` the server's end of a worker
 - ``worker``        the process that computes
 - ``lifeline``      ends it with the server

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from petalfoil.errors import UsageError
-from petalfoil.studio.engine import WorkerPool, default_size
+from petalfoil.studio.worker_pool import WorkerPool, default_size
 
 LOOPBACK = "127.0.0.1"
 

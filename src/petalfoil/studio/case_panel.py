@@ -9,7 +9,7 @@ from nicegui import ui
 
 from petalfoil.case import Case
 from petalfoil.studio.form import Control, FormEntry, FormSection, Slider, sections, sliders_of
-from petalfoil.studio.session import Session
+from petalfoil.studio.page_session import Session
 
 THROTTLE = 0.08
 """Time between two values of a slider that moves [s]."""

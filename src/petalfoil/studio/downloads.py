@@ -10,8 +10,8 @@ from typing import Any
 
 from nicegui import ui
 
+from petalfoil.studio.page_session import Session
 from petalfoil.studio.protocol import Found, Work
-from petalfoil.studio.session import Session
 from petalfoil.studio.state import ShownResult
 from petalfoil.text import for_terminal
 

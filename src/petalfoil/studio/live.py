@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 from petalfoil.analysis.declaration import ERROR
 from petalfoil.case import Case, Method, ModelKind
-from petalfoil.studio.engine import Job, WorkerPool, words_of
 from petalfoil.studio.protocol import Cancelled, Done, Failure, Found, Work
 from petalfoil.studio.state import Aspect, ShownResult
+from petalfoil.studio.worker_pool import Job, WorkerPool, words_of
 from petalfoil.walls import Capability, wall_kind
 
 if TYPE_CHECKING:
     from petalfoil.studio.design import Design
-    from petalfoil.studio.session import Session
+    from petalfoil.studio.page_session import Session
 
 FINE_CELLS = 64
 """Cells per pitch of a 2-D grid above which a coarse answer comes first: below, the answer itself is as quick."""

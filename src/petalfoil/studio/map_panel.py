@@ -8,9 +8,9 @@ import numpy as np
 from nicegui import ui
 
 from petalfoil.studio.charts import map_chart, titled, unit_of
+from petalfoil.studio.page_session import MAP, Session
 from petalfoil.studio.parameter_choice import NOTHING, USUAL, ParameterChoice, as_typed
 from petalfoil.studio.protocol import Mapped
-from petalfoil.studio.session import MAP, Session
 from petalfoil.studio.study_panel import StudyPanel
 
 FIRST = "min_film_thickness"

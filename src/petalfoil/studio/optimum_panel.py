@@ -8,9 +8,9 @@ import numpy as np
 from nicegui import ui
 
 from petalfoil.studio.charts import label_of, optimum_axes, optimum_chart, titled
+from petalfoil.studio.page_session import OPTIMUM, Session
 from petalfoil.studio.parameter_choice import NOTHING, USUAL, ParameterChoice, as_typed
 from petalfoil.studio.protocol import Searched
-from petalfoil.studio.session import OPTIMUM, Session
 from petalfoil.studio.study_panel import StudyPanel
 
 DESIGNS = 40

@@ -18,10 +18,10 @@ from petalfoil.studio.downloads import download_menu, quiet_button
 from petalfoil.studio.look import STYLE
 from petalfoil.studio.map_panel import MapPanel
 from petalfoil.studio.optimum_panel import OptimumPanel
+from petalfoil.studio.page_session import Session
 from petalfoil.studio.questions import Questions
 from petalfoil.studio.results_panel import ResultsPanel
 from petalfoil.studio.section_chart import has_section, section_chart
-from petalfoil.studio.session import Session
 from petalfoil.studio.state import Aspect, Tried
 from petalfoil.studio.themes import DARK, LIGHT, Theme
 from petalfoil.text import for_terminal

@@ -15,8 +15,8 @@ from petalfoil.results.tables import TextTable
 from petalfoil.studio.charts import axes_of, chart_of, is_drawn, titled, usual_axes
 from petalfoil.studio.downloads import download_menu
 from petalfoil.studio.form import label_of_argument, with_labels
+from petalfoil.studio.page_session import Session
 from petalfoil.studio.protocol import Found
-from petalfoil.studio.session import Session
 from petalfoil.studio.state import ShownResult
 from petalfoil.studio.tasks import found_analysis
 from petalfoil.studio.themes import DARK, LIGHT, Theme

@@ -10,8 +10,8 @@ from nicegui import ui
 
 from petalfoil.results.summary import cell, in_order, shown_as, with_bar
 from petalfoil.studio.downloads import quiet_button
+from petalfoil.studio.page_session import Session
 from petalfoil.studio.protocol import Found
-from petalfoil.studio.session import Session
 from petalfoil.studio.state import ShownResult
 
 HIDDEN = {

@@ -18,11 +18,11 @@ from nicegui.dependencies import esm_modules
 
 from petalfoil.studio.address import Address
 from petalfoil.studio.design import Design
-from petalfoil.studio.engine import WorkerPool
 from petalfoil.studio.guard import Guard
 from petalfoil.studio.page import Page
-from petalfoil.studio.session import Session
+from petalfoil.studio.page_session import Session
 from petalfoil.studio.tasks import warm_up
+from petalfoil.studio.worker_pool import WorkerPool
 
 MOST_SESSIONS = 64
 """Tabs whose state is kept; beyond, the one that was left longest ago is forgotten."""

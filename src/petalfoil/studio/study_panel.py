@@ -7,7 +7,7 @@ from typing import Any, Generic, TypeVar
 
 from nicegui import events, ui
 
-from petalfoil.studio.session import Session
+from petalfoil.studio.page_session import Session
 from petalfoil.studio.themes import DARK, LIGHT, Theme
 
 Found = TypeVar("Found")

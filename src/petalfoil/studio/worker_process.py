@@ -14,7 +14,7 @@ from petalfoil.studio.lifeline import COMMAND
 from petalfoil.studio.protocol import HEADER, Cancel, Message, Ready, frame, unframed
 
 if TYPE_CHECKING:
-    from petalfoil.studio.engine import Job
+    from petalfoil.studio.worker_pool import Job
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 """Variables that limit the threads of a worker to one: parallel work is over tasks."""

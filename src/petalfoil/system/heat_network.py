@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.case import Case, Heat
-from petalfoil.case.heat import HotGas
+from petalfoil.case.heat_table import HotGas
 from petalfoil.physics.heat import FILM, OTHER, OWN
 from petalfoil.system.temperatures import Temperatures
 

@@ -21,7 +21,7 @@ from petalfoil.analysis.runs import Points
 from petalfoil.analysis.solve import solve
 from petalfoil.analysis.stability import stability
 from petalfoil.case import Case
-from petalfoil.cli.tables import render
+from petalfoil.cli.printed_tables import render
 from petalfoil.equilibrium.run_context import Progress
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.layout import Answer, Series, SinglePoint

@@ -19,7 +19,7 @@ VARY = ["--vary", "operation.eccentricity.y=0 um, -20 um, -1 mm", "--vary", "mod
 
 @pytest.fixture(autouse=True)
 def _no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("petalfoil.studies.page.write_page", lambda folder, ds: None)
+    monkeypatch.setattr("petalfoil.studies.study_page.write_page", lambda folder, ds: None)
 
 
 def run(*words: str) -> Result:

@@ -16,7 +16,7 @@ from petalfoil.errors import UsageError
 from petalfoil.results.schema import SCALARS, DataType, Role
 from petalfoil.studies import question
 from petalfoil.studies.run import Execution, resume
-from petalfoil.studies.summary import headline
+from petalfoil.studies.study_summary import headline
 from petalfoil.studies.sweep import sweep
 from tests.cases import case
 
@@ -28,7 +28,7 @@ VARY = {"gas.viscosity": "18 uPa s : 19 uPa s : 4"}
 
 @pytest.fixture(autouse=True)
 def _no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("petalfoil.studies.page.write_page", lambda folder, ds: None)
+    monkeypatch.setattr("petalfoil.studies.study_page.write_page", lambda folder, ds: None)
 
 
 @pytest.fixture(autouse=True)

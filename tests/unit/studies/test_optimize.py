@@ -13,7 +13,6 @@ from numpy.testing import assert_allclose
 
 from petalfoil.case import Case, parameter_of
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.studies.descent import along_gradients
 from petalfoil.studies.goals import Goals, front
 from petalfoil.studies.optimize import optimize
 from petalfoil.studies.plan import Point
@@ -21,6 +20,7 @@ from petalfoil.studies.question import CONVERGED, NOT_CONVERGED, CaseOutcome
 from petalfoil.studies.run import Execution, stored
 from petalfoil.studies.sampling import by_sampling
 from petalfoil.studies.search import DesignSearch
+from petalfoil.studies.slsqp import along_gradients
 from petalfoil.studies.variation import Interval, Levels, Variation
 from tests.cases import case
 
@@ -35,7 +35,7 @@ COUNT = Interval(parameter_of(PAPER, "petals.count"), 2, 12)
 
 @pytest.fixture(autouse=True)
 def _no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("petalfoil.studies.page.write_page", lambda folder, ds: None)
+    monkeypatch.setattr("petalfoil.studies.study_page.write_page", lambda folder, ds: None)
 
 
 def played(points: Sequence[Point]) -> list[CaseOutcome]:

@@ -25,7 +25,7 @@ ISHIGAMI = {"S1": (0.31391, 0.44241, 0.0), "ST": (0.55759, 0.44241, 0.24368)}
 
 @pytest.fixture(autouse=True)
 def _no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("petalfoil.studies.page.write_page", lambda folder, ds: None)
+    monkeypatch.setattr("petalfoil.studies.study_page.write_page", lambda folder, ds: None)
 
 
 def ishigami(points: Sequence[dict[str, float | int]], fail: Sequence[int] = ()) -> list[CaseOutcome]:

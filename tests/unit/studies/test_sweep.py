@@ -16,12 +16,12 @@ from petalfoil import plot
 from petalfoil.errors import StoreError, UsageError
 from petalfoil.plot.study_views import in_unit, of_cases, parameters, result, shown_results
 from petalfoil.results.store import load
-from petalfoil.studies import store as folders
-from petalfoil.studies.definition import Study
-from petalfoil.studies.engine import InThisProcess
+from petalfoil.studies import study_store as folders
+from petalfoil.studies.case_engine import InThisProcess
 from petalfoil.studies.question import CONVERGED, INVALID, CaseOutcome, CaseTask, Question, answered
 from petalfoil.studies.run import Execution, resume, stored
-from petalfoil.studies.summary import results
+from petalfoil.studies.study_definition import Study
+from petalfoil.studies.study_summary import results
 from petalfoil.studies.sweep import sweep, sweep_study
 from tests.cases import case
 
@@ -43,7 +43,7 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, xr.Dataset]:
 @pytest.fixture(autouse=True)
 def _no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Figures take longer than these cases; the study of the fixture above has them."""
-    monkeypatch.setattr("petalfoil.studies.page.write_page", lambda folder, ds: None)
+    monkeypatch.setattr("petalfoil.studies.study_page.write_page", lambda folder, ds: None)
 
 
 def test_results_have_the_parameters_as_dimensions(swept: tuple[Path, xr.Dataset]) -> None:
@@ -116,7 +116,7 @@ def test_a_study_goes_on_where_it_was_stopped(
     assert int(half["converged"].sum()) == 4
     assert "not asked" in half["status"].values
     asked: list[str] = []
-    monkeypatch.setattr("petalfoil.studies.engine.answered", lambda task: asked.append(task.key) or answered(task))
+    monkeypatch.setattr("petalfoil.studies.case_engine.answered", lambda task: asked.append(task.key) or answered(task))
     whole = resume(tmp_path, ALONE)
     assert len(asked) == 2
     assert whole.identical(swept[1])
@@ -131,7 +131,7 @@ def _given(engine: InThisProcess) -> object:
 
 def test_a_finished_study_asks_nothing_again(swept: tuple[Path, xr.Dataset], monkeypatch: pytest.MonkeyPatch) -> None:
     folder, ds = swept
-    monkeypatch.setattr("petalfoil.studies.engine.answered", lambda task: pytest.fail("asked again"))
+    monkeypatch.setattr("petalfoil.studies.case_engine.answered", lambda task: pytest.fail("asked again"))
     assert resume(folder, ALONE).identical(ds)
 
 

@@ -32,7 +32,7 @@ FloatArray = NDArray[np.float64]
 
 @pytest.fixture(autouse=True)
 def _no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("petalfoil.studies.page.write_page", lambda folder, ds: None)
+    monkeypatch.setattr("petalfoil.studies.study_page.write_page", lambda folder, ds: None)
 
 
 def reference() -> list[dict[str, str]]:
@@ -139,11 +139,11 @@ def test_a_small_scatter_is_linear() -> None:
 
 
 def test_a_result_that_the_analysis_does_not_give_is_refused_after_one_case(monkeypatch: pytest.MonkeyPatch) -> None:
-    from petalfoil.studies import engine
+    from petalfoil.studies import case_engine
 
     asked: list[str] = []
-    real = engine.answered
-    monkeypatch.setattr(engine, "answered", lambda task: asked.append(task.key) or real(task))
+    real = case_engine.answered
+    monkeypatch.setattr(case_engine, "answered", lambda task: asked.append(task.key) or real(task))
     with pytest.raises(UsageError, match="solve gives no liftoff_speed; it gives "):
         tolerance(PLAIN, {"gas.viscosity": "± 1 %"}, limits=["liftoff_speed < 1 rpm"], samples=16, execution=ALONE)
     assert len(asked) == 1

@@ -10,7 +10,7 @@ import xarray as xr
 from petalfoil.case import Case, with_values
 from petalfoil.errors import UsageError
 from petalfoil.results.atomic import replacing
-from petalfoil.studies.definition import Study
+from petalfoil.studies.study_definition import Study
 
 
 def case_of(study: Study, ds: xr.Dataset, number: int) -> Case:

@@ -16,10 +16,10 @@ from typing import Any
 from petalfoil.case import Case
 from petalfoil.errors import DefinitionError
 from petalfoil.studio.design import Design
-from petalfoil.studio.engine import Job, WorkerPool, words_of
 from petalfoil.studio.live import Live, live_verb
 from petalfoil.studio.protocol import Done, Failure, Found, Mapped, Searched, Work
 from petalfoil.studio.state import Aspect, ShownResult, Status, Tried
+from petalfoil.studio.worker_pool import Job, WorkerPool, words_of
 
 MOST_TRIED, MOST_LINES = 40, 200
 """Designs and lines of the log that a session remembers."""

@@ -21,8 +21,8 @@ from petalfoil.cli.signals import exit_code_of
 from petalfoil.cli.streams import say
 from petalfoil.cli.study_outputs import deliver
 from petalfoil.errors import UnitError, UsageError
-from petalfoil.studies.definition import Study
 from petalfoil.studies.question import Question, analysis_of
+from petalfoil.studies.study_definition import Study
 from petalfoil.units import parse_quantity
 from petalfoil.units.reading import shown
 

@@ -12,8 +12,8 @@ from petalfoil import plot
 from petalfoil.report import html
 from petalfoil.report.page_tables import PageTable
 from petalfoil.results.atomic import replacing
-from petalfoil.studies import summary
-from petalfoil.studies.store import FIGURES, PAGE
+from petalfoil.studies import study_summary
+from petalfoil.studies.study_store import FIGURES, PAGE
 
 MOST_REASONS = 10
 
@@ -27,12 +27,12 @@ def write_page(folder: Path, ds: xr.Dataset) -> None:
         pictures.append(html.picture(fig, name.replace("_", " ")))
     body = [
         f"<h1>{escape(str(ds.attrs['title']) or ds.attrs['analysis'])}</h1>",
-        html.paragraph(summary.headline(ds)),
-        *(html.table(PageTable(heads, lines)) for heads, lines in summary.tables(ds)),
+        html.paragraph(study_summary.headline(ds)),
+        *(html.table(PageTable(heads, lines)) for heads, lines in study_summary.tables(ds)),
         *pictures,
         *_failures(ds),
         html.section("asked", "What was asked"),
-        html.bullets(summary.asked(ds)),
+        html.bullets(study_summary.asked(ds)),
         html.section("case", "Base case"),
         f"<pre>{escape(str(ds.attrs['case']))}</pre>",
     ]
@@ -41,7 +41,7 @@ def write_page(folder: Path, ds: xr.Dataset) -> None:
 
 
 def _failures(ds: xr.Dataset) -> list[str]:
-    told = Counter(summary.reasons(ds)).most_common(MOST_REASONS)
+    told = Counter(study_summary.reasons(ds)).most_common(MOST_REASONS)
     if not told:
         return []
     rows = tuple((str(count), text) for text, count in told)

@@ -17,9 +17,9 @@ from petalfoil.results.atomic import replacing
 from petalfoil.results.dataset import CONVENTIONS
 from petalfoil.results.record import Scalar, blank
 from petalfoil.results.schema import SCALARS, DataType, Role, Variable
-from petalfoil.studies.definition import Study
 from petalfoil.studies.plan import Plan
 from petalfoil.studies.question import NOT_CONVERGED, CaseOutcome
+from petalfoil.studies.study_definition import Study
 from petalfoil.studies.variation import Variation
 
 _DTYPES = {DataType.FLOAT: np.float64, DataType.INT: np.int64, DataType.BOOL: np.bool_, DataType.STR: np.str_}

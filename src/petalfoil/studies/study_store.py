@@ -22,8 +22,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from petalfoil.errors import StoreError, UsageError
-from petalfoil.studies.definition import FILE, Study
 from petalfoil.studies.question import CaseOutcome
+from petalfoil.studies.study_definition import FILE, Study
 
 INDEX, FIELDS, LOCK = "index.sqlite", "fields", ".lock"
 DATA, TABLE, FIGURES, PAGE = "study.nc", "table.csv", "figures", "index.html"
