@@ -26,7 +26,7 @@ from petalfoil.analysis.load_ray import Limits
 from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.response_derivatives import THRESHOLD, coefficient_results, stability_derivatives
 from petalfoil.analysis.sensitivity_table import ALL, Source
-from petalfoil.analysis.variation import VariedCase
+from petalfoil.analysis.varied_case import VariedCase
 from petalfoil.case import Case
 from petalfoil.equilibrium.continuation import rest
 from petalfoil.equilibrium.run_context import current_run
