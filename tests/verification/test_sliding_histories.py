@@ -18,15 +18,12 @@ from petalfoil.equilibrium.coulomb_path import slide_exactly
 from petalfoil.equilibrium.friction_path import FrictionResult
 from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.equilibrium.run_context import running
-from petalfoil.mesh.axial import axis_2d
-from petalfoil.mesh.pack import PackMesh
 from petalfoil.physics.dry_friction import Friction
-from petalfoil.physics.petal_sliding import Faces
+from petalfoil.physics.petal_membrane import StretchingPetal
 from petalfoil.solvers.contact_equations import ContactOptions
 from petalfoil.solvers.contact_newton import solve_contacts
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.friction import FrictionState
-from petalfoil.walls.elasticity import Elasticity
 from petalfoil.walls.sliding import membrane_force, stretching
 from tests.cases import case
 from tests.verification.shell_helpers import UNIT, ElasticProblem, strip_shell, uniform_grid, uniform_load
@@ -45,11 +42,8 @@ LOW, HIGH = 1.0, 2.0
 def leaf(cells: int, mu: float) -> tuple[ElasticProblem, Array, Friction]:
     """The leaf before the wall, forces of a unit pressure, friction of the mid-surface at the tip."""
     shell = strip_shell(uniform_grid(ARC, cells), 1.0)
-    mesh = PackMesh(1, cells, shell.phi, np.zeros(1), axis_2d(1.0))
-    faces = Faces(np.zeros(1), np.ones(1), np.ones(1), np.full(1, 12.0 * SLENDER**2))
-    bending = Elasticity(shell.difference[:, 1:], shell.strain, shell.rigidity_matrix)
     cell = ARC / cells
-    K = stretching(bending, mesh, faces).stiffness * (UNIT / cell)
+    K = stretching([StretchingPetal(shell, 12.0 * SLENDER**2)]).stiffness * (UNIT / cell)
     pressure = np.concatenate([uniform_load(shell)[1:, 0], np.zeros(cells)]) / cell
     G = sp.csr_array(([-1.0], ([0], [cells - 1])), shape=(1, 2 * cells))
     slip = sp.csr_array(([-1.0], ([0], [2 * cells - 1])), shape=(1, 2 * cells))
@@ -119,9 +113,8 @@ def test_the_membrane_carries_what_friction_pulls() -> None:
     cells = 32
     problem, unit, friction = leaf(cells, 0.2)
     (_, state) = led(problem, unit, friction, np.array([LOW, HIGH]))
-    mesh = PackMesh(1, cells, uniform_grid(ARC, cells), np.zeros(1), axis_2d(1.0))
-    faces = Faces(np.zeros(1), np.ones(1), np.ones(1), np.full(1, 12.0 * SLENDER**2))
-    force = membrane_force(mesh, faces, state.x * UNIT)
+    shell = strip_shell(uniform_grid(ARC, cells), 1.0)
+    force = membrane_force([StretchingPetal(shell, 12.0 * SLENDER**2)], state.x * UNIT)
     assert state.friction.force[0] != 0.0
     assert_allclose(force, np.full(force.shape, state.friction.force[0] * ARC / cells), rtol=1e-6)
 

@@ -16,15 +16,13 @@ from numpy.typing import NDArray
 
 from petalfoil.equilibrium.coulomb_path import slide_exactly
 from petalfoil.equilibrium.friction_path import FrictionResult
-from petalfoil.mesh.axial import axis_2d
-from petalfoil.mesh.pack import PackMesh
 from petalfoil.physics.dry_friction import Friction
+from petalfoil.physics.petal_membrane import StretchingPetal
 from petalfoil.physics.petal_sliding import INNER, OUTER, Faces
 from petalfoil.solvers.contact_equations import ContactOptions
 from petalfoil.solvers.contact_newton import solve_contacts
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.friction import FrictionState
-from petalfoil.walls.elasticity import Elasticity
 from petalfoil.walls.sliding import node_slopes, stretching
 from tests.verification.shell_helpers import UNIT, ElasticProblem, strip_shell, uniform_grid, uniform_load
 
@@ -40,11 +38,8 @@ FLAT = 1e8
 def leaves(cells: int, mu: float) -> tuple[ElasticProblem, Array, Friction]:
     """Both leaves pressed together, the force of a unit tip load shared by both, friction between their faces."""
     shell, cell, two = strip_shell(uniform_grid(1.0, cells), 0.0), 1.0 / cells, np.ones(2)
-    mesh = PackMesh(2, cells, shell.phi, np.zeros(2), axis_2d(1.0))
     faces = Faces(0.5 * DELTA * two, two, FLAT * two, 12.0 / DELTA**2 * two)
-    difference = sp.block_diag([shell.difference[:, 1:]] * 2, format="csr")
-    strain, rigidity = (sp.block_diag([one] * 2, format="csr") for one in (shell.strain, shell.rigidity_matrix))
-    K = stretching(Elasticity(difference, strain, rigidity), mesh, faces).stiffness * (UNIT / cell)
+    K = stretching([StretchingPetal(shell, 12.0 / DELTA**2)] * 2).stiffness * (UNIT / cell)
     press, still = PRESS * uniform_load(shell)[1:, 0] / cell, np.zeros(2 * cells)
     tip = np.zeros(4 * cells)
     tip[[cells - 1, 2 * cells - 1]] = 0.5 / cell

@@ -240,7 +240,9 @@ def test_a_stiffer_membrane_holds_more_and_no_friction_holds_nothing() -> None:
 
 def test_where_petals_do_not_slide_is_said() -> None:
     """3-D is refused; friction in 2-D slides unless it is told not to."""
-    with pytest.raises(DefinitionError, match=r'petals\.theory: petals that stretch .* allowed: "inextensible"'):
+    with pytest.raises(
+        DefinitionError, match=r'petals\.theory: friction of petals that stretch .* allowed: "inextensible"'
+    ):
         case("paper_n8_spatial", **{"petals.theory": "shell"})
     with pytest.raises(DefinitionError, match=r"petals\.theory"):
         case("paper_n8", **{"petals.theory": "shel"})

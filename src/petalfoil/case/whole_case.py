@@ -124,8 +124,7 @@ def _history_problems(case: Case) -> Iterator[Problem]:
 
 def _method_problems(case: Case) -> Iterator[Problem]:
     if case.petal_theory is PetalTheory.SHELL and case.model.kind is ModelKind.THREE_D:
-        text = 'petals that stretch are modelled in 2-D alone; allowed: "inextensible", or model.kind = "2d"'
-        yield Problem("petals.theory", text, "shell", "inextensible")
+        yield from _stretching_problems(case)
     if case.petal_theory is PetalTheory.SHELL and case.backing is not None:
         text = 'petals that stretch are modelled on a rigid bushing alone; allowed: "inextensible", or no [backing]'
         yield Problem("petals.theory", text, "shell", "inextensible, or no [backing]")
@@ -135,6 +134,15 @@ def _method_problems(case: Case) -> Iterator[Problem]:
     if case.model.method is Method.CLASSIC and case.backing is not None:
         text = 'the paper has no backing springs; allowed: "newton", or no [backing]'
         yield Problem("model.method", text, "classic", "newton, or no [backing]")
+
+
+def _stretching_problems(case: Case) -> Iterator[Problem]:
+    if case.surface.petal_friction > 0.0:
+        text = 'friction of petals that stretch is modelled in 2-D alone; allowed: "inextensible", or no friction'
+        yield Problem("petals.theory", text, "shell", "inextensible, or surface.petal_friction = 0")
+    if case.model.method is Method.CLASSIC:
+        text = 'the paper\'s petals do not stretch; allowed: "inextensible", or model.method = "newton"'
+        yield Problem("petals.theory", text, "shell", "inextensible, or newton")
 
 
 def _second_problems(case: Case) -> Iterator[Problem]:

@@ -21,6 +21,7 @@ from petalfoil.solvers.contact_newton import solve_contacts
 from petalfoil.system.build import build_problem, build_tilting
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE
+from petalfoil.walls import wall_kind
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -139,7 +140,8 @@ def mirrored(known: Solution, problem: CoupledProblem) -> tuple[Array, Mask]:
     pressure, P = axial.whole(known.problem.pressure(known.x)), np.empty(film.n_unknown)
     P[film.unknown[inside]] = pressure[inside]
     w = known.x[half.unknowns[DEFLECTION]] * (half.scales.length / problem.layout.scales.length)
-    x = problem.layout.unknowns.join({DEFLECTION: over_whole(w, axial), PRESSURE: P})
+    whole = wall_kind(half.case).over_whole_length(half.case, w)
+    x = problem.layout.unknowns.join({DEFLECTION: whole, PRESSURE: P})
     return x, over_whole(known.active.astype(np.float64), axial) > 0.5
 
 

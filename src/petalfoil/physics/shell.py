@@ -82,7 +82,7 @@ class PetalShell:
         Curvatures from these differences keep digits that second differences of `W` would lose.
         """
         n, n_z = len(self.phi), len(self.axial.z)
-        d_phi, d_z = _neighbour_differences(n), _neighbour_differences(n_z)
+        d_phi, d_z = neighbour_differences(n), neighbour_differences(n_z)
         along, across = sp.kron(d_phi, sp.eye_array(n_z)), sp.kron(sp.eye_array(n), d_z)
         return sp.csr_array(sp.vstack([along, across, sp.kron(d_phi, d_z), sp.eye_array(n * n_z)], format="csr"))
 
@@ -180,7 +180,7 @@ class PetalShell:
             `motions^T f + support W = 0`.
         """
         n_z = len(self.axial.z)
-        along = (self._second_phi @ _neighbour_differences(len(self.phi))).toarray() / self.metric_radius**2
+        along = (self._second_phi @ neighbour_differences(len(self.phi))).toarray() / self.metric_radius**2
         along += np.diag(self._bent / self.bend_radius**2)
         seeds = [(1.0, -along[0, 0] / along[0, 1])] if self.clamped else [(1.0, 1.0), (0.0, 1.0)]
         motions = np.zeros((len(self.phi), len(seeds)))
@@ -201,9 +201,11 @@ def _along(matrix: sp.csr_array, values: Array, axis: int) -> Array:
     return np.moveaxis(applied.reshape(matrix.shape[0], *first.shape[1:]), 0, axis)
 
 
-def _neighbour_differences(n: int) -> sp.csr_array:
-    """Matrix of differences of neighbours among `n` values, shape (n - 1, n)."""
-    one = np.ones(max(n - 1, 0))
+def neighbour_differences(n: int) -> sp.csr_array:
+    """Matrix of differences of neighbours among `n` values, shape (n - 1, n), of none (0, 0)."""
+    if n == 0:
+        return sp.csr_array((0, 0))
+    one = np.ones(n - 1)
     return sp.csr_array(sp.diags_array([-one, one], offsets=[0, 1], shape=(n - 1, n)))
 
 

@@ -7,7 +7,7 @@
 `petals.py`          a leaf pack
 `element_pack.py`    the same in cubic elements, 2-D
 `pack_slip.py`       slip at its contact points
-`sliding.py`         a leaf pack with tangential displacements, on nodes
+`sliding.py`         a leaf pack whose petals move in their own surface and stretch, on nodes
 `bump_foil.py`       a bump foil under a smooth top foil
 `backing.py`         backing springs behind petals
 `rigid.py`           a rigid bore: plain gas journal bearing

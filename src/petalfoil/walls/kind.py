@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.case import Case, WallTable
-from petalfoil.walls.base import Wall, WallState
+from petalfoil.walls.base import Wall, WallState, axial_grid
 from petalfoil.walls.element_pack import ElementPack
 
 Array = NDArray[np.float64]
@@ -64,6 +64,11 @@ class WallKind(ABC):
         if len(touching):
             fields["journal_contact_pressure"] = whole(touching.reshape(wall.film.shape))
         return fields
+
+    def over_whole_length(self, case: Case, deflection: Array) -> Array:
+        """Deflections (n,) on half of a length, `case`, mirrored over the whole; stations are in the last place."""
+        axial = axial_grid(case)
+        return axial.whole(deflection.reshape(-1, len(axial.z))).ravel()
 
     def pitch(self, case: Case) -> float | None:
         """Angle by which the wall repeats round the shaft [rad]; None where it is the same all round."""

@@ -10,13 +10,14 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.case import Case, Edges, Method, Mount, PackGeometry, Petals, PetalTheory
+from petalfoil.case import Case, Edges, Method, ModelKind, Mount, PackGeometry, Petals, PetalTheory
 from petalfoil.case.petal_table import Petal
 from petalfoil.mesh.pack import PackMesh, pack_mesh
 from petalfoil.mesh.strips import exposed_strips
 from petalfoil.physics.contact import PetalSizes, pack_contacts
 from petalfoil.physics.dry_friction import petal_slip
 from petalfoil.physics.forces import node_area
+from petalfoil.physics.petal_membrane import StretchingPetal
 from petalfoil.physics.petal_sliding import Faces
 from petalfoil.physics.shell import PetalShell, bending_stress
 from petalfoil.walls.backing import covered, on_springs
@@ -25,7 +26,7 @@ from petalfoil.walls.bump_foil import foundation_stiffness
 from petalfoil.walls.elasticity import Elasticity
 from petalfoil.walls.element_pack import ElementPack, element_pack
 from petalfoil.walls.kind import Capability, Fields, Scalars, WallKind
-from petalfoil.walls.sliding import membrane_force, sliding
+from petalfoil.walls.sliding import membrane_force, over_whole_length, sliding
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -90,10 +91,19 @@ def petal_faces(case: Case) -> Faces:
     )
 
 
-def slides(case: Case) -> bool:
-    """Whether friction can hold petals that move along themselves; without it they do not feel that they do."""
-    rubs = case.surface.petal_friction > 0.0 and case.model.method is Method.NEWTON
-    return rubs and case.petal_theory is PetalTheory.SHELL
+def stretches(case: Case) -> bool:
+    """Whether petals stretch: in 3-D by their theory; in 2-D nothing but friction can stretch them."""
+    alone = case.model.kind is ModelKind.TWO_D and not case.surface.petal_friction > 0.0
+    return case.petal_theory is PetalTheory.SHELL and case.model.method is Method.NEWTON and not alone
+
+
+def stretching_petals(case: Case, shells: list[PetalShell]) -> list[StretchingPetal]:
+    """Petals that bend as `shells`, and stretch; equal ones are the same object."""
+    petals, made = petals_of(case)[0].each, dict[int, StretchingPetal]()
+    for petal, shell in zip(petals, shells, strict=True):
+        if id(shell) not in made:
+            made[id(shell)] = StretchingPetal(shell, petal.membrane_stiffness)
+    return [made[id(shell)] for shell in shells]
 
 
 def pack_elasticity(shells: list[PetalShell], mesh: PackMesh) -> Elasticity:
@@ -155,8 +165,8 @@ class PetalWall(WallKind):
             slip=slip,
             reaction_share=reaction_share,
         )
-        if slides(case):
-            return sliding(wall, mesh, petal_faces(case))
+        if stretches(case):
+            return sliding(wall, mesh, stretching_petals(case, shells), petal_faces(case))
         return wall if case.backing is None else on_springs(wall, mesh, case.backing, springs_from(case))
 
     def elements(self, case: Case, wall: Wall) -> ElementPack | None:
@@ -196,11 +206,12 @@ class PetalWall(WallKind):
         }
 
     def _stretched(self, case: Case, mesh: PackMesh, displacement: Array) -> Fields:
-        """Stress of the membranes, where friction stretches petals: they have tangential displacements."""
-        if not slides(case) or len(displacement) == mesh.count * (mesh.n_node - 1) * mesh.n_z:
+        """Stress of the membranes, where petals stretch: they have displacements in their own surface."""
+        if not stretches(case) or len(displacement) == mesh.count * (mesh.n_node - 1) * mesh.n_z:
             return {}
         thickness = np.array([petal.thickness for petal in petals_of(case)[0].each])
-        stress = membrane_force(mesh, petal_faces(case), displacement) / thickness[:, None, None]
+        force = membrane_force(stretching_petals(case, build_shells(case, mesh)), displacement)
+        stress = force / thickness[:, None, None]
         return {"membrane_stress": mesh.axial.whole(stress)}
 
     def _placed(self, case: Case, contacts: PlacedContacts) -> Fields:
@@ -220,6 +231,12 @@ class PetalWall(WallKind):
             "contact_force": contacts.force,
             "contact_bending_stress": np.take_along_axis(stress, larger[:, None], axis=1)[:, 0],
         }
+
+    def over_whole_length(self, case: Case, deflection: Array) -> Array:
+        """Displacements of petals that stretch are at nodes and at cells."""
+        if not stretches(case):
+            return super().over_whole_length(case, deflection)
+        return over_whole_length(deflection, build_mesh(case))
 
     def coordinates(self, case: Case, wall: Wall) -> Fields:
         """Angle from the root of a petal [rad]."""

@@ -1,16 +1,13 @@
-"""A leaf pack whose petals also move along themselves and stretch: tangential displacements `V` behind all deflections.
+"""A leaf pack whose petals also move in their own surface and stretch.
 
-In each cell between two nodes the membrane strain is one number (M1),
-
-    eps = (V_{i+1} - V_i) / (r_m dphi_i) + (W_i + W_{i+1}) / (2 R_p) ,   E_m = 1/2 sum B eps^2 r_m dphi_i omega_z  (M5)
-
-one strain for one further unknown, so that nothing locks. Axial stations stretch each by itself. `V` is zero at the
-root; pressure and contacts without friction do not act on it, the membrane force is then zero, and the balance (S4) of
-bending alone holds.
+Behind the deflections of all petals follow their displacements along themselves, `V` at the nodes, and in 3-D those
+along the shaft, `U` at the cells (`physics.petal_membrane`). In 2-D nothing but friction acts on `V`: without it the
+membrane force is zero.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,26 +17,31 @@ from numpy.typing import NDArray
 from petalfoil.mesh.pack import PackMesh
 from petalfoil.physics.contact import Contacts
 from petalfoil.physics.dry_friction import slopes
+from petalfoil.physics.petal_membrane import StretchingPetal
 from petalfoil.physics.petal_sliding import INNER, OUTER, Faces
 from petalfoil.sparsity import SparseRows
 from petalfoil.walls.base import Wall
 from petalfoil.walls.elasticity import Elasticity
 
 Array = NDArray[np.float64]
+Index = NDArray[np.intp]
 
 
-def sliding(wall: Wall, mesh: PackMesh, faces: Faces) -> Wall:
-    """`wall` with the tangential displacements of its petals among the unknowns."""
-    contacts, n = wall.contacts, wall.n_unknown
-    still = sp.csr_array((len(contacts.rest), n))
-    none = sp.csr_array((n, wall.free_motions.shape[1]))
+def sliding(wall: Wall, mesh: PackMesh, petals: Sequence[StretchingPetal], faces: Faces) -> Wall:
+    """`wall` with the displacements of its petals in their own surface among the unknowns."""
+    contacts, elasticity = wall.contacts, stretching(petals)
+    more = elasticity.difference.shape[1] - wall.n_unknown
+    still = sp.csr_array((len(contacts.rest), more))
+    motions, support = zip(*(petal.free_motions() for petal in petals), strict=True)
+    order, slip = free_order(petals), slip_at_gaps(mesh, faces)
+    unslipped = sp.csr_array((slip.shape[0], len(order) - slip.shape[1]))
     return replace(
         wall,
-        elasticity=stretching(wall.elasticity, mesh, faces),
+        elasticity=elasticity,
         contacts=replace(contacts, G=SparseRows(sp.hstack([contacts.G, still], format="csr"))),
-        free_motions=sp.csr_array(sp.vstack([wall.free_motions, none], format="csr")),
-        support=sp.csr_array(sp.hstack([wall.support, none.T], format="csr")),
-        slip=slip_at_gaps(mesh, faces),
+        free_motions=sp.csr_array(sp.block_diag(motions, format="csr")[order]),
+        support=sp.csr_array(sp.block_diag(support, format="csc")[:, order]),
+        slip=sp.csr_array(sp.hstack([slip, unslipped], format="csr")),
         reaction_share=rubbing_gaps(contacts),
     )
 
@@ -50,57 +52,44 @@ def rubbing_gaps(contacts: Contacts) -> sp.csr_array:
     return sp.csr_array(every[contacts.bushing.start :])
 
 
-def along_petal(mesh: PackMesh, signs: tuple[float, float]) -> sp.csr_array:
-    """Matrix from the nodes of a petal to its cells: `signs` times the values at both ends, (cells, nodes)."""
-    n = mesh.n_node
-    ends = sp.diags_array([np.full(n - 1, signs[0]), np.full(n - 1, signs[1])], offsets=[0, 1], shape=(n - 1, n))
-    return sp.csr_array(sp.kron(ends, sp.eye_array(mesh.n_z), format="csr"))
+def stretching(petals: Sequence[StretchingPetal]) -> Elasticity:
+    """Elastic energy of all petals, their roots held (M9)."""
+    known: dict[int, tuple[sp.csr_array, sp.csr_array, sp.csr_array]] = {}
+    for petal in petals:
+        if id(petal) not in known:
+            known[id(petal)] = petal.difference, petal.strain, petal.rigidity_matrix
+    factors = zip(*(known[id(petal)] for petal in petals), strict=True)
+    difference, strain, rigidity = (sp.block_diag(parts, format="csc") for parts in factors)
+    return Elasticity(*(sp.csr_array(part) for part in (difference[:, free_order(petals)], strain, rigidity)))
 
 
-def of_each(mesh: PackMesh, matrix: sp.csr_array) -> sp.csr_array:
-    """A matrix of the nodes of one petal for all, the roots left out."""
-    return sp.csr_array(sp.kron(sp.eye_array(mesh.count), matrix[:, mesh.n_z :], format="csr"))
+def free_order(petals: Sequence[StretchingPetal]) -> Index:
+    """Where the unknowns are among the displacements of all petals, petal by petal with their roots, (n,).
 
-
-def cell_lengths(mesh: PackMesh, faces: Faces) -> Array:
-    """`r_m dphi` of every cell, (count * cells,) [m]."""
-    lengths = faces.metric_radius[:, None, None] * np.diff(mesh.phi)[:, None] * np.ones(mesh.n_z)
-    return np.asarray(lengths.ravel())
-
-
-def over_cells(mesh: PackMesh, value: Array) -> Array:
-    """One value for each petal (count,) at all of its cells, (count * cells,)."""
-    return np.repeat(value, (mesh.n_node - 1) * mesh.n_z)
-
-
-def membrane(mesh: PackMesh, faces: Faces) -> tuple[Array, Array]:
-    """Membrane stiffness of every cell, weights included [N m], and half the curvature of its petal [1/m]."""
-    width = np.tile(mesh.axial.weight, mesh.count * (mesh.n_node - 1))
-    rigidity = over_cells(mesh, faces.membrane) * cell_lengths(mesh, faces) * width
-    return rigidity, over_cells(mesh, 0.5 / faces.bend_radius)
-
-
-def stretching(bending: Elasticity, mesh: PackMesh, faces: Faces) -> Elasticity:
-    """Bending and stretching of all petals (M5)."""
-    sums, differences = (of_each(mesh, along_petal(mesh, signs)) for signs in ((1.0, 1.0), (-1.0, 1.0)))
-    rigidity, bent = membrane(mesh, faces)
-    by_sums, by_differences = sp.diags_array(bent), sp.diags_array(1.0 / cell_lengths(mesh, faces))
-    return Elasticity(
-        sp.csr_array(sp.block_array([[bending.difference, None], [sums, None], [None, differences]], format="csr")),
-        sp.csr_array(sp.block_array([[bending.strain, None, None], [None, by_sums, by_differences]], format="csr")),
-        sp.csr_array(sp.block_diag([bending.rigidity, sp.diags_array(rigidity)], format="csr")),
-    )
-
-
-def membrane_force(mesh: PackMesh, faces: Faces, displacement: Array) -> Array:
-    """Membrane force over the width at all nodes, of the cells beside each the larger one, (petal, node, axial) [N/m].
-
-    `displacement` are deflections and tangential displacements of all nodes but the roots [m].
+    Unknowns are the deflections of all petals, then their displacements along themselves, then those along the shaft.
     """
-    sums, differences = (of_each(mesh, along_petal(mesh, signs)) for signs in ((1.0, 1.0), (-1.0, 1.0)))
-    W, V = np.split(displacement, 2)
-    strain = over_cells(mesh, 0.5 / faces.bend_radius) * (sums @ W) + (differences @ V) / cell_lengths(mesh, faces)
-    force = (over_cells(mesh, faces.membrane) * strain).reshape(mesh.count, mesh.n_node - 1, mesh.n_z)
+    kind = np.concatenate([np.repeat(np.arange(3), petal.sizes) for petal in petals])
+    free = np.flatnonzero(np.concatenate([petal.free for petal in petals]))
+    return free[np.argsort(kind[free], kind="stable")]
+
+
+def over_whole_length(displacement: Array, mesh: PackMesh) -> Array:
+    """Displacements (n,) on half of a length, mirrored over the whole: `U` changes its sign."""
+    at_nodes = 2 * mesh.count * (mesh.n_node - 1) * mesh.n_z
+    along_shaft = displacement[at_nodes:].reshape(-1, mesh.n_z - 1)
+    mirrored = np.concatenate([along_shaft, -along_shaft[:, ::-1]], axis=1)
+    return np.concatenate([mesh.axial.whole(displacement[:at_nodes].reshape(-1, mesh.n_z)).ravel(), mirrored.ravel()])
+
+
+def membrane_force(petals: Sequence[StretchingPetal], displacement: Array) -> Array:
+    """Membrane force along the petals over the width at all nodes, of the cells beside each the larger one.
+
+    `displacement` are the unknowns [m]; (petal, node, axial) [N/m].
+    """
+    whole = np.zeros(sum(sum(petal.sizes) for petal in petals))
+    whole[free_order(petals)] = displacement
+    each = np.split(whole, np.cumsum([sum(petal.sizes) for petal in petals])[:-1])
+    force = np.stack([petal.membrane_force(own) for petal, own in zip(petals, each, strict=True)])
     before, after = (np.concatenate(pair, axis=1) for pair in ((force[:, :1], force), (force, force[:, -1:])))
     return np.where(np.abs(before) > np.abs(after), before, after)
 
