@@ -14,7 +14,7 @@ petal becomes thin.
 
 At free sides there is no membrane force across, so that `eps_z = -nu eps_s`; at the free edge there is no shear force.
 The root holds `V` and `U`, and at a plane of symmetry `U` vanishes. In 2-D there is one station, and what depends on
-the place along the shaft is left out: `eps_s` alone remains.
+the place along the shaft is left out: `eps_s` alone remains (M5).
 """
 
 from __future__ import annotations
