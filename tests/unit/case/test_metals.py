@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 import petalfoil
@@ -31,7 +33,11 @@ def test_a_metal_is_plausible_and_has_a_source(name: str) -> None:
     assert 4000.0 <= metal.density <= 9000.0
     assert 8e-6 <= metal.expansion <= 18e-6
     assert metal.yield_strength is None or 4e8 <= metal.yield_strength <= 1.6e9
-    assert len(metal.source) > 10
+    named = {"modulus", "poisson_ratio", "density", "expansion"}
+    assert set(metal.sources) == named | ({"yield_strength"} if metal.yield_strength else set())
+    for value, source in metal.sources.items():  # who says so, and at which temperatures
+        assert len(source) > 20, value
+        assert re.search(r"\d °[CF]|room temperature", source), value
     assert metal.range[0] < 293.15 < metal.range[1]
     moduli = [E for _, E in metal.modulus]
     assert moduli == sorted(moduli, reverse=True)
@@ -81,7 +87,15 @@ def test_a_temperature_beyond_the_data_is_warned_of() -> None:
     assert warnings_of(warm, {}) == []
 
 
-@pytest.mark.parametrize(("material", "warm", "near"), [("titanium", 55.0, 45.0), ("x-750", 540.0, 530.0)])
+@pytest.mark.parametrize(
+    ("material", "at", "E"),
+    [("titanium", 300.0, 98.9e9), ("phosphor bronze", 200.0, 101.4e9), ("beryllium copper", 110.0, 122.8e9)],
+)
+def test_springs_of_titanium_and_copper_alloys_get_softer_with_temperature(material: str, at: float, E: float) -> None:
+    assert made_of(material, metal_temperature=f"{at} degC").petals.youngs_modulus == pytest.approx(E, rel=1e-3)
+
+
+@pytest.mark.parametrize(("material", "warm", "near"), [("phosphor bronze", 205.0, 195.0), ("x-750", 540.0, 530.0)])
 def test_a_gas_at_which_the_modulus_is_not_known_is_warned_of(material: str, warm: float, near: float) -> None:
     petals = made_of(material)
     (told,) = warnings_of(petals.replace(**{"gas.temperature": 273.15 + warm}), {})
@@ -111,6 +125,7 @@ def test_the_page_lists_the_table() -> None:
         row = (
             f"| `{metal.name}` | {1e-9 * E:.1f} | {metal.known_at} | {metal.poisson_ratio:.2f} | {metal.density:.0f} | "
         )
+        assert all(source in " ".join(page.split()) for source in metal.sources.values())
         assert f"{row}{1e6 * metal.expansion:.1f} | {sigma} | {metal.temper} |" in page
 
 
