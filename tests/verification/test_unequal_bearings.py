@@ -280,6 +280,21 @@ def test_load_and_mass_mean_the_same_in_every_verb() -> None:
     assert [stability.record(c).scalars["rotor_mass"] for c in (LOADED, both)] == [6.0, 6.0]
 
 
+@pytest.mark.slow
+def test_the_bearing_that_is_nearer_to_its_limit_bounds_the_capacity_of_both() -> None:
+    """Petals in 2-D, whose contact points a search for one bearing would follow: the other one would be beyond."""
+    off_the_middle = {"mass": 4.0, "span": 0.2, "centre": 0.02, "second": {}}
+    petals = case("paper_n8", rotor=off_the_middle, **{"model.cells_per_pitch": 16})
+    scalars = capacity.record(petals, min_film_thickness=4e-6).scalars
+    assert_allclose(scalars["other_min_film_thickness"], 4e-6, rtol=2e-6)
+    assert float(scalars["min_film_thickness"]) > 5e-6
+    assert int(scalars["factorizations"]) < 200  # a search that halves its bracket takes 383
+    load = float(scalars["load_capacity"])
+    films = [balance.record(petals, part * load).scalars["other_min_film_thickness"] for part in (1.0, 1.01)]
+    assert_allclose(films[0], 4e-6, rtol=1e-5)
+    assert float(films[1]) < 3.99e-6
+
+
 # ---------------------------------------------------------------------------------------------- in and out
 
 

@@ -37,6 +37,7 @@ What they share:
 `displacements.py`     the journal displaced point by point
 `hysteresis.py`        the same at rest, with friction between petals
 `speeds.py`            a load followed over speed
+`capacity_search.py`   the largest loads over direction and speed
 `load_limit.py`        the largest load in one direction that keeps to limits
 `load_ray.py`          balances of loads of one direction, and how far they are from limits
 `crossings.py`         speeds at which the contact fraction crosses a limit

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from typing import Annotated
 
@@ -12,13 +12,14 @@ import numpy as np
 
 from petalfoil.analysis.arguments import NumberWithUnit, Speed, Speeds, Whole
 from petalfoil.analysis.balance import carrier
+from petalfoil.analysis.capacity_search import CapacityRequest, CapacitySearch
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.fields import all_fields
 from petalfoil.analysis.friction_told import refuse_path
 from petalfoil.analysis.heat_results import heat_results
-from petalfoil.analysis.load_limit import Capacity, largest_load
-from petalfoil.analysis.load_ray import Limits, LoadRay
+from petalfoil.analysis.load_limit import Capacity
+from petalfoil.analysis.load_ray import Limits
 from petalfoil.analysis.operating_point import at
 from petalfoil.analysis.other_bearing import rotor_parts
 from petalfoil.analysis.records import asked_position, effort, geometry, position, record_of
@@ -26,21 +27,15 @@ from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, current_run, running
-from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.layout import ArrayTable, Series, SinglePoint, at_speed
 from petalfoil.results.parts import RunOutcome
 from petalfoil.results.record import Array, Record
 from petalfoil.results.schema import DataType, Role, TableLabel, Variable
-from petalfoil.solvers.near_factor import FactorAtHand
 from petalfoil.walls import wall_kind
 
 DOWN = -math.pi / 2.0
 """Direction of a weight, along -y [rad]."""
-FIRST = 0.1
-"""First load that is looked at, over ambient pressure times length times diameter."""
-STEEPEST = 2.0
-"""Largest power of the speed by which a first load at another speed is foretold."""
 LBF, INCH, KRPM = 4.4482216152605, 0.0254, 1e3 * math.pi / 30.0
 """Pound-force [N], inch [m] and a thousand revolutions per minute [rad/s]."""
 
@@ -121,14 +116,6 @@ TABLE = ArrayTable(
 OVER = ("load_orientation", "capacity_over_direction")
 
 
-@dataclass(frozen=True)
-class CapacityRequest:
-    """Limits, and the directions of the load [rad]."""
-
-    limits: Limits
-    directions: Array
-
-
 @dataclass(frozen=True, kw_only=True)
 class Given:
     """What was asked: direction of the load and limits."""
@@ -166,67 +153,6 @@ class Least:
 
     least_load_capacity: float
     least_capacity_direction: float
-
-
-@dataclass
-class CapacitySearch:
-    """The searches of one bearing, each from the state of the one before.
-
-    Attributes
-    ----------
-    case : Case
-        The bearing.
-    asked : CapacityRequest
-        Limits and directions.
-    known : dict
-        State at the capacity by direction, of the speed before.
-    loads : dict
-        By direction, the last two speeds [rad/s] and capacities [N], and by how much the capacity grows with the speed
-        there, logarithm over logarithm.
-    hand : FactorAtHand
-        The last factor of a search for a limit.
-    """
-
-    case: Case
-    asked: CapacityRequest
-    known: dict[float, Solution] = field(default_factory=dict)
-    loads: dict[float, list[tuple[float, float, float]]] = field(default_factory=dict)
-    hand: FactorAtHand = field(default_factory=FactorAtHand)
-
-    def at(self, speed: float) -> list[Capacity]:
-        """The capacity in each direction at a speed [rad/s]."""
-        here, found = at(self.case, speed, (0.0, 0.0)), []
-        beside: tuple[float, Solution] | None = None
-        for angle in map(float, self.asked.directions):
-            start = (self.guess(angle, speed), self.known[angle]) if angle in self.known else beside
-            direction = (round(math.cos(angle), 15), round(math.sin(angle), 15))
-            ray = LoadRay(
-                here,
-                direction,
-                self.asked.limits,
-                None if start is None else start[1],
-                points_alone=True,
-                hand=self.hand,
-            )
-            capacity = largest_load(ray, FIRST * ray.unit if start is None else start[0])
-            if capacity.at is not None:
-                beside = capacity.at.size, capacity.at.found.answer
-                self.known[angle] = beside[1]
-                self.loads[angle] = [*self.loads.get(angle, [])[-1:], (speed, beside[0], ray.growth(capacity.at))]
-            found.append(capacity)
-        return found
-
-    def guess(self, angle: float, speed: float) -> float:
-        """The capacity at a speed by the power law of the last one, which changes as between the last two [N]."""
-        *earlier, (before, size, growth) = self.loads[angle]
-        step, bend = math.log(speed / before), 0.0
-        if earlier and earlier[0][0] != before:
-            apart = math.log(before / earlier[0][0])
-            mean = math.log(size / earlier[0][1]) / apart
-            growth = mean if math.isnan(growth) else growth
-            bend = 2.0 * (growth - mean) / apart
-        exponent = 0.0 if math.isnan(growth) else growth + 0.5 * bend * step
-        return size * float((speed / before) ** min(max(exponent, -STEEPEST), STEEPEST))
 
 
 @analysis(

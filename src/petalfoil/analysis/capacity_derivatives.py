@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from petalfoil.analysis.capacity import FIRST
+from petalfoil.analysis.capacity_search import FIRST
 from petalfoil.analysis.crossing_derivatives import AlongWith, CrossingDerivatives
 from petalfoil.analysis.derivatives import Derivative, equilibrium_results
 from petalfoil.analysis.heated_derivatives import Derivatives, derivatives_of

@@ -57,6 +57,7 @@ def largest_load(ray: LoadRay, guess: float) -> Capacity:
     """The largest load of a ray that keeps to its limits, from a `guess` [N]."""
     size = min(max(guess, LEAST * ray.unit), MOST * ray.unit)
     kept: Loaded | None = None
+    last: Loaded | None = None
     beyond, reason, nearest, rises = math.inf, "", math.inf, RISES
     if found := ray.to_limit():
         return Capacity(found)
@@ -78,7 +79,8 @@ def largest_load(ray: LoadRay, guess: float) -> Capacity:
             reason = here if isinstance(here, str) else f"{here.limit} {IN_A_JUMP}"
         if ended := bounded(ray, kept, (beyond, reason)):
             return ended
-        size = following(ray, here, kept, beyond)
+        size = following(ray, (last, here), kept, beyond)
+        last = here if isinstance(here, Loaded) else last
         if kept is not None:  # beyond the limit, another branch may go on below it
             ray.known = kept.found.answer
     return Capacity(kept, "bounded from below: the search for the limit ran out of balances")
@@ -107,13 +109,25 @@ def bounded(ray: LoadRay, kept: Loaded | None, over: tuple[float, str]) -> Capac
     return Capacity(kept, f"converged; {reason}") if beyond / kept.size - 1.0 <= narrow else None
 
 
-def following(ray: LoadRay, here: Loaded | str, kept: Loaded | None, beyond: float) -> float:
-    """The next load to look at: Newton's, inside what is known, else by a factor or in the middle [N]."""
+def following(ray: LoadRay, looked_at: tuple[Loaded | None, Loaded | str], kept: Loaded | None, beyond: float) -> float:
+    """The next load to look at: Newton's, inside what is known, else by a factor or in the middle [N].
+
+    `looked_at` are the last two loads. The slope of bearings without a tangent is that of the line through both.
+    """
     low, high = (0.0 if kept is None else kept.size), beyond
-    if isinstance(here, Loaded) and (slope := ray.slope(here)) < 0.0:
+    last, here = looked_at
+    if isinstance(here, Loaded) and (slope := slope_at(ray, last, here)) < 0.0:
         step = min(max(-here.margin / slope, -math.log(FALL)), math.log(GROWTH))
         if low < (ahead := here.size * math.exp(step)) < high:
             return min(max(ahead, LEAST * ray.unit), MOST * ray.unit)
     if math.isinf(high):
         return min(GROWTH * low, MOST * ray.unit)
     return math.sqrt(low * high) if low else max(high / FALL, LEAST * ray.unit)
+
+
+def slope_at(ray: LoadRay, last: Loaded | None, here: Loaded) -> float:
+    """Derivative of the margin by the logarithm of the load, by the tangent or from the `last` load; nan of neither."""
+    slope = ray.slope(here)
+    if not math.isnan(slope) or last is None or last.limit != here.limit or last.size == here.size:
+        return slope
+    return (here.margin - last.margin) / math.log(here.size / last.size)

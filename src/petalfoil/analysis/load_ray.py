@@ -185,7 +185,7 @@ class LoadRay:
     def to_limit(self) -> Loaded | None:
         """The balance at the limit, followed from the known one with the load as an unknown; None if it is lost."""
         known, unit = self.known, self.load(1.0)
-        if not self.points_alone or self.case.heat is not None or known is None or known.load is None:
+        if not self._follows or known is None or known.load is None:
             return None
         if known.elements is None:
             return None
@@ -205,7 +205,7 @@ class LoadRay:
     def _followed(self, size: float) -> Loaded | None:
         """The balance under a load [N] whose contact points are followed from the known one; None if they are lost."""
         known, load = self.known, self.load(size)
-        if not self.points_alone or self.case.heat is not None or known is None:
+        if not self._follows or known is None:
             return None
         if not isinstance(known.elements, PointContacts) or known.load is None:
             return None
@@ -218,6 +218,11 @@ class LoadRay:
             current_run().note("followed", outcome=str(failure))
             return None
         return self._judged(size, self.known)
+
+    @property
+    def _follows(self) -> bool:
+        """Whether contact points are followed by themselves: those of one bearing alone, without a heat network."""
+        return self.points_alone and self.case.heat is None and self.case.shares_evenly
 
     def _rotor(self, size: float) -> RotorInBearings:
         """The rotor under a load [N], where its bearings do not share it evenly."""

@@ -120,8 +120,11 @@ class RotorInBearings:
                 pair = [support.carrying(one, speed, share) for support, one, share in both]
         pair = self.balanced(pair)
         residual = self.residual(pair)
-        states = zip(self.supports, pair, strict=True)
-        pair = [reported(support.case, replace(one, load=-one.unbalanced)) for support, one in states]
+        former: list[Solution | None] = [None, None]
+        if known is not None and known.other is not None:
+            former = [*self.in_order(known)]
+        states = zip(self.supports, pair, former, strict=True)
+        pair = [reported(support.case, replace(one, load=-one.unbalanced), near) for support, one, near in states]
         residual = max(residual, self.residual(pair))
         told, other = reversed(pair) if self.turned else pair
         path = "balanced with the load on the shaft of both bearings"
