@@ -147,7 +147,11 @@ def test_no_page_asks_another_server_and_no_script_fails(address: str, site: Pat
         tab.wait_for_selector("mjx-container svg", timeout=60_000)
         formulas = tab.locator("mjx-container").count()
         broken = tab.locator("mjx-container [data-mml-node='merror']").count()
+        tab.goto(f"{address}/search.html?q=bend_radius", wait_until="load")
+        tab.wait_for_selector("#search-results li a", timeout=60_000)
+        found = {link.get_attribute("href") for link in tab.locator("#search-results li a").all()}
         browser.close()
     assert (outside, problems) == ([], [])
+    assert "reference/case-file.html" in {str(link).partition("#")[0].partition("?")[0] for link in found}
     assert formulas > 100
     assert broken == 0

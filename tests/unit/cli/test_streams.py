@@ -66,3 +66,19 @@ def test_verbose_tells_the_steps(tmp_path: Path, place: str) -> None:
     done = subprocess.run([*PETALFOIL, *arguments], capture_output=True, text=True, check=True)
     assert "pack: barrier " in done.stderr
     assert "pack: barrier " not in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "completed"),
+    [
+        ("petalfoil lift", "liftoff"),
+        pytest.param("petalfoil capacity case.toml --orient", "--orientations", marks=pytest.mark.slow),
+    ],
+)
+def test_a_shell_completes_commands_and_options(words: str, completed: str) -> None:
+    code = "import sys; from petalfoil.cli import main; sys.argv = ['petalfoil']; main()"
+    asked = {"_PETALFOIL_COMPLETE": "complete_bash", "COMP_WORDS": words, "COMP_CWORD": str(words.count(" "))}
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=os.environ | asked, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.split() == [completed]
