@@ -108,6 +108,18 @@ def held_feet() -> Numbers:
     return (float(of(held, "foundation_stiffness") / of(free, "foundation_stiffness")),)
 
 
+def preload(name: str) -> Numbers:
+    """Preload of a pack about the free shape and about the bore [N]."""
+    packs = [case(name, petals__linear_about=shape) for shape in ("free_shape", "bore")]
+    return tuple(float(of(petalfoil.static(pack, eccentricity="0 um"), "contact_normal_force")) for pack in packs)
+
+
+def rig_at_rest(result: str, *loads: str, **changed: Any) -> Numbers:
+    """A result of the rig at zero speed under each of some loads [SI]."""
+    rig = case("examples/rig.toml", operation__speed="0 rpm", **changed)
+    return tuple(float(of(petalfoil.balance(rig, load=load), result)) for load in loads)
+
+
 def film_at_the_mid_plane(speed: str) -> Numbers:
     """Minimum film thickness at the mid-plane of the measured bump foil under 50 to 200 N [µm]."""
     foil = case("examples/measured_bump_foil.toml", operation__speed=speed)
@@ -152,6 +164,18 @@ STATED: list[tuple[str, str, Callable[[], Numbers]]] = [
     ),
     ("how-to/backing-springs.md", "the load leaves {:.2f} µm, and the journal lies {:.0f} µm lower", without_springs),
     ("how-to/bump-foil.md", "Feet that are held make this bump {:.0f} times stiffer", held_feet),
+    ("validation/elastica.md", "| paper, 8 petals | {:.1f} N | {:.1f} N |", lambda: preload(EIGHT)),
+    ("validation/elastica.md", "| test rig | {:.1f} N | {:.1f} N |", lambda: preload("examples/rig.toml")),
+    (
+        "validation-rig.md",
+        "under 46.4, 55.6, 64.8 and 104.6 N it is {:.0f}, {:.0f}, {:.0f} and {:.0f} N",
+        lambda: rig_at_rest("contact_normal_force", "46.4 N", "55.6 N", "64.8 N", "104.6 N"),
+    ),
+    (
+        "validation-rig.md",
+        "and the three moments {:.2f}, {:.2f} and {:.2f} N·m",
+        lambda: rig_at_rest("friction_torque", "46.4 N", "55.6 N", "64.8 N", petals__linear_about="bore"),
+    ),
     (
         "validation/published-bearings.md",
         "| 45 000 | film thickness, µm | {:.1f} | {:.1f} | {:.1f} | {:.1f} |",
