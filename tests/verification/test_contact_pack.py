@@ -14,7 +14,7 @@ from petalfoil.system.build import build_problem
 from petalfoil.system.foil_pack import FoilPackProblem
 from petalfoil.walls.petals import build_mesh, petals_of
 from tests.cases import case
-from tests.random_packs import random_case
+from tests.random_packs import random_case, wide_case
 from tests.verification.shell_helpers import Array, Solved, solve
 
 EXAMPLES = ("paper_n6", "paper_n8", "paper_n10", "rig")
@@ -209,6 +209,21 @@ def test_as_the_product_assembles_it() -> None:
         answer = answer_of(problem)
         assert_allclose(assembled.x, answer.x, atol=1e-9 * np.abs(answer.x).max())
         assert np.array_equal(assembled.active, answer.active)
+
+
+@pytest.mark.parametrize("cells", [12, 16])
+def test_petals_that_overlap_by_a_third_of_a_cell(cells: int) -> None:
+    """Sixteen hinged petals, overlap 1.027: a contact hardly carries, and without it a petal turns freely."""
+    thin = wide_case(np.random.default_rng([447, 13]), **{"model.cells_per_pitch": cells})
+    assert thin.pack is not None
+    assert thin.pack.overlap < 1.03
+    problem = pack(thin)
+    assembled = at_rest(problem.coupled)
+    assert assembled is not None
+    gaps, reactions = problem.gaps(assembled.x), assembled.lam
+    assert gaps.min() > -1e-8
+    assert reactions.min() > -1e-8 * reactions.max()
+    assert np.abs(gaps * reactions).max() <= 1e-8 * reactions.max()
 
 
 # ------------------------------------------------------------------------------------------ counts
