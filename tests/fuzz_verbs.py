@@ -4,7 +4,7 @@
 
     make fuzz-verbs N=500   # or python -m tests.fuzz_verbs 500 [first] [--verbs orbit static] [--into outcomes.jsonl]
 
-Verbs come one after the other, the cheapest first. A run that is not done after `SECONDS` of processor time, or those
+Every 25 bearings meet all verbs, the cheapest first. A run that is not done after `SECONDS` of processor time, or those
 of `--seconds`, is stopped and counted as slow. Anything else that is not an answer or a `PetalfoilError`, a warning of
 NumPy or SciPy included, is printed with the number of its bearing. Outcomes are added to the file line by line, and a
 run goes on from what its file holds; `--table` prints what it holds and runs nothing.
@@ -44,6 +44,7 @@ from tests.random_packs import wide_case
 
 SEED = 13
 SECONDS = 60.0
+ROUND = 25
 POINTS_TAKE = 5.0
 """Processor time of contacts at points over that of contacts at nodes, at least."""
 Arguments = dict[str, object]
@@ -225,6 +226,14 @@ def limited(seconds: float) -> Iterator[None]:
         signal.signal(signal.SIGPROF, former)
 
 
+def in_rounds(first: int, count: int, verbs: list[str]) -> Iterator[tuple[int, str]]:
+    """Runs in rounds of `ROUND` bearings, each with all verbs: a run that is stopped has met every verb."""
+    for begin in range(first, first + count, ROUND):
+        for verb in verbs:
+            for number in range(begin, min(begin + ROUND, first + count)):
+                yield number, verb
+
+
 def table(done: list[Ran]) -> Iterator[str]:
     """Markdown rows: verb, runs, outcomes, processor time."""
     yield "| verb | runs | outcomes | processor time of a run |\n|---|---:|---|---:|"
@@ -266,8 +275,7 @@ def main() -> None:
     done = kept(into)
     if not asked.table:
         known = {(one.number, one.verb) for one in done}
-        numbers = range(asked.first, asked.first + asked.count)
-        wanted = [(number, verb) for verb in asked.verbs for number in numbers if (number, verb) not in known]
+        wanted = [run for run in in_rounds(asked.first, asked.count, asked.verbs) if run not in known]
         with ProcessPoolExecutor(asked.jobs) as pool, into.open("w") as file:
             file.writelines(line(one) for one in done)
             for run in as_completed(pool.submit(ran, *which, asked.seconds) for which in wanted):

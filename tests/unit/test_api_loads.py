@@ -160,3 +160,13 @@ def test_the_legs_of_a_run_up_share_one_dimension() -> None:
 def test_a_load_beyond_the_capacity_is_said_to_be_that() -> None:
     with pytest.raises(ConvergenceError, match=r"load of 1e\+09 N is beyond the capacity of the bearing: at 1e\+08 N"):
         petalfoil.balance(case("paper_n8", **{"model.cells_per_pitch": 24}), 1e9)
+
+
+@pytest.mark.slow
+def test_a_lift_off_beyond_the_capacity_is_said_to_be_that(monkeypatch: pytest.MonkeyPatch) -> None:
+    def none(*_: object) -> None:
+        raise ConvergenceError("no equilibrium found", history=[], advice="")
+
+    monkeypatch.setattr("petalfoil.analysis.liftoff.crossings", none)
+    lifted = petalfoil.liftoff(case("paper_n8", **{"model.cells_per_pitch": 12, "model.contacts": "nodes"}), [1e9])
+    assert "a load of 1e+09 N is beyond the capacity of the bearing" in str(lifted["status"].values[0])

@@ -18,6 +18,7 @@ from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.crossings import CONTACT_FRACTION, LiftoffSpeeds, crossings, fastest, sensitivity
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.friction_told import FrictionTold
+from petalfoil.analysis.operating_point import at, beyond_capacity
 from petalfoil.analysis.records import effort, geometry, record_of
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
@@ -27,6 +28,7 @@ from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.layout import ColumnarSeries, load_of, of_load
 from petalfoil.results.parts import AppliedLoad, RunOutcome
 from petalfoil.results.record import Record
+from petalfoil.system.build import build_problem
 from petalfoil.walls import Capability, required
 
 LoadList = Annotated[
@@ -132,11 +134,18 @@ def _points(
                 found: tuple[object, ...] = (LiftoffSpeeds(up, down, *sensitivity(case, load, (limit, up))),)
                 ended = RunOutcome(status=in_words(case, up))
             except ConvergenceError as failure:
-                found, ended = (), RunOutcome(converged=False, status=f"not converged: {failure}")
+                found, ended = (), RunOutcome(converged=False, status=f"not converged: {why_none(case, load, failure)}")
             told = FractionLimit(limit), FrictionTold.under_load(case)
             asked = (*geometry(case), AppliedLoad.of((0.0, -load)), *told)
             record = record_of("liftoff", case, *asked, *found, effort(run.seconds), ended)
         yield record
+
+
+def why_none(case: Case, load: float, failure: ConvergenceError) -> ConvergenceError:
+    """The error of a load [N] whose crossings were not found: that it is beyond the capacity, where it is."""
+    if not case.shares_evenly:
+        return failure
+    return beyond_capacity(build_problem(at(case, None, (0.0, 0.0))), (0.0, -load), failure)
 
 
 def in_words(case: Case, up: float) -> str:

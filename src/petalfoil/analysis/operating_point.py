@@ -226,7 +226,7 @@ def beyond_capacity(problem: CoupledProblem, load: Vector, failure: ConvergenceE
         size = float(np.hypot(*load))
         return ConvergenceError(
             f"a load of {size:g} N is beyond the capacity of the bearing: at {fraction * size:g} N solid contact "
-            f"carries {format_percent(carried, digits=4)} already, and the film the rest",
+            f"carries {format_percent(carried, digits=4)} of it already",
             history=failure.history,
             advice="reduce the load; how much the film carries tells contact_fraction at smaller ones",
         )

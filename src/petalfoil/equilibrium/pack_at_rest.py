@@ -29,8 +29,8 @@ SEARCHING = ContactOptions(patience=0)
 """Its active contacts are searched for at once: changing all of them saves nothing here."""
 
 REST_GOALS = (1e-6, 1e-9, 1e-12, 1e-15)
-"""Barriers at which the active contacts of the pack alone are read and tried. The last is for contacts that hardly carry:
-of hinged petals that overlap by a third of a cell, reactions and gaps are told apart only there."""
+"""Barriers at which the active contacts of the pack alone are read and tried. The last is for contacts that hardly
+carry: of hinged petals that overlap by a third of a cell, reactions and gaps are told apart there only."""
 
 
 def unloaded(problem: CoupledProblem, withdrawn: float = 0.0) -> FoilPackProblem:

@@ -15,6 +15,7 @@ PEAK_PRESSURE_PLACE = "peak_pressure_angle"
 EQUAL = 1e-6
 """Relative difference below which two peaks of the pressure are equal: pressures solve their equations to 1e-8."""
 
+_FIELDS = {"min_film_thickness_angle": "film_thickness", PEAK_PRESSURE_PLACE: "pressure"}
 _ALONG_CONTACT = dict(zip(MIN_FILM_PLACE, ("  along contact, such as at", "  and at z"), strict=True))
 
 
@@ -42,6 +43,14 @@ def films_at_peak(record: Record, bar: float = 0.0) -> int:
     return int(np.count_nonzero(inside & (along.max(axis=1) >= along.max() - max(bar, EQUAL * along.max()))))
 
 
+def is_uniform(record: Record, name: str) -> bool:
+    """Whether a field of a record is the same everywhere, as film and pressure are round a centred plain journal."""
+    if name not in record.fields:
+        return False
+    field: NDArray[np.float64] = np.asarray(record.fields[name], dtype=np.float64)
+    return bool(np.ptp(field) <= EQUAL * field.max())
+
+
 def label_of_several(name: str, record: Record) -> str:
     """Label of a place in a table where there are several alike; empty where there is one.
 
@@ -52,6 +61,8 @@ def label_of_several(name: str, record: Record) -> str:
     record : Record
         The point that it belongs to.
     """
+    if name in _FIELDS and is_uniform(record, _FIELDS[name]):
+        return "  the same everywhere, such as at"
     if name in _ALONG_CONTACT and float(record.scalars.get("contact_fraction", 0.0)) > 0.0:
         return _ALONG_CONTACT[name]
     if name == PEAK_PRESSURE_PLACE:

@@ -125,7 +125,7 @@ _SHOWN: dict[str, TableLabel] = {
     "compressibility_number": TableLabel("compressibility number on radial clearance"),
     "viscosity": TableLabel("viscosity", "µPa·s", 1e6),
     "mean_free_path": TableLabel("mean free path", "nm", 1e9),
-    "stable": TableLabel("stable"),
+    "stable": TableLabel("stable, journal held"),
     "growth_rate": TableLabel("growth rate", "1/s"),
     "growth_frequency": TableLabel("growth frequency", "Hz", 0.5 / math.pi),
     "solution_path": TableLabel("solution path"),

@@ -55,6 +55,15 @@ def test_a_film_that_contact_holds_is_thinnest_along_it() -> None:
     assert labels == ["  at angle", "  along contact, such as at"]
 
 
+def test_a_film_that_is_the_same_everywhere_has_no_place() -> None:
+    record = factory.plain()
+    same = {name: np.full_like(record.fields[name], 2e-5) for name in ("film_thickness", "pressure")}
+    whole = replace(record, fields={**record.fields, **same})
+    for name in ("min_film_thickness_angle", "peak_pressure_angle"):
+        labels = [summary.row(name, point.scalars, point).label for point in (record, whole)]
+        assert labels == ["  at angle", "  the same everywhere, such as at"]
+
+
 def test_a_peak_that_several_petals_share_is_said_to_be_one_of_them() -> None:
     """Peaks differ by 2 kPa: more than rounding, less than an error bar of 3 kPa."""
     record = factory.solved()
@@ -75,7 +84,7 @@ def test_rows_show_a_dash_for_a_missing_figure() -> None:
 def test_a_cell_of_a_name_without_a_unit_of_its_own_is_shown_in_si() -> None:
     assert summary.cell("mass_balance_error", 2e-12) == ("mass balance error", "2.00e-12", "")
     assert summary.cell("film_force_x", 1.0) == ("film force x", "1.000", "N")
-    assert summary.cell("stable", True) == ("stable", "yes", "")
+    assert summary.cell("stable", True) == ("stable, journal held", "yes", "")
 
 
 @pytest.mark.parametrize(
