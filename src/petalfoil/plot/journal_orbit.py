@@ -22,6 +22,8 @@ _MARGIN = 1.12
 """Width or height of the view over the extent of the path in it."""
 _LEGEND = 0.22
 """Part of the view's height, above the path, that is kept for the legend."""
+_NOTE = 0.07
+"""The same below the path, for a note of what is outside the view."""
 
 
 def orbit(ds: xr.Dataset) -> Figure:
@@ -117,12 +119,12 @@ def draw_path(ax: Axes, ds: xr.Dataset, path: Path, *, ratio: float = 1.35, colu
 
 
 def _frame_path(ax: Axes, path: Path, ratio: float) -> None:
-    """A view with equal scales that suits the path, with space for the legend above it."""
+    """A view with equal scales that suits the path, with space for the legend above it and a note below."""
     x, y = MICRO * path.x, MICRO * path.y
-    free = 1.0 - _LEGEND
+    free = 1.0 - _LEGEND - _NOTE
     height = max(_MARGIN * float(np.ptp(y)) / free, _MARGIN * float(np.ptp(x)) / ratio, 1e-3)
     left = 0.5 * (float(x.min() + x.max()) - ratio * height)
-    low = 0.5 * (float(y.min() + y.max()) - free * height)
+    low = 0.5 * (float(y.min() + y.max()) - free * height) - _NOTE * height
     style.dress(ax, "x [µm]", "y [µm]")
     ax.set_aspect("equal", adjustable="box")
     ax.set_xlim(left, left + ratio * height)

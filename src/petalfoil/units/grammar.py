@@ -75,7 +75,7 @@ def convert(number: Fraction, text: str, unit: str, *, whirl: bool = False) -> f
     try:
         return float(_registry().Quantity(number, given).to("" if unit == "1" else unit).magnitude)
     except pint.DimensionalityError:
-        raise UnitTextError(f"measures something else ({_dimension(given)})") from None
+        raise UnitTextError(f"measures something else ({_dimension(given)}){_meant(given, unit)}") from None
     except (pint.PintError, ArithmeticError, ValueError):
         raise UnitTextError("cannot be converted") from None
 
@@ -93,6 +93,12 @@ def _refuse_lookalikes(number: Fraction, given: Any, unit: str) -> None:
         raise UnitTextError(f"is ambiguous: for turns write '{turns}', for radians '{radians}'")
     if unit == "1" and names & _ANGLES:
         raise UnitTextError("is an angle")
+
+
+def _meant(given: Any, unit: str) -> str:
+    """What may be meant by a unit that measures something else: balancing machines tell mass times length."""
+    is_unbalance = unit == "m" and given.dimensionality == {"[mass]": 1, "[length]": 1}
+    return "; an unbalance is divided by the mass of the rotor, such as 5 g mm / 2 kg = 2.5 um" if is_unbalance else ""
 
 
 def _base_names(given: Any) -> set[str]:

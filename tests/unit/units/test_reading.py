@@ -114,6 +114,7 @@ def test_no_quantity_at_all(value: object) -> None:
         ("1e9999 m", "m", "'9999'"),
         ("25 parsnips", "m", "unknown unit 'parsnips'"),
         ("25 kg", "m", "measures something else (mass)"),
+        ("5 g*mm", "m", "an unbalance is divided by the mass of the rotor, such as 5 g mm / 2 kg = 2.5 um"),
         ("25 m^2", "m", "measures something else (length^2)"),
         ("1 degC/m", "K", "something else"),
         ("3 dB", "m", "something else"),
