@@ -14,7 +14,7 @@ from typer.testing import CliRunner, Result
 
 import petalfoil
 from petalfoil import plot
-from petalfoil.analysis.arguments import Load, NumberWithUnit, Speed, Values
+from petalfoil.analysis.arguments import Load, NumbersWithUnit, NumberWithUnit, Speed
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.known_verbs import forget
 from petalfoil.analysis.operating_point import at
@@ -38,7 +38,9 @@ RPM = 3.141592653589793 / 30.0
 # ---------------------------------------------------------------------------------------------- the analysis
 
 Gap = Annotated[float, NumberWithUnit(unit="m", help='Film thickness of the estimate: "30 um".', above=0.0)]
-Several = Annotated[Sequence[float] | None, Values(unit="rad/s", metavar="LIST", help="Several speeds.", above=0.0)]
+Several = Annotated[
+    Sequence[float] | None, NumbersWithUnit(unit="rad/s", metavar="LIST", help="Several speeds.", above=0.0)
+]
 
 RESULTS = {
     "petroff_torque": Variable(

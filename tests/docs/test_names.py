@@ -19,6 +19,17 @@ def test_a_class_name_occurs_once() -> None:
                 places[node.name].append(str(path.relative_to(SOURCE)))
     assert len(places) > 300  # the walk has found the package
     assert {name: where for name, where in places.items() if len(where) > 1} == {}
+    assert sorted(places.keys() & _aliases()) == []  # nor is it that of another kind of type
+
+
+def _aliases() -> set[str]:
+    """Names of types and annotations that modules give a short name."""
+    names = set()
+    for path in SOURCE.rglob("*.py"):
+        for node in tree(path).body:
+            targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+            names |= {target.id for target in targets if isinstance(target, ast.Name)}
+    return names
 
 
 def test_a_file_name_occurs_in_one_folder() -> None:

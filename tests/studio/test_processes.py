@@ -15,7 +15,7 @@ import pytest
 from petalfoil.errors import UsageError
 from petalfoil.studio.address import address_of
 from petalfoil.studio.design import Design
-from petalfoil.studio.protocol import Cancelled, Done, Failure, Found, Work
+from petalfoil.studio.protocol import Cancelled, Done, Failure, FoundAnswer, Work
 from petalfoil.studio.worker_pool import Job, WorkerPool
 from tests.studio.server import running_studio, wait_until
 
@@ -128,7 +128,7 @@ def test_long_jobs_leave_a_worker_to_short_ones_and_sessions_get_their_own() -> 
         for owner, job in jobs.items():
             outcome = await job.outcome
             assert isinstance(outcome, Done)
-            assert isinstance(outcome.result, Found)
+            assert isinstance(outcome.result, FoundAnswer)
             assert outcome.result.scalars["load_y"] == -loads[owner]
         assert not long[1].outcome.done()
         assert long[1].worker is None

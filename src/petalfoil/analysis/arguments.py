@@ -117,7 +117,7 @@ class NumberWithUnit(Measured):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Values(Measured):
+class NumbersWithUnit(Measured):
     """Several quantities: a list, a range as text, or a single one.
 
     Attributes
@@ -293,18 +293,19 @@ DISPLACEMENTS_HELP = 'Displacements along the direction: "0 um : 280 um : 15"; o
 Speed: TypeAlias = Annotated[float | None, NumberWithUnit(unit="rad/s", help=SPEED_HELP, at_least=0.0)]
 Speeds: TypeAlias = Annotated[
     Sequence[float] | None,
-    Values(
+    NumbersWithUnit(
         unit="rad/s", metavar="LIST", help='Several speeds instead of one: "20000 rpm : 60000 rpm : 5".', at_least=0.0
     ),
 ]
-Position: TypeAlias = Annotated[
+JournalPosition: TypeAlias = Annotated[
     tuple[float, float] | None,
     Pair(unit="m", metavar="X,Y", help='Displacement of the journal instead of the case\'s: "0 um, -100 um".'),
 ]
 Displacements: TypeAlias = Annotated[
-    Sequence[float], Values(unit="m", option="eccentricity", metavar="START:STOP:COUNT", help=DISPLACEMENTS_HELP)
+    Sequence[float],
+    NumbersWithUnit(unit="m", option="eccentricity", metavar="START:STOP:COUNT", help=DISPLACEMENTS_HELP),
 ]
-Direction: TypeAlias = Annotated[
+DisplacementDirection: TypeAlias = Annotated[
     float, NumberWithUnit(unit="rad", metavar="ANGLE", help="Direction of the displacements, from x toward y.")
 ]
 Load: TypeAlias = Annotated[tuple[float, float] | None, LoadVector(also="loads", metavar="LOAD", help=LOAD_HELP)]
@@ -319,7 +320,7 @@ Moment: TypeAlias = Annotated[
 ]
 Loads: TypeAlias = Annotated[
     Sequence[float] | None,
-    Values(unit="N", metavar="LIST", help='Several loads along -y instead of one: "10 N, 20 N".', above=0.0),
+    NumbersWithUnit(unit="N", metavar="LIST", help='Several loads along -y instead of one: "10 N, 20 N".', above=0.0),
 ]
 Mass: TypeAlias = Annotated[
     float | None,

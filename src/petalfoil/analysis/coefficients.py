@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from petalfoil.analysis.arguments import Flag, Load, Name, NumberWithUnit, Speed, Speeds, Values, Whole
+from petalfoil.analysis.arguments import Flag, Load, Name, NumbersWithUnit, NumberWithUnit, Speed, Speeds, Whole
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.contact_model import ContactModel
 from petalfoil.analysis.declaration import Export, analysis
@@ -37,7 +37,7 @@ from petalfoil.walls import Capability, required, wall_kind
 
 Frequencies = Annotated[
     Sequence[float] | None,
-    Values(
+    NumbersWithUnit(
         unit="rad/s",
         option="frequency",
         also="frequencies",
@@ -57,7 +57,7 @@ Amplitude = Annotated[
         above=0.0,
     ),
 ]
-Tilt = Annotated[bool, Flag(help="Also those of the slopes of the journal's axis: 4 by 4, the whole length.")]
+WithTilt = Annotated[bool, Flag(help="Also those of the slopes of the journal's axis: 4 by 4, the whole length.")]
 MATRICES = {"stiffness": ("K", "N/m"), "damping": ("C", "N s/m")}
 
 
@@ -213,7 +213,7 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
     speed: Speed = None,
     speeds: Speeds = None,
     amplitude: Amplitude = None,
-    tilt: Tilt = False,
+    tilt: WithTilt = False,
     progress: Progress | None = None,
 ) -> Record | Points:
     """Find stiffness and damping at whirl frequencies, at one speed or several.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Annotated
 
-from petalfoil.analysis.arguments import Load, Position, Speed, Whole
+from petalfoil.analysis.arguments import JournalPosition, Load, Speed, Whole
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.grid_study import MOST_LEVELS, grid_records, grids, parts, table
 from petalfoil.analysis.operating_point import at
@@ -19,7 +19,7 @@ from petalfoil.results.study import GridStudy
 LEAST_GRIDS = 2
 """Grids with a solution below which nothing can be said about convergence."""
 
-Levels = Annotated[
+GridCount = Annotated[
     int,
     Whole(metavar="COUNT", help="Number of grids, each twice as fine.", at_least=LEAST_GRIDS, at_most=MOST_LEVELS),
 ]
@@ -38,9 +38,9 @@ def converge(  # noqa: PLR0913 - the options of the verb
     case: Case,
     *,
     speed: Speed = None,
-    eccentricity: Position = None,
+    eccentricity: JournalPosition = None,
     load: Load = None,
-    levels: Levels = 3,
+    levels: GridCount = 3,
     coarsest: Coarsest = None,
     progress: Progress | None = None,
 ) -> Points:

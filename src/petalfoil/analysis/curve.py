@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from petalfoil.analysis.arguments import DOWNWARD, Direction, Displacements, Speed
+from petalfoil.analysis.arguments import DOWNWARD, DisplacementDirection, Displacements, Speed
 from petalfoil.analysis.classic_method import is_classic, typical_steps
 from petalfoil.analysis.contact_model import reported
 from petalfoil.analysis.declaration import analysis
@@ -41,7 +41,7 @@ def curve(
     case: Case,
     eccentricities: Displacements,
     *,
-    direction: Direction = DOWNWARD,
+    direction: DisplacementDirection = DOWNWARD,
     speed: Speed = None,
     progress: Progress | None = None,
 ) -> Points:

@@ -41,7 +41,7 @@ from petalfoil.units.reading import shown
 if TYPE_CHECKING:
     import xarray as xr
 
-Question: TypeAlias = Callable[..., Record | Run]
+QuestionFunction: TypeAlias = Callable[..., Record | Run]
 Values: TypeAlias = Mapping[str, Any]
 """Arguments by name, SI."""
 LOG = logging.getLogger(__name__)
@@ -113,7 +113,7 @@ class Analysis:
         Whether it has the arguments `error` and `accuracy`, which add error bars from a grid study.
     """
 
-    question: Question
+    question: QuestionFunction
     layouts: tuple[Layout, ...]
     exports: tuple[Export, ...] = ()
     excludes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -352,7 +352,7 @@ def analysis(
     excludes: Mapping[str, tuple[str, ...]] | None = None,
     results: Mapping[str, Variable] | None = None,
     error_bars: bool = False,
-) -> Callable[[Question], Analysis]:
+) -> Callable[[QuestionFunction], Analysis]:
     """Declare the function below as an analysis.
 
     Parameters
@@ -369,7 +369,7 @@ def analysis(
         Whether it has the arguments `error` and `accuracy`, which add error bars from a grid study.
     """
 
-    def declared(question: Question) -> Analysis:
+    def declared(question: QuestionFunction) -> Analysis:
         declare(results or {})
         made = Analysis(question, layouts, (TABLE, *exports), excludes or {}, error_bars)
         register(made)

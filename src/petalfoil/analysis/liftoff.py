@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Annotated
 
-from petalfoil.analysis.arguments import NumberWithUnit, Values
+from petalfoil.analysis.arguments import NumbersWithUnit, NumberWithUnit
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.crossings import CONTACT_FRACTION, LiftoffSpeeds, crossings, fastest, sensitivity
 from petalfoil.analysis.declaration import analysis
@@ -33,7 +33,7 @@ from petalfoil.walls import Capability, required
 
 LoadList = Annotated[
     Sequence[float] | None,
-    Values(
+    NumbersWithUnit(
         unit="N",
         option="load",
         also="loads",

@@ -9,7 +9,7 @@ from typing import Protocol, TypeAlias
 from petalfoil.results.layout import Layout
 from petalfoil.results.record import Record
 
-Source: TypeAlias = Callable[[Sequence[Record]], Iterator[Record]]
+RecordSource: TypeAlias = Callable[[Sequence[Record]], Iterator[Record]]
 
 
 class Run(Protocol):
@@ -75,7 +75,7 @@ class Points:
         Which of the layouts of its analysis it has; by default the first for a series.
     """
 
-    source: Iterator[Record] | Source
+    source: Iterator[Record] | RecordSource
     count: int
     noun: str = "points"
     least: int = 0

@@ -29,7 +29,7 @@ from petalfoil.walls import Capability, required
 Top = Annotated[
     float, NumberWithUnit(unit="rad/s", help='Speed to run up to, and back from: "30000 rpm".', option="to", above=0.0)
 ]
-Count = Annotated[int, Whole(metavar="COUNT", help="Speeds on the way up, rest included.", at_least=3)]
+PointCount = Annotated[int, Whole(metavar="COUNT", help="Speeds on the way up, rest included.", at_least=3)]
 
 WarmUp = Annotated[
     float | None,
@@ -67,7 +67,7 @@ def runup(
     load: Load = None,
     *,
     to: Top,
-    points: Count = 25,
+    points: PointCount = 25,
     warm_up: WarmUp = None,
     progress: Progress | None = None,
 ) -> Points:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Annotated
 
-from petalfoil.analysis.arguments import Load, Mass, NumberWithUnit, Position, Speed
+from petalfoil.analysis.arguments import JournalPosition, Load, Mass, NumberWithUnit, Speed
 from petalfoil.analysis.capacity import DOWN, LoadDirection, MinFilm, Stress, check_limits
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.crossings import CONTACT_FRACTION
@@ -92,7 +92,7 @@ AnyLimit = Annotated[
         below=1.0,
     ),
 ]
-Step = Annotated[
+RelativeStep = Annotated[
     float,
     NumberWithUnit(
         unit="1",
@@ -114,7 +114,7 @@ WhirlFrequency = Annotated[
     ),
 ]
 ADJOINT = "adjoint"
-Method = Annotated[
+SolveMethod = Annotated[
     str,
     Choice(
         metavar="METHOD",
@@ -124,7 +124,7 @@ Method = Annotated[
     ),
 ]
 
-Contacts = Annotated[
+ContactPlaces = Annotated[
     str,
     Choice(
         metavar="PLACE",
@@ -142,7 +142,7 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     ask: Ask = None,
     of: Of = None,
     load: Load = None,
-    eccentricity: Position = None,
+    eccentricity: JournalPosition = None,
     speed: Speed = None,
     contact_fraction: AnyLimit = None,
     min_film_thickness: MinFilm = None,
@@ -150,9 +150,9 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     direction: LoadDirection = DOWN,
     frequency: WhirlFrequency = None,
     mass: Mass = None,
-    contacts: Contacts = "points",
-    method: Method = "tangent",
-    step: Step = 0.01,
+    contacts: ContactPlaces = "points",
+    method: SolveMethod = "tangent",
+    step: RelativeStep = 0.01,
     progress: Progress | None = None,
 ) -> Points:
     """Tell how far a small change of each parameter moves a result.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from petalfoil.analysis.arguments import Position, Speed
+from petalfoil.analysis.arguments import JournalPosition, Speed
 from petalfoil.analysis.classic_method import is_classic, typical_steps
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.evaluation import Evaluation
@@ -25,7 +25,7 @@ def solve(
     case: Case,
     *,
     speed: Speed = None,
-    eccentricity: Position = None,
+    eccentricity: JournalPosition = None,
     progress: Progress | None = None,
 ) -> Record:
     """Find film and petals in equilibrium at one position of the journal.

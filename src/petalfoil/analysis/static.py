@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from petalfoil.analysis.arguments import DOWNWARD, TURNING_ONLY, Direction, Displacements, Flag
+from petalfoil.analysis.arguments import DOWNWARD, TURNING_ONLY, DisplacementDirection, Displacements, Flag
 from petalfoil.analysis.classic_method import is_classic, rest_by_classic
 from petalfoil.analysis.contact_model import ContactModel, reported
 from petalfoil.analysis.declaration import analysis
@@ -59,7 +59,7 @@ def static(
     case: Case,
     eccentricities: Displacements = (0.0,),
     *,
-    direction: Direction = DOWNWARD,
+    direction: DisplacementDirection = DOWNWARD,
     loop: Loop = False,
     progress: Progress | None = None,
 ) -> Points:

@@ -56,7 +56,7 @@ _Radius = Annotated[
 ]
 
 
-Tilt: TypeAlias = float | Literal["chordal"]
+RootTilt: TypeAlias = float | Literal["chordal"]
 Each: TypeAlias = float | tuple[float, ...]
 """One quantity for all petals, or that of each."""
 
@@ -68,7 +68,7 @@ class Petal:
     thickness: float
     coating: float
     bend_radius: float | None
-    root_tilt: Tilt
+    root_tilt: RootTilt
     youngs_modulus: float
     poisson_ratio: float
 
@@ -136,7 +136,7 @@ class Petals(LookedUp, WallTable):
     ) = Field(default=None, validate_default=True)
     """Required without a measured free shape, from which it follows."""
     root_tilt: Annotated[
-        Tilt | tuple[Tilt, ...],
+        RootTilt | tuple[RootTilt, ...],
         PerPetalOrWord(
             unit="rad", meaning="root tilt from the bore's tangent", symbol="psi", above=-1.5, below=1.5, word="chordal"
         ),

@@ -48,7 +48,7 @@ Workers = Annotated[
 Scheduler = Annotated[
     str, typer.Option("--scheduler", metavar="ADDRESS", help="Dask scheduler that runs already: tcp://10.0.0.1:8786.")
 ]
-Memory = Annotated[
+MemoryLimit = Annotated[
     str | None,
     typer.Option("--memory", metavar="SIZE", help='Memory of each worker: "2 GB"; by default an equal part.'),
 ]
@@ -85,7 +85,7 @@ Subject = Annotated[
     typer.Option("--subject", metavar="LIMIT", help='A limit: "min_film_thickness > 5 um"; as often as needed.'),
 ]
 Budget = Annotated[int, typer.Option("--budget", metavar="N", help="Designs that may be answered.", min=1)]
-Method = Annotated[
+SearchMethod = Annotated[
     str,
     typer.Option("--method", metavar="METHOD", help="slsqp along gradients, tpe or nsga2 by sampling; auto chooses."),
 ]
@@ -94,7 +94,7 @@ RUNNING = {
     "out": (Out, Path("study")),
     "workers": (Workers, None),
     "scheduler": (Scheduler, ""),
-    "memory": (Memory, None),
+    "memory": (MemoryLimit, None),
     "fields": (Fields, False),
     "anew": (Anew, False),
     "neighbours": (Neighbours, False),
@@ -213,7 +213,7 @@ Example: petalfoil optimize case.toml --vary petals.thickness="0.1 mm : 0.3 mm" 
             "minimize": (Minimize, []),
             "subject": (Subject, []),
             "budget": (Budget, 200),
-            "method": (Method, "auto"),
+            "method": (SearchMethod, "auto"),
             "seed": (Seed, 0),
         },
         define=define_optimize,

@@ -10,7 +10,7 @@ import typer
 from petalfoil.cli.commands import HELP, JSON, PLOT
 from petalfoil.cli.failures import handled
 from petalfoil.cli.outputs import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
-from petalfoil.cli.study_commands import Memory, Scheduler, Workers, run_and_tell
+from petalfoil.cli.study_commands import MemoryLimit, Scheduler, Workers, run_and_tell
 from petalfoil.cli.study_outputs import deliver
 from petalfoil.errors import UsageError
 from petalfoil.studies.study_definition import Study
@@ -61,7 +61,7 @@ def resume(
     folder: Folder,
     workers: Workers = None,
     scheduler: Scheduler = "",
-    memory: Memory = None,
+    memory: MemoryLimit = None,
     fields: AlsoFields = False,
     as_json: JSON = False,
 ) -> None:

@@ -37,7 +37,7 @@ from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.point_equations import PointEquations
 
 Array = NDArray[np.float64]
-Change: TypeAlias = tuple[Array, Array]
+StateChange: TypeAlias = tuple[Array, Array]
 """Change of the unknowns (n,) and of the journal's position (n_position,)."""
 ElementEquations: TypeAlias = PointEquations | AsperityEquations
 
@@ -96,10 +96,10 @@ class LoadedState(Protocol):
     def positioned(self) -> ElementEquilibrium:
         """The state as an equilibrium."""
 
-    def moved(self, change: Change, more: float = 0.0, length: float = 1.0) -> Self:
+    def moved(self, change: StateChange, more: float = 0.0, length: float = 1.0) -> Self:
         """After a part `length` of a change of unknowns and position, and of `more` load, relative to the present."""
 
-    def admitted(self, change: Change) -> float:
+    def admitted(self, change: StateChange) -> float:
         """The part of a change after which film and pressures are positive."""
 
     def revised(self, error: float = 0.0) -> Self | None:
@@ -121,7 +121,7 @@ class LoadedPoints:
         """The state as an equilibrium."""
         return PointContacts(self.equations, largest(self.equations))
 
-    def moved(self, change: Change, more: float = 0.0, length: float = 1.0) -> LoadedPoints:
+    def moved(self, change: StateChange, more: float = 0.0, length: float = 1.0) -> LoadedPoints:
         """After a part of a change; points that meet are one."""
         equations, (dX, move) = self.equations, change
         problem = equations.problem.at(displacement=equations.problem.displacement + length * move)
@@ -131,7 +131,7 @@ class LoadedPoints:
             splitting = False
         return LoadedPoints(replace(equations, problem=problem, state=state), size, splitting)
 
-    def admitted(self, change: Change) -> float:
+    def admitted(self, change: StateChange) -> float:
         """The part of a change that is taken."""
         return admitted(self.equations, change, FARTHEST_MOVE)
 
@@ -156,12 +156,12 @@ class LoadedAsperities:
         """The state as an equilibrium."""
         return AsperityContacts(self.equations, largest(self.equations))
 
-    def moved(self, change: Change, more: float = 0.0, length: float = 1.0) -> LoadedAsperities:
+    def moved(self, change: StateChange, more: float = 0.0, length: float = 1.0) -> LoadedAsperities:
         """After a part of a change, open gaps with the pressure of their law."""
         equations = renewed(asperities_changed(self.equations, *change, length))
         return LoadedAsperities(equations, self.size * (1.0 + length * more))
 
-    def admitted(self, change: Change) -> float:
+    def admitted(self, change: StateChange) -> float:
         """The part of a change that is taken."""
         return asperities_admitted(self.equations, change, FARTHEST_MOVE)
 
@@ -209,7 +209,7 @@ class LoadLimit:
         force = scaled_force(at.equations, at.size * self.direction)
         return max(largest(at.equations), float(np.max(np.abs(force))))
 
-    def along(self, at: LoadedState, distance: float, change: Change) -> float:
+    def along(self, at: LoadedState, distance: float, change: StateChange) -> float:
         """Derivative of the distance, which is known at the state, along a change of unknowns and position."""
         return (self.of(at.moved(change, length=PROBE)) - distance) / PROBE
 
@@ -229,7 +229,7 @@ class LimitTangent:
     """
 
     tangent: ElementTangent
-    by_load: Change
+    by_load: StateChange
     slope: float
 
     @classmethod

@@ -21,7 +21,7 @@ from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.unknowns import DEFLECTION
 from petalfoil.walls import PlacedContacts
-from petalfoil.walls.element_pack import Loads
+from petalfoil.walls.element_pack import ElementLoads
 
 Array = NDArray[np.float64]
 
@@ -161,7 +161,7 @@ def placed_contacts(found: ElementEquilibrium) -> PlacedContacts:
     return PlacedContacts(petal, facing, angle, points.reaction * scales.force, curvature)
 
 
-def curvatures(found: ElementEquilibrium, at: Loads) -> Array:
+def curvatures(found: ElementEquilibrium, at: ElementLoads) -> Array:
     """Change of curvature of petals (S6) at places within elements, (k,) [1/m], by all loads within an element."""
     pack, equations = found.pack, found.equations
     layout, angle = equations.problem.layout, pack.elements.element_angle[at.element]

@@ -67,7 +67,7 @@ class ActiveContacts:
         return self.state.constraints
 
 
-Equations = TypeVar("Equations", bound=ContactEquations)
+AnyEquations = TypeVar("AnyEquations", bound=ContactEquations)
 Start = tuple[Array, Array, Mask]
 """Unknowns (n,), bordered unknowns (d,), active contacts (m,)."""
 
@@ -159,8 +159,8 @@ def iterate(
 
 
 def steps_with(
-    equations: Equations, state: ContactState, tangent: BorderedTangent, options: ContactOptions
-) -> tuple[Equations, ContactState, bool]:
+    equations: AnyEquations, state: ContactState, tangent: BorderedTangent, options: ContactOptions
+) -> tuple[AnyEquations, ContactState, bool]:
     """Newton steps with one tangent; what they reach, and whether it solves the equations.
 
     Near the solution the tangent hardly changes, so that a step costs a solve instead of a factorisation.

@@ -20,7 +20,7 @@ from petalfoil.studies.plan import Plan, Point, names_of, refuse_repeated, refus
 from petalfoil.studies.question import CONVERGED, CaseOutcome, Question
 from petalfoil.studies.run import Execution, Kind, Runner, run
 from petalfoil.studies.sampling import by_sampling
-from petalfoil.studies.search import Answer, DesignSearch, Gradients, interval_of
+from petalfoil.studies.search import AnswerPoints, DesignSearch, Gradients, interval_of
 from petalfoil.studies.slsqp import along_gradients
 from petalfoil.studies.study_dataset import dataset
 from petalfoil.studies.study_definition import Study
@@ -152,7 +152,7 @@ def method_of(study: Study) -> str:
     return asked if asked != "auto" else "slsqp" if smooth else "tpe"
 
 
-def searched(study: Study, answer: Answer, gradients: Gradients, journal: Path | None = None) -> DesignSearch:
+def searched(study: Study, answer: AnswerPoints, gradients: Gradients, journal: Path | None = None) -> DesignSearch:
     """The search as far as its questions are answered."""
     search = DesignSearch(variations_of(study), goals_of(study), answer, int(study.settings["budget"]), gradients)
     method = method_of(study)

@@ -20,7 +20,7 @@ from petalfoil.studies.question import CaseOutcome
 from petalfoil.studies.variation import Interval, Number, Variation
 
 FloatArray = NDArray[np.float64]
-Answer: TypeAlias = Callable[[Sequence[Point]], list[CaseOutcome]]
+AnswerPoints: TypeAlias = Callable[[Sequence[Point]], list[CaseOutcome]]
 Slopes: TypeAlias = dict[str, dict[str, float]]
 """Derivatives of results by parameters, by result and path, SI."""
 Gradients: TypeAlias = Callable[[Point], Slopes | None]
@@ -55,7 +55,7 @@ class DesignSearch:
 
     variations: tuple[Variation, ...]
     goals: Goals
-    answer: Answer
+    answer: AnswerPoints
     budget: int
     gradients: Gradients = lambda point: None
     asked: list[CaseOutcome] = field(default_factory=list)

@@ -14,8 +14,8 @@ import numpy as np
 from petalfoil.results.schema import SCALARS, VARIABLES, TableLabel
 from petalfoil.results.summary import shown_as
 from petalfoil.studio.motion_chart import motion_chart
-from petalfoil.studio.protocol import Found, Mapped, Searched
-from petalfoil.studio.section_chart import VIRIDIS, Chart, Floats, State, Trace, note_at_foot
+from petalfoil.studio.protocol import FoundAnswer, Mapped, Searched
+from petalfoil.studio.section_chart import VIRIDIS, Chart, Floats, State, TraceData, note_at_foot
 from petalfoil.studio.themes import Theme
 from petalfoil.units import format_quantity
 
@@ -31,9 +31,9 @@ def empty(theme: Theme, words: str) -> Chart:
 # ---------------------------------------------------------------------------------------------- film over angle
 
 
-def film_chart(found: Found, pinned: Found | None, theme: Theme) -> Chart:
+def film_chart(found: FoundAnswer, pinned: FoundAnswer | None, theme: Theme) -> Chart:
     """Pressure and film thickness over the bushing angle, the pinned design behind them."""
-    traces: list[Trace] = []
+    traces: list[TraceData] = []
     if pinned is not None:
         look = {"line": {"color": theme.ghost, "width": 1.5, "dash": "dot"}, "name": "A"}
         traces += _over_angle(State.of(pinned), (look, look))
@@ -51,7 +51,7 @@ def film_chart(found: Found, pinned: Found | None, theme: Theme) -> Chart:
     return {"data": traces, "layout": layout, "config": theme.config("film")}
 
 
-def _over_angle(state: State, looks: tuple[dict[str, Any], dict[str, Any]]) -> list[Trace]:
+def _over_angle(state: State, looks: tuple[dict[str, Any], dict[str, Any]]) -> list[TraceData]:
     degrees, order = _round_the_circle(state.theta)
     lines = ((state.pressure_ratio, "y", looks[0]), (1e6 * state.array("film_thickness"), "y2", looks[1]))
     return [
@@ -63,13 +63,13 @@ def _over_angle(state: State, looks: tuple[dict[str, Any], dict[str, Any]]) -> l
     ]  # fmt: skip
 
 
-Order = list[tuple[int, int] | None]
+NodeOrder = list[tuple[int, int] | None]
 
 
-def _round_the_circle(theta: Floats) -> tuple[list[float | None], Order]:
+def _round_the_circle(theta: Floats) -> tuple[list[float | None], NodeOrder]:
     """Angles of all strips in 0 to 360 degrees with a gap after each strip and at a full turn, and their nodes."""
     degrees: list[float | None] = []
-    order: Order = []
+    order: NodeOrder = []
     for petal, strip in enumerate(np.degrees(theta)):
         turns = np.floor(strip / 360.0 + 1e-12)
         for node, angle in enumerate(strip):
@@ -83,14 +83,14 @@ def _round_the_circle(theta: Floats) -> tuple[list[float | None], Order]:
     return degrees, order
 
 
-def _gapped(values: Floats, order: Order, digits: int) -> list[float | None]:
+def _gapped(values: Floats, order: NodeOrder, digits: int) -> list[float | None]:
     return [None if place is None else float(f"{values[place]:.{digits}g}") for place in order]
 
 
 # ---------------------------------------------------------------------------------------------- in 3-D
 
 
-def space_chart(found: Found, theme: Theme) -> Chart:
+def space_chart(found: FoundAnswer, theme: Theme) -> Chart:
     """The strips of the petals in 3-D, coloured by the pressure of the film on them."""
     state = State.of(found)
     if "space_pressure" in found.arrays:
@@ -148,20 +148,20 @@ def titled(name: str) -> str:
     return f"{shown.label.strip()} [{shown.unit}]" if shown.unit else shown.label.strip()
 
 
-def axes_of(found: Found) -> list[str]:
+def axes_of(found: FoundAnswer) -> list[str]:
     """Arrays of a result that can be drawn against each other."""
     if not found.is_series:
         return []
     return [name for name in found.arrays if name != "leg"]
 
 
-def is_drawn(found: Found) -> bool:
+def is_drawn(found: FoundAnswer) -> bool:
     """Whether a series or a table over frequency has more than one point to draw."""
     over = found.arrays.get("whirl_frequency", next(iter(found.arrays.values()), np.empty(0)))
     return len(over) > 1
 
 
-def line_chart(found: Found, names: tuple[str, str], theme: Theme) -> Chart:
+def line_chart(found: FoundAnswer, names: tuple[str, str], theme: Theme) -> Chart:
     """One result of a series against another; each leg is a line of its own."""
     x, y = names
     across, along = label_of(x), label_of(y)
@@ -184,7 +184,7 @@ def _or_gap(values: Iterable[Any]) -> list[float | None]:
     return [float(value) if math.isfinite(value) else None for value in values]
 
 
-def coefficients_chart(found: Found, name: str, theme: Theme) -> Chart:
+def coefficients_chart(found: FoundAnswer, name: str, theme: Theme) -> Chart:
     """Stiffness or damping over whirl frequency: direct and cross terms."""
     frequency = np.asarray(found.arrays["whirl_frequency"], dtype=np.float64) / (2.0 * math.pi)
     values, letter = np.asarray(found.arrays[name], dtype=np.float64), {"stiffness": "K", "damping": "C"}[name]
@@ -269,12 +269,12 @@ def unit_of(values: Sequence[float], unit: str) -> tuple[str, float]:
     return words, largest / float(number)
 
 
-def chart_of(found: Found, axes: Sequence[str], theme: Theme) -> Chart:
+def chart_of(found: FoundAnswer, axes: Sequence[str], theme: Theme) -> Chart:
     """The chart that suits a result.
 
     Parameters
     ----------
-    found : Found
+    found : FoundAnswer
         Result of any analysis.
     axes : sequence of str
         Results that a series is drawn over and of, or which coefficients are drawn; empty for a choice of its own.

@@ -11,7 +11,7 @@ from typing import Any
 from nicegui import ui
 
 from petalfoil.studio.page_session import Session
-from petalfoil.studio.protocol import Found, Work
+from petalfoil.studio.protocol import FoundAnswer, Work
 from petalfoil.studio.state import ShownResult
 from petalfoil.text import for_terminal
 
@@ -31,7 +31,7 @@ def quiet_button(text: str, icon: str, on_click: Callable[[], Any] | None = None
     return button.classes("quiet")
 
 
-def csv_of(found: Found) -> str:
+def csv_of(found: FoundAnswer) -> str:
     """The tables of a result as CSV, a blank line between two."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from petalfoil.analysis.declaration import ERROR
 from petalfoil.case import Case, Method, ModelKind
-from petalfoil.studio.protocol import Cancelled, Done, Failure, Found, Work
+from petalfoil.studio.protocol import Cancelled, Done, Failure, FoundAnswer, Work
 from petalfoil.studio.state import Aspect, ShownResult
 from petalfoil.studio.worker_pool import Job, WorkerPool, words_of
 from petalfoil.walls import Capability, wall_kind
@@ -98,7 +98,7 @@ class Live:
         self._session.say("computing", 0.0)
         job = self._engine.submit(self._session.key, Work.ANSWER, verb=verb, case_toml=design.to_toml(), coarse=True)
         outcome = await job.outcome
-        if isinstance(outcome, Done) and isinstance(outcome.result, Found):
+        if isinstance(outcome, Done) and isinstance(outcome.result, FoundAnswer):
             self._session.state = ShownResult(outcome.result, design.to_toml(), is_coarse=True)
             self._session.tell(Aspect.STATE)
         return not isinstance(outcome, Cancelled)
@@ -113,7 +113,7 @@ class Live:
         self._session.tell_queue(self._fine)
         outcome = await self._fine.outcome
         self._fine = None
-        if isinstance(outcome, Done) and isinstance(outcome.result, Found):
+        if isinstance(outcome, Done) and isinstance(outcome.result, FoundAnswer):
             self._session.state = ShownResult(outcome.result, toml)
             self._session.remember(design, outcome.result)
             self._session.tell(Aspect.STATE)
@@ -133,7 +133,7 @@ class Live:
         self._session.say(f"{before.words}, error bars follow", 0.0)
         outcome = await self._fine.outcome
         self._fine = None
-        if isinstance(outcome, Done) and isinstance(outcome.result, Found) and self._session.state is shown:
+        if isinstance(outcome, Done) and isinstance(outcome.result, FoundAnswer) and self._session.state is shown:
             self._session.state = replace(shown, found=outcome.result, arguments={ERROR: True})
             self._session.tell(Aspect.STATE)
             self._session.say(f"{before.words}, with error bars in {outcome.result.seconds:.2g} s", None)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from petalfoil.plot.stretch import Stretch, round_scale
-from petalfoil.studio.protocol import Found
+from petalfoil.studio.protocol import FoundAnswer
 from petalfoil.studio.section_chart import (
     BAND,
     CIRCLE,
@@ -21,7 +21,7 @@ from petalfoil.studio.section_chart import (
     Chart,
     Floats,
     State,
-    Trace,
+    TraceData,
     film_shapes,
     joined,
     petal_outlines,
@@ -44,7 +44,7 @@ SECTION, ASIDE = [0.0, 0.46], [0.58, 1.0]
 """Places of the section, and of path and histories beside it, over the width of the chart."""
 
 
-def motion_chart(found: Found, theme: Theme) -> Chart:
+def motion_chart(found: FoundAnswer, theme: Theme) -> Chart:
     """The motion of a journal, with its section where the motion holds pictures of it."""
     arrays = {name: np.asarray(values, dtype=np.float64) for name, values in found.arrays.items() if name != "leg"}
     moving = _Moving.of(found, arrays)
@@ -79,7 +79,7 @@ class _Moving:
         Whether the motion holds pictures of the section.
     """
 
-    def __init__(self, found: Found, arrays: dict[str, Floats], times: Floats, stretch: Stretch) -> None:
+    def __init__(self, found: FoundAnswer, arrays: dict[str, Floats], times: Floats, stretch: Stretch) -> None:
         self.times, self.stretch = times, stretch
         self._found, self._arrays = found, arrays
         self.has_section = "frame_pressure" in arrays
@@ -88,7 +88,7 @@ class _Moving:
             self._range = min(float(ratio.min()), 1.0), max(float(ratio.max()), 1.001)
 
     @classmethod
-    def of(cls, found: Found, arrays: dict[str, Floats]) -> _Moving:
+    def of(cls, found: FoundAnswer, arrays: dict[str, Floats]) -> _Moving:
         """The pictures of a result of `orbit`; of one without pictures the places along the last half of its path."""
         bore, journal = (float(found.scalars[f"{name}_radius"]) for name in ("bushing", "journal"))
         if "frame_pressure" not in arrays:
@@ -99,7 +99,7 @@ class _Moving:
         most = DENT * bore / (moved + DENT * (bore - journal))
         return cls(found, arrays, arrays["frame"], Stretch(bore, min(round_scale(bore, journal), most)))
 
-    def traces(self, number: int, theme: Theme) -> Iterator[Trace]:
+    def traces(self, number: int, theme: Theme) -> Iterator[TraceData]:
         """What moves in the section: journal, petals, film in each colour, contacts, a mark on the shaft."""
         if not self.has_section:
             return
@@ -126,7 +126,7 @@ class _Moving:
         at = {f"eccentricity_{axis}": float(self._arrays[f"frame_{axis}"][number]) for axis in "xy"}
         return State(replace(self._found, arrays=dict(arrays), scalars={**self._found.scalars, **at}), self.stretch)
 
-    def _contacts(self, state: State) -> Trace:
+    def _contacts(self, state: State) -> TraceData:
         touched = state.array("film_thickness") <= state.scalar("contact_film_thickness") * (1.0 + TOUCHING)
         x, y = self.stretch.points(state.journal(state.theta[touched]), state.theta[touched]).T
         marker = {"size": 6, "color": "#D55E00", "line": {"width": 0.5, "color": "#ffffff"}}
@@ -134,18 +134,18 @@ class _Moving:
         return {**shown, "hoverinfo": "name", "x": x.tolist(), "y": y.tolist()}
 
 
-def places_of(trace: Trace) -> Trace:
+def places_of(trace: TraceData) -> TraceData:
     """What of a trace changes from picture to picture."""
     return {"x": trace["x"], "y": trace["y"]}
 
 
-def _path(arrays: dict[str, Floats], theme: Theme) -> Iterator[Trace]:
+def _path(arrays: dict[str, Floats], theme: Theme) -> Iterator[TraceData]:
     x, y = (_short(1e6 * arrays[axis]) for axis in "xy")
     line = {"color": theme.accent, "width": 1}
     yield {"type": "scatter", "mode": "lines", "x": x, "y": y, "line": line, "hoverinfo": "skip"}
 
 
-def _histories(arrays: dict[str, Floats], theme: Theme) -> Iterator[Trace]:
+def _histories(arrays: dict[str, Floats], theme: Theme) -> Iterator[TraceData]:
     time = _short(1e3 * arrays["time"])
     shown = ((1e6 * arrays["min_film_thickness"], "y2", theme.accent, "minimum film thickness [µm]"),
              (100.0 * arrays["contact_fraction"], "y3", theme.second, "contact fraction [%]"))  # fmt: skip
@@ -156,7 +156,7 @@ def _histories(arrays: dict[str, Floats], theme: Theme) -> Iterator[Trace]:
         }  # fmt: skip
 
 
-def _now(arrays: dict[str, Floats], time: float, theme: Theme) -> Iterator[Trace]:
+def _now(arrays: dict[str, Floats], time: float, theme: Theme) -> Iterator[TraceData]:
     """The journal on its path, and the instant in the histories."""
     x, y = (1e6 * float(np.interp(time, arrays["time"], arrays[axis])) for axis in "xy")
     marker = {"size": 11, "color": theme.second, "line": {"width": 1, "color": theme.ink}}

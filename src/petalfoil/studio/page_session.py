@@ -17,7 +17,7 @@ from petalfoil.case import Case
 from petalfoil.errors import DefinitionError
 from petalfoil.studio.design import Design
 from petalfoil.studio.live import Live, live_verb
-from petalfoil.studio.protocol import Done, Failure, Found, Mapped, Searched, Work
+from petalfoil.studio.protocol import Done, Failure, FoundAnswer, Mapped, Searched, Work
 from petalfoil.studio.state import Aspect, ShownResult, Status, Tried
 from petalfoil.studio.worker_pool import Job, WorkerPool, words_of
 
@@ -168,7 +168,7 @@ class Session:
         if not records:
             again = self._engine.submit(self.key, Work.ANSWER, is_long=True, arguments=shown.arguments, **asked)
             outcome = await again.outcome
-            if not isinstance(outcome, Done) or not isinstance(outcome.result, Found):
+            if not isinstance(outcome, Done) or not isinstance(outcome.result, FoundAnswer):
                 return words_of(outcome)
             records = outcome.result.records
         outcome = await self._engine.submit(self.key, work, records=records, **asked).outcome
@@ -209,7 +209,7 @@ class Session:
             self.say(f"{name}: done in {outcome.result.seconds:.2g} s", None)
         self.tell(Aspect.ANSWERS)
 
-    def remember(self, design: Design, found: Found) -> None:
+    def remember(self, design: Design, found: FoundAnswer) -> None:
         """Add a design and its results to those that were tried."""
         if self.tried and self.tried[-1].design.tables == design.tables:
             return

@@ -87,7 +87,7 @@ class Ready:
 
 
 @dataclass(frozen=True)
-class Progress:
+class ProgressMessage:
     """How far a task is: the part done (0 to 1) and a text."""
 
     number: int
@@ -127,7 +127,7 @@ Arrays = dict[str, npt.NDArray[np.generic]]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Found:
+class FoundAnswer:
     """What an analysis found, ready to be shown.
 
     Attributes
@@ -229,10 +229,10 @@ class Done:
     """A task is done: what was found, or the bytes of a file."""
 
     number: int
-    result: Found | Mapped | Searched | bytes
+    result: FoundAnswer | Mapped | Searched | bytes
 
 
-Message = WorkerTask | Cancel | Ready | Progress | Cancelled | Failure | Done
+Message = WorkerTask | Cancel | Ready | ProgressMessage | Cancelled | Failure | Done
 
 
 def frame(message: Message) -> bytes:

@@ -16,7 +16,7 @@ from petalfoil.studio.charts import axes_of, chart_of, is_drawn, titled, usual_a
 from petalfoil.studio.downloads import download_menu
 from petalfoil.studio.form import label_of_argument, with_labels
 from petalfoil.studio.page_session import Session
-from petalfoil.studio.protocol import Found
+from petalfoil.studio.protocol import FoundAnswer
 from petalfoil.studio.state import ShownResult
 from petalfoil.studio.tasks import found_analysis
 from petalfoil.studio.themes import DARK, LIGHT, Theme
@@ -98,7 +98,7 @@ class QuestionPanel:
         field.props["aria-label"] = f"{self.verb} {label}"
         return field
 
-    def _build(self, found: Found) -> None:
+    def _build(self, found: FoundAnswer) -> None:
         self._answer.clear()
         with self._answer:
             names = ["stiffness", "damping"] if "stiffness" in found.arrays else axes_of(found)

@@ -11,7 +11,7 @@ from nicegui import ui
 from petalfoil.results.summary import cell, in_order, shown_as, with_bar
 from petalfoil.studio.downloads import quiet_button
 from petalfoil.studio.page_session import Session
-from petalfoil.studio.protocol import Found
+from petalfoil.studio.protocol import FoundAnswer
 from petalfoil.studio.state import ShownResult
 
 HIDDEN = {
@@ -90,14 +90,14 @@ def _heading(shown: ShownResult) -> str:
     return f"first answer, coarse 2-D: {grid}" if shown.is_coarse else f"{shown.found.verb}: {grid}"
 
 
-def rows_of(found: Found, pinned: Found | None) -> list[dict[str, Any]]:
+def rows_of(found: FoundAnswer, pinned: FoundAnswer | None) -> list[dict[str, Any]]:
     """Rows of the table: values to the digits of the printed table, error bars, and the difference from A.
 
     Parameters
     ----------
-    found : Found
+    found : FoundAnswer
         The present state.
-    pinned : Found or None
+    pinned : FoundAnswer or None
         The pinned one.
     """
     before: Mapping[str, Any] = {} if pinned is None else pinned.scalars

@@ -15,12 +15,12 @@ import numpy as np
 import numpy.typing as npt
 
 from petalfoil.plot.stretch import Stretch, petal_outline, round_scale
-from petalfoil.studio.protocol import Found
+from petalfoil.studio.protocol import FoundAnswer
 from petalfoil.studio.themes import Theme
 
 Floats: TypeAlias = npt.NDArray[np.float64]
 Chart: TypeAlias = dict[str, Any]
-Trace: TypeAlias = dict[str, Any]
+TraceData: TypeAlias = dict[str, Any]
 
 VIRIDIS = (
     "#440154", "#481b6d", "#46327e", "#3f4788", "#365c8d", "#2e6e8e", "#277f8e", "#21918c",
@@ -53,17 +53,17 @@ class State:
 
     Attributes
     ----------
-    found : Found
+    found : FoundAnswer
         What the analysis found.
     stretch : Stretch
         The radial map.
     """
 
-    found: Found
+    found: FoundAnswer
     stretch: Stretch
 
     @classmethod
-    def of(cls, found: Found) -> State:
+    def of(cls, found: FoundAnswer) -> State:
         """A state with the default stretch."""
         bore, journal = (float(found.scalars[f"{name}_radius"]) for name in ("bushing", "journal"))
         plain = cls(found, Stretch(bore, round_scale(bore, journal)))
@@ -103,17 +103,17 @@ class State:
         return ratio
 
 
-def has_section(found: Found | None) -> bool:
+def has_section(found: FoundAnswer | None) -> bool:
     """Whether a result holds what a cross-section shows."""
     return found is not None and "pressure" in found.arrays and "bushing_radius" in found.scalars
 
 
-def section_chart(found: Found, theme: Theme) -> Chart:
+def section_chart(found: FoundAnswer, theme: Theme) -> Chart:
     """The cross-section of a state.
 
     Parameters
     ----------
-    found : Found
+    found : FoundAnswer
         A converged state with pressure and film thickness.
     theme : Theme
         Colours.
@@ -136,7 +136,7 @@ def section_chart(found: Found, theme: Theme) -> Chart:
     return {"data": traces, "layout": layout, "config": theme.config("cross-section")}
 
 
-def polygon(points: Floats, **look: Any) -> Trace:
+def polygon(points: Floats, **look: Any) -> TraceData:
     """A closed shape without an outline of its own."""
     x, y = np.round(points.T, 6)  # micrometres: finer than a pixel, and short to send
     shape = {"type": "scatter", "mode": "lines", "fill": "toself", "hoverinfo": "skip", "showlegend": False}
@@ -149,14 +149,14 @@ def ring(bore: float) -> Floats:
     return np.concatenate([bore * rim, (1.0 + RING) * bore * rim[::-1]])
 
 
-def _solids(state: State, theme: Theme) -> Iterator[Trace]:
+def _solids(state: State, theme: Theme) -> Iterator[TraceData]:
     bore = state.stretch.bushing
     yield polygon(ring(bore), fillcolor=theme.bushing, name="bushing")
     journal = state.stretch.points(state.journal(CIRCLE), CIRCLE)
     yield polygon(journal, fillcolor=theme.journal, line={"width": 1, "color": theme.ink}, name="journal")
 
 
-def _petals(state: State, theme: Theme) -> Iterator[Trace]:
+def _petals(state: State, theme: Theme) -> Iterator[TraceData]:
     if "radius" not in state.found.arrays or "petal_thickness" not in state.found.scalars:
         return
     outlines = petal_outlines(state)
@@ -173,7 +173,7 @@ def petal_outlines(state: State) -> list[Floats]:
     return [petal_outline(radius[petal], root + phi, half, state.stretch) for petal, root in roots]
 
 
-def _foil(state: State, theme: Theme) -> Iterator[Trace]:
+def _foil(state: State, theme: Theme) -> Iterator[TraceData]:
     """The surface of a foil that deflects as a whole, such as the top foil of a bump foil bearing."""
     if not state.stretch.foil:
         return
@@ -182,7 +182,7 @@ def _foil(state: State, theme: Theme) -> Iterator[Trace]:
     yield polygon(surface, fill="none", line={"width": 2, "color": theme.ink}, name="foil")
 
 
-def joined(shapes: list[Floats], **look: Any) -> Trace:
+def joined(shapes: list[Floats], **look: Any) -> TraceData:
     """Several shapes as one trace; none as one without points."""
     trace = polygon(shapes[0] if shapes else np.zeros((0, 2)), **look)
     trace["x"], trace["y"] = [], []
@@ -193,7 +193,7 @@ def joined(shapes: list[Floats], **look: Any) -> Trace:
     return trace
 
 
-def _film(state: State) -> Iterator[Trace]:
+def _film(state: State) -> Iterator[TraceData]:
     """The film, and the excess pressure as a band inside the journal, in the colours of the pressure."""
     ratio = state.pressure_ratio
     low, high = min(float(ratio.min()), 1.0), max(float(ratio.max()), 1.001)
@@ -251,7 +251,7 @@ def _band(state: State, ratio: Floats, theta: Floats, height: float) -> tuple[Fl
     return base[..., None] * direction, (base - height * excess)[..., None] * direction
 
 
-def _colour_bar(low: float, high: float) -> Trace:
+def _colour_bar(low: float, high: float) -> TraceData:
     scale = [[step / (len(VIRIDIS) - 1), colour] for step, colour in enumerate(VIRIDIS)]
     bar = {"title": {"text": "p/p<sub>a</sub>"}, "thickness": 12, "len": 0.6, "x": 1.0, "tickformat": ".3~g"}
     marker = {"colorscale": scale, "cmin": low, "cmax": high, "color": [low], "showscale": True, "size": 0}
@@ -259,7 +259,7 @@ def _colour_bar(low: float, high: float) -> Trace:
     return hidden | {"marker": marker | {"colorbar": bar}}
 
 
-def _contacts(state: State) -> Iterator[Trace]:
+def _contacts(state: State) -> Iterator[TraceData]:
     for name, (label, colour) in CONTACTS.items():
         if name not in state.found.arrays:
             continue
@@ -293,7 +293,7 @@ def _arrows(state: State, theme: Theme) -> Iterator[tuple[str, str, Mapping[str,
         yield "force on it", theme.accent, _arrow(e, e + 0.42 * drawn * force / size, theme.accent, 2.0)
 
 
-def _named(words: str, colour: str) -> Trace:
+def _named(words: str, colour: str) -> TraceData:
     """An entry of the legend for an arrow, which has none of its own."""
     look = {"line": {"color": colour, "width": 3}, "hoverinfo": "skip"}
     return {"type": "scatter", "mode": "lines", "x": [None], "y": [None], "name": words, **look}

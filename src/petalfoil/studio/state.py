@@ -8,7 +8,7 @@ from enum import Enum, auto
 from typing import Any
 
 from petalfoil.studio.design import Design
-from petalfoil.studio.protocol import Found
+from petalfoil.studio.protocol import FoundAnswer
 
 
 class Aspect(Enum):
@@ -23,7 +23,7 @@ class ShownResult:
 
     Attributes
     ----------
-    found : Found
+    found : FoundAnswer
         The result.
     toml : str
         The case as it was typed.
@@ -33,7 +33,7 @@ class ShownResult:
         Whether it is a first answer on a coarse 2-D grid.
     """
 
-    found: Found
+    found: FoundAnswer
     toml: str
     arguments: Mapping[str, Any] = field(default_factory=dict)
     is_coarse: bool = False

@@ -21,7 +21,7 @@ from petalfoil.results.summary import without_rounding
 from petalfoil.results.tables import tables_of
 from petalfoil.studio.arrays import arrays_of
 from petalfoil.studio.design import Design, without_files
-from petalfoil.studio.protocol import Found, Mapped, Searched, Work, WorkerTask
+from petalfoil.studio.protocol import FoundAnswer, Mapped, Searched, Work, WorkerTask
 from petalfoil.walls import Capability, wall_kind
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ MOST_UNKNOWNS = 150_000
 """Largest grid that the page runs: a minute or two on one core, and some 2 GB."""
 
 
-def perform(task: WorkerTask, progress: Progress) -> Found | Mapped | Searched | bytes:
+def perform(task: WorkerTask, progress: Progress) -> FoundAnswer | Mapped | Searched | bytes:
     """Do what a task asks for.
 
     Raises
@@ -70,7 +70,7 @@ def found_analysis(verb: str) -> Analysis:
     return analysis
 
 
-def answered(task: WorkerTask, analysis: Analysis, progress: Progress) -> Found:
+def answered(task: WorkerTask, analysis: Analysis, progress: Progress) -> FoundAnswer:
     """Run an analysis and lay out its answer for the page."""
     start = time.perf_counter()
     case = Case(**without_files(task.case_toml))
@@ -83,7 +83,7 @@ def answered(task: WorkerTask, analysis: Analysis, progress: Progress) -> Found:
     last = answer.records[-1]
     scalars = without_rounding(last)
     rounded = {name for name, value in scalars.items() if value == 0.0 != last.scalars[name]}
-    return Found(
+    return FoundAnswer(
         verb=task.verb,
         tables=tuple(tables_of(answer)),
         warnings=answer.warnings,

@@ -16,7 +16,17 @@ from queue import SimpleQueue
 from typing import BinaryIO
 
 from petalfoil.errors import ConvergenceError, DefinitionError, PetalfoilError
-from petalfoil.studio.protocol import Cancel, Cancelled, Done, Failure, Message, Progress, Ready, WorkerTask, read_frame
+from petalfoil.studio.protocol import (
+    Cancel,
+    Cancelled,
+    Done,
+    Failure,
+    Message,
+    ProgressMessage,
+    Ready,
+    WorkerTask,
+    read_frame,
+)
 from petalfoil.studio.protocol import frame as framed
 from petalfoil.studio.tasks import perform, warm_up
 
@@ -66,7 +76,7 @@ def outcome(task: WorkerTask, inbox: Inbox, tell: Callable[[Message], None]) -> 
             raise Stop
         if abs(part - told[0]) >= PROGRESS_STEP:
             told[0] = part
-            tell(Progress(task.number, part, text))
+            tell(ProgressMessage(task.number, part, text))
 
     try:
         progress(0.0, task.verb)

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from petalfoil.studio.protocol import Cancelled, Done, Failure, Progress, Work, WorkerTask
+from petalfoil.studio.protocol import Cancelled, Done, Failure, ProgressMessage, Work, WorkerTask
 from petalfoil.studio.worker_process import WorkerProcess
 
 PATIENCE = 5.0
@@ -200,12 +200,12 @@ class WorkerPool:
         if not self._is_open:
             await worker.end()
 
-    def _told(self, worker: WorkerProcess, message: Progress | Outcome | None) -> None:
+    def _told(self, worker: WorkerProcess, message: ProgressMessage | Outcome | None) -> None:
         """What a worker reports: its first report, None, is that it is ready."""
         if message is None:
             self._failed_starts = 0
             asyncio.get_running_loop().call_later(SPARE_AFTER, self._grow)
-        elif isinstance(message, Progress):
+        elif isinstance(message, ProgressMessage):
             if worker.job is not None and worker.job.on_progress is not None and not worker.job.outcome.done():
                 worker.job.on_progress(message.part, message.text)
             return

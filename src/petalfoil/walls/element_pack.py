@@ -29,7 +29,7 @@ Index = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
-class Loads:
+class ElementLoads:
     """Point loads on petals, (k,) each: petal, element, place in it, force toward the bushing over its unit."""
 
     petal: Index
@@ -165,7 +165,7 @@ class ElementPack:
         first = 2 if self.elements.clamped else 1
         return np.asarray(pairs.reshape(self.mesh.count, -1)[:, first:].ravel())
 
-    def contact_places(self, points: ContactPoints) -> tuple[Loads, Loads]:
+    def contact_places(self, points: ContactPoints) -> tuple[ElementLoads, ElementLoads]:
         """Where contact points are on the petals that touch, and between petals on those behind them.
 
         Forces are those on these petals, toward the bushing.
@@ -178,8 +178,8 @@ class ElementPack:
         start = np.array([self.nodes[kind].start for kind in kinds])[facing]
         sign = np.array([1.0 if kind is Facing.JOURNAL else -1.0 for kind in kinds])[facing]
         lies = facing == kinds.index(Facing.PETAL)
-        own = Loads(petal, at + start, place, sign * points.reaction)
-        return own, Loads((petal[lies] + 1) % n, at[lies], place[lies], points.reaction[lies])
+        own = ElementLoads(petal, at + start, place, sign * points.reaction)
+        return own, ElementLoads((petal[lies] + 1) % n, at[lies], place[lies], points.reaction[lies])
 
 
 def element_pack(shells: Sequence[PetalShell], mesh: PackMesh, wall: Wall, per_pitch: int, faces: Faces) -> ElementPack:

@@ -8,11 +8,11 @@ import typing
 import pytest
 
 import petalfoil
-from petalfoil.analysis.arguments import Speed, Values
+from petalfoil.analysis.arguments import NumbersWithUnit, Speed
 from petalfoil.errors import UnitError, UsageError
 from tests.cases import case
 
-WHIRL = Values(unit="rad/s", whirl=True, at_least=0.0, help="Whirl frequencies.")
+WHIRL = NumbersWithUnit(unit="rad/s", whirl=True, at_least=0.0, help="Whirl frequencies.")
 
 
 @pytest.mark.parametrize("given", ["100 Hz", "0.1 kHz", ["100 Hz"], "6000 rpm", 200.0 * math.pi])
@@ -22,7 +22,7 @@ def test_whirl_frequencies_are_read_in_hertz(given: object) -> None:
 
 def test_speeds_in_hertz_are_told_both_readings() -> None:
     with pytest.raises(UnitError, match="for turns write '6000 rpm', for radians '100 rad/s'"):
-        Values(unit="rad/s", help="Speeds.").read("100 Hz")
+        NumbersWithUnit(unit="rad/s", help="Speeds.").read("100 Hz")
 
 
 @pytest.mark.parametrize("given", ["-100 rpm", "-100 Hz"])

@@ -17,7 +17,7 @@ from petalfoil.case import toml as case_toml
 from petalfoil.errors import DefinitionError, UsageError
 from petalfoil.studio.charts import chart_of, film_chart, is_drawn, map_chart, space_chart, unit_of, usual_axes
 from petalfoil.studio.downloads import csv_of
-from petalfoil.studio.protocol import Found, Mapped, Work, WorkerTask
+from petalfoil.studio.protocol import FoundAnswer, Mapped, Work, WorkerTask
 from petalfoil.studio.results_panel import rows_of
 from petalfoil.studio.section_chart import has_section, section_chart
 from petalfoil.studio.study_tasks import MOST_CASES
@@ -38,18 +38,18 @@ def task(verb: str = "balance", arguments: dict[str, Any] | None = None, **chang
     return WorkerTask(number=1, work=Work.ANSWER, verb=verb, case_toml=text, arguments=arguments or {}, **changes)
 
 
-def found(*given: Any, **named: Any) -> Found:
+def found(*given: Any, **named: Any) -> FoundAnswer:
     answer = perform(task(*given, **named), lambda part, text: None)
-    assert isinstance(answer, Found)
+    assert isinstance(answer, FoundAnswer)
     return answer
 
 
 @pytest.fixture(scope="module")
-def state() -> Found:
+def state() -> FoundAnswer:
     return found()
 
 
-def test_an_answer_agrees_with_the_analysis_itself(state: Found) -> None:
+def test_an_answer_agrees_with_the_analysis_itself(state: FoundAnswer) -> None:
     balance = known_verbs.find("balance")
     assert balance is not None
     record = balance.record(Case.from_toml(task().case_toml))
@@ -58,7 +58,7 @@ def test_an_answer_agrees_with_the_analysis_itself(state: Found) -> None:
 
 
 @pytest.mark.parametrize("theme", [LIGHT, DARK])
-def test_the_section_is_plain_json_without_webgl(state: Found, theme: Any) -> None:
+def test_the_section_is_plain_json_without_webgl(state: FoundAnswer, theme: Any) -> None:
     assert has_section(state)
     chart = section_chart(state, theme)
     assert len(json.dumps(chart, allow_nan=False)) < 250_000
@@ -67,7 +67,7 @@ def test_the_section_is_plain_json_without_webgl(state: Found, theme: Any) -> No
     assert_allclose(reach, 1.05 * state.scalars["bushing_radius"], rtol=1e-3)
 
 
-def test_the_film_chart_shows_peak_pressure_and_minimum_film_thickness(state: Found) -> None:
+def test_the_film_chart_shows_peak_pressure_and_minimum_film_thickness(state: FoundAnswer) -> None:
     pressure, film = film_chart(state, None, LIGHT)["data"]
     ambient = state.scalars["ambient_pressure"]
     highest = max(value for value in pressure["y"] if value is not None)
@@ -77,7 +77,7 @@ def test_the_film_chart_shows_peak_pressure_and_minimum_film_thickness(state: Fo
     assert len(film_chart(state, state, LIGHT)["data"]) == 4
 
 
-def test_the_view_in_space_of_a_flat_film_has_its_length(state: Found) -> None:
+def test_the_view_in_space_of_a_flat_film_has_its_length(state: FoundAnswer) -> None:
     surfaces = space_chart(state, LIGHT)["data"]
     assert len(surfaces) == 8
     assert_allclose(np.max(surfaces[0]["x"]), 1e3 * state.scalars["length"])
@@ -100,7 +100,7 @@ def test_a_series_is_drawn_over_what_was_varied() -> None:
 
 
 @pytest.mark.slow
-def test_files_are_made_of_the_records(state: Found) -> None:
+def test_files_are_made_of_the_records(state: FoundAnswer) -> None:
     made = WorkerTask(number=2, work=Work.REPORT, verb="balance", case_toml="title = '<script>'", records=state.records)
     page = perform(made, lambda part, text: None)
     assert isinstance(page, bytes)
@@ -110,28 +110,34 @@ def test_files_are_made_of_the_records(state: Found) -> None:
     assert answer.records == state.records
 
 
-def test_the_difference_from_a_pinned_design_is_in_percent(state: Found) -> None:
+def test_the_difference_from_a_pinned_design_is_in_percent(state: FoundAnswer) -> None:
     scalars = dict(state.scalars) | {"min_film_thickness": 0.5 * float(state.scalars["min_film_thickness"])}
-    pinned = Found(verb="balance", tables=(), scalars=scalars)
+    pinned = FoundAnswer(verb="balance", tables=(), scalars=scalars)
     (row,) = (row for row in rows_of(state, pinned) if row["name"] == "min_film_thickness")
     assert row["difference"] == "+100 %"
     moved = dict(state.scalars) | {"force_x": 3e-9, "force_y": 10.0}
-    rows = {row["name"]: row["difference"] for row in rows_of(state, Found(verb="balance", tables=(), scalars=moved))}
+    rows = {
+        row["name"]: row["difference"] for row in rows_of(state, FoundAnswer(verb="balance", tables=(), scalars=moved))
+    }
     assert (rows["force_x"], rows["force_y"]) == ("", "+50 %")
     assert rows_of(state, None)[0]["pinned"] == ""
 
 
-def test_the_difference_of_an_angle_is_an_angle(state: Found) -> None:
+def test_the_difference_of_an_angle_is_an_angle(state: FoundAnswer) -> None:
     name = "min_film_thickness_angle"
     turned = dict(state.scalars) | {name: float(state.scalars[name]) - math.radians(2.0), "residual": 1.0}
-    rows = {row["name"]: row["difference"] for row in rows_of(state, Found(verb="balance", tables=(), scalars=turned))}
+    rows = {
+        row["name"]: row["difference"] for row in rows_of(state, FoundAnswer(verb="balance", tables=(), scalars=turned))
+    }
     assert (rows[name], rows["residual"]) == ("+2 deg", "")
 
 
 def test_warnings_colour_their_rows() -> None:
-    warned = Found(verb="solve", tables=(), scalars={"max_bending_stress": 3e9}, warnings=("max_bending_stress: high",))
+    warned = FoundAnswer(
+        verb="solve", tables=(), scalars={"max_bending_stress": 3e9}, warnings=("max_bending_stress: high",)
+    )
     assert rows_of(warned, None)[0]["level"] == "warned"
-    failed = Found(verb="solve", tables=(), scalars={"status": "not converged: why"})
+    failed = FoundAnswer(verb="solve", tables=(), scalars={"status": "not converged: why"})
     assert rows_of(failed, None)[0]["level"] == "failed"
 
 
@@ -196,7 +202,7 @@ def test_a_foil_that_deflects_stands_inside_the_bushing() -> None:
     text = case("bump_foil").to_toml()
     asked = WorkerTask(number=1, work=Work.ANSWER, verb="solve", case_toml=text, coarse=True)
     answer = perform(asked, lambda part, text: None)
-    assert isinstance(answer, Found)
+    assert isinstance(answer, FoundAnswer)
     shapes = {trace["name"]: trace for trace in section_chart(answer, LIGHT)["data"] if "name" in trace}
 
     def reach(name: str) -> float:
@@ -205,7 +211,7 @@ def test_a_foil_that_deflects_stands_inside_the_bushing() -> None:
     assert answer.scalars["bushing_radius"] < reach("foil") < reach("bushing") / 1.05
 
 
-def test_no_force_is_drawn_on_a_centred_journal(state: Found) -> None:
+def test_no_force_is_drawn_on_a_centred_journal(state: FoundAnswer) -> None:
     names = {trace["name"] for trace in section_chart(state, LIGHT)["data"] if "name" in trace}
     assert {"displacement of the journal", "force on it"} <= names
     centred = dict(state.scalars) | {"force_x": 1e-9, "force_y": 2e-9, "eccentricity_x": 0.0, "eccentricity_y": 0.0}
@@ -216,7 +222,7 @@ def test_no_force_is_drawn_on_a_centred_journal(state: Found) -> None:
 
 
 def test_a_single_frequency_is_a_table() -> None:
-    one = Found(
+    one = FoundAnswer(
         verb="coefficients", tables=(), scalars={}, arrays={"whirl_frequency": np.ones(1), "stiffness": np.ones(1)}
     )
     assert not is_drawn(one)

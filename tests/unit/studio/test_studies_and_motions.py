@@ -15,7 +15,7 @@ from petalfoil.studio.charts import optimum_axes, optimum_chart
 from petalfoil.studio.design import Design
 from petalfoil.studio.motion_chart import motion_chart
 from petalfoil.studio.parameter_choice import as_typed, entries
-from petalfoil.studio.protocol import Found, Searched, Work, WorkerTask
+from petalfoil.studio.protocol import FoundAnswer, Searched, Work, WorkerTask
 from petalfoil.studio.study_tasks import MOST_CASES
 from petalfoil.studio.tasks import perform
 from petalfoil.studio.themes import LIGHT
@@ -23,7 +23,7 @@ from petalfoil.studio.themes import LIGHT
 COARSE = Design.starting().with_value("model.cells_per_pitch", 12)
 
 
-def moving(pictures: int = 3) -> Found:
+def moving(pictures: int = 3) -> FoundAnswer:
     """A journal that moves along x in a bearing of two strips, with a picture of each instant."""
     shape, places = (pictures, 2, 5), np.linspace(0.0, 1e-4, pictures)
     rng = np.random.default_rng(1)
@@ -37,7 +37,7 @@ def moving(pictures: int = 3) -> Found:
     }  # fmt: skip
     arrays["frame_film_thickness"][1] = 1e-6
     scalars = {"bushing_radius": 26e-3, "journal_radius": 25e-3, "petal_thickness": 2e-4, "ambient_pressure": 1e5}
-    return Found(verb="orbit", tables=(), arrays=arrays, scalars=scalars | {"contact_film_thickness": 1e-6})
+    return FoundAnswer(verb="orbit", tables=(), arrays=arrays, scalars=scalars | {"contact_film_thickness": 1e-6})
 
 
 def test_every_picture_of_a_motion_moves_the_same_traces() -> None:
@@ -71,7 +71,7 @@ def test_the_section_of_a_motion_is_that_of_its_result() -> None:
         number=1, work=Work.ANSWER, verb="orbit", case_toml=design.to_toml(), arguments={"revolutions": "2"}
     )
     found = perform(asked, lambda part, text: None)
-    assert isinstance(found, Found)
+    assert isinstance(found, FoundAnswer)
     record = found.records[-1]
     assert_allclose(found.arrays["frame_x"], record.fields["frame_x"])
     assert_allclose(
