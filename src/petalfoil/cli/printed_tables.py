@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import sys
+from itertools import zip_longest
 
 from rich import box
+from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 
@@ -13,6 +15,9 @@ from petalfoil.results.tables import TextTable, tables_of
 from petalfoil.text import for_terminal
 
 PIPE_WIDTH = 120  # where no terminal says how wide it is: no column of a series is cut off
+NUMBER_WIDTH = 14
+"""Longest value that is set flush right with the numbers: those of four digits and an exponent, and words such as
+"converged"."""
 
 
 def render(answer: Answer) -> str:
@@ -41,14 +46,23 @@ def render(answer: Answer) -> str:
 
 
 def _rows(content: TextTable) -> Table:
-    """Lines of label, value, unit; or of label, value, error bar, unit."""
+    """Lines of label, value, unit; or of label, value, error bar, unit. Long words begin where numbers do, and fold."""
     table = Table(box=None, show_header=False, pad_edge=False)
+    table.add_column(no_wrap=True)
     table.add_column()
-    for line in content.lines:
-        while len(table.columns) < len(line):
-            table.add_column(justify="right" if len(table.columns) < len(line) - 1 else "left")
-        _add(table, *line)
+    lines = [tuple(map(for_terminal, line)) for line in content.lines]
+    short = [[cell_len(cell) for cell in cells] for _, *cells, _ in lines if not _is_long(cells[0])]
+    widths = [max(column) for column in zip_longest(*short, fillvalue=0)]
+    for label, *cells, unit in lines:
+        if not _is_long(cells[0]):
+            cells = [" " * (width - cell_len(cell)) + cell for cell, width in zip(cells, widths, strict=False)]
+        table.add_row(label, "  ".join((*cells, unit)).rstrip())
     return table
+
+
+def _is_long(value: str) -> bool:
+    """Whether a value is a text too long to stand among the numbers."""
+    return cell_len(value) > NUMBER_WIDTH
 
 
 def _headed(content: TextTable) -> Table:

@@ -1,0 +1,46 @@
+"""Lines of label, value and unit as the terminal shows them."""
+
+from __future__ import annotations
+
+from rich.console import Console
+
+from petalfoil.cli.printed_tables import _rows
+from petalfoil.results.tables import TextTable
+
+LINES = [
+    ("status", "converged", ""),
+    ("speed", "76394", "rpm"),
+    ("petal friction", "relaxed: no friction forces between the petals, as vibrations leave the pack", ""),
+    ("time", "1.5", "s"),
+]
+
+
+def printed(lines: list[tuple[str, ...]], width: int) -> list[str]:
+    console = Console(width=width, markup=False, highlight=False)
+    with console.capture() as capture:
+        console.print(_rows(TextTable(lines=lines)))
+    return [line.rstrip() for line in capture.get().splitlines()]
+
+
+def test_a_long_text_does_not_move_the_numbers() -> None:
+    status, speed, friction, time = printed(LINES, 120)
+    assert status == "status          converged"
+    assert speed == "speed               76394  rpm"
+    assert time == "time                  1.5  s"
+    assert friction.startswith("petal friction  relaxed: no friction")
+
+
+def test_a_long_text_folds_below_its_beginning() -> None:
+    _, _, *friction, _ = printed(LINES, 60)
+    assert len(friction) == 2
+    assert friction[1].startswith(" " * 16)
+    assert " ".join(" ".join(friction).split()) == " ".join(LINES[2][:2])
+
+
+def test_error_bars_stand_between_value_and_unit() -> None:
+    (line, _) = printed([("force", "5.000", "± 0.20", "N"), ("force x", "-12.0", "", "N")], 60)
+    assert line == "force    5.000  ± 0.20  N"
+
+
+def test_a_table_without_numbers() -> None:
+    assert printed([LINES[2]], 120) == ["  ".join(LINES[2][:2])]
