@@ -128,16 +128,15 @@ class ContactPoints:
         return np.arange(len(self.curve)) + np.cumsum(self.inner) - self.inner
 
     @cached_property
-    def spread(self) -> Array:
+    def spread(self) -> sp.csr_array:
         """Derivative of all positions by those of the travelling points, (j, k)."""
-        k = len(self.curve)
-        before = np.repeat(np.arange(k), self.inner + 1)
-        part = (np.arange(len(before)) - self.ends[before]) / (self.inner[before] + 1.0)
-        out = np.zeros((len(before), k))
-        out[np.arange(len(before)), before] = 1.0 - part
+        k, n = len(self.curve), len(self.reaction)
+        before, number = np.repeat(np.arange(k), self.inner + 1), np.arange(n)
+        part = (number - self.ends[before]) / (self.inner[before] + 1.0)
         shared = np.flatnonzero(part > 0.0)
-        out[shared, before[shared] + 1] = part[shared]
-        return out
+        weights = np.concatenate([1.0 - part, part[shared]])
+        where = np.concatenate([number, shared]), np.concatenate([before, before[shared] + 1])
+        return sp.csr_array((weights, where), shape=(n, k))
 
     @cached_property
     def every_curve(self) -> Index:
@@ -155,22 +154,24 @@ class ContactPoints:
 class PointGaps:
     """Gap and its derivatives at all contact points, reactions' own bending included (K11).
 
+    Points act on each other on one element only: the matrices are sparse.
+
     Attributes
     ----------
     value, slope : (j,) array
         `p` and its derivative by the place in the element.
-    bend, bend_slope : (j, j) array
+    bend, bend_slope : (j, j) sparse
         Derivatives of values and slopes by the reactions.
-    value_by_place, slope_by_place : (j, j) array
+    value_by_place, slope_by_place : (j, j) sparse
         Derivatives of values and slopes by the places.
     """
 
     value: Array
     slope: Array
-    bend: Array
-    bend_slope: Array
-    value_by_place: Array
-    slope_by_place: Array
+    bend: sp.csr_array
+    bend_slope: sp.csr_array
+    value_by_place: sp.csr_array
+    slope_by_place: sp.csr_array
 
 
 def point_gaps(curves: GapCurves, points: ContactPoints, nodal: Array) -> PointGaps:
@@ -178,22 +179,37 @@ def point_gaps(curves: GapCurves, points: ContactPoints, nodal: Array) -> PointG
     element, t = curves.locate(points.every_curve, points.every_position)
     lam, C = points.reaction, curves.compliance[element]
     value, slope, curvature = (hermite.rows(element, t, curves.angle, k) @ nodal for k in range(3))
-    same = element[:, None] == element[None, :]
-    s, load = np.broadcast_to(t[:, None], same.shape), np.broadcast_to(t[None, :], same.shape)
+    at, load = together(element)
+    own, s, t_d = at == load, t[at], t[load]
     b, b_s, b_ss, b_st = (
-        np.where(same, C[:, None] * part(s, load), 0.0)
-        for part in (clamped_beam, clamped_beam_slope, clamped_beam_bend, clamped_beam_twist)
+        C[at] * part(s, t_d) for part in (clamped_beam, clamped_beam_slope, clamped_beam_bend, clamped_beam_twist)
     )
-    own = np.eye(len(t), dtype=bool)
-    others = np.where(own, 0.0, lam[None, :])
+
+    def at_points(part: Array) -> Array:
+        """Sum of a part of the pairs at each point."""
+        return np.bincount(at, weights=part, minlength=len(t)).astype(np.float64)
+
+    others = np.where(own, 0.0, lam[load])
     # by the place of another point: b(t, t_d) changes with t_d, and b is symmetric
-    value_by_place, slope_by_place = b_s.T * others, b_st * others
+    value_by_place, slope_by_place = C[at] * clamped_beam_slope(t_d, s) * others, b_st * others
     # by its own place: d b(t, t)/dt = 2 b_s(t, t), d b_s(t, t)/dt = u (1 - 2 t)^2 - u^2, u = t (1 - t)
     u = t * (1.0 - t)
-    np.fill_diagonal(value_by_place, slope + (b_s * others).sum(axis=1) + 2.0 * np.diag(b_s) * lam)
     turn = C * lam * (u * (1.0 - 2.0 * t) ** 2 - u**2)
-    np.fill_diagonal(slope_by_place, curvature + (b_ss * others).sum(axis=1) + turn)
-    return PointGaps(value + b @ lam, slope + b_s @ lam, b, b_s, value_by_place, slope_by_place)
+    value_by_place[own] = (slope + at_points(b_s * (others + np.where(own, 2.0 * lam[load], 0.0))))[at[own]]
+    slope_by_place[own] = (curvature + at_points(b_ss * others) + turn)[at[own]]
+    matrices = (
+        sp.csr_array((part, (at, load)), shape=(len(t), len(t))) for part in (b, b_s, value_by_place, slope_by_place)
+    )
+    return PointGaps(value + at_points(b * lam[load]), slope + at_points(b_s * lam[load]), *matrices)
+
+
+def together(element: Index) -> tuple[Index, Index]:
+    """All pairs of points on one element, a point with itself included: numbers of the first and of the second."""
+    order = np.argsort(element, kind="stable")
+    _, first, count = np.unique(element[order], return_index=True, return_counts=True)
+    partners, start = np.repeat(count, count), np.repeat(first, count)
+    number = np.arange(partners.sum()) - np.repeat(np.cumsum(partners) - partners, partners)
+    return np.repeat(order, partners), order[np.repeat(start, partners) + number]
 
 
 def sampled(curves: GapCurves, points: ContactPoints, nodal: Array, per_element: int) -> tuple[Index, Array, Array]:

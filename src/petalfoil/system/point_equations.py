@@ -172,20 +172,19 @@ class PointEquations:
     def steady(self) -> sp.csc_array:
         """The tangent."""
         (n, n_slope), gaps, points = self.by_w, self.gaps, self.state.points
-        acts, free, ends = 1.0 - self.idle, self.travels, points.ends
-        travel = points.spread * free  # positions of all points by those that travel
+        acts, free = (sp.diags_array(part) for part in (1.0 - self.idle, self.travels))
+        held, ends = sp.diags_array(1.0 - self.travels), points.ends
+        travel = points.spread @ free  # positions of all points by those that travel
         moved = (n_slope.T @ sp.diags_array(points.reaction)) @ travel
         by_P, by_w = self._film_tangent
-        bend = acts[:, None] * gaps.bend + np.diag(self.idle)
-        bend_slope = free[:, None] * gaps.bend_slope[ends]
-        value_by_place = acts[:, None] * (gaps.value_by_place @ travel)
-        slope_by_place = free[:, None] * (gaps.slope_by_place[ends] @ travel) + np.diag(1.0 - free)
-        acting, travelling = sp.diags_array(acts) @ n, sp.diags_array(free) @ n_slope[ends]
+        bend, bend_slope = acts @ gaps.bend + sp.diags_array(self.idle), free @ gaps.bend_slope[ends]
+        value_by_place = acts @ (gaps.value_by_place @ travel)
+        slope_by_place = free @ (gaps.slope_by_place[ends] @ travel) + held
         blocks = [
-            [self.whole.stiffness, -self.whole.push, -n.T, sp.csr_array(-moved)],
+            [self.whole.stiffness, -self.whole.push, -n.T, -moved],
             [by_w, by_P, None, None],
-            [acting, None, sp.csr_array(bend), sp.csr_array(value_by_place)],
-            [travelling, None, sp.csr_array(bend_slope), sp.csr_array(slope_by_place)],
+            [acts @ n, None, bend, value_by_place],
+            [free @ n_slope[ends], None, bend_slope, slope_by_place],
         ]
         return sp.csc_array(sp.block_array(blocks, format="csc"))
 
@@ -224,7 +223,7 @@ class PointEquations:
         """Derivative of the force on the journal by the unknowns, (d, n)."""
         (value, slope), points = self.by_e, self.state.points
         film = self.whole.layout.border.row_derivative
-        travel = (slope.T * points.reaction) @ (points.spread * self.travels)
+        travel = ((slope.T * points.reaction) @ points.spread) * self.travels
         return np.concatenate([np.zeros((len(film), self.whole.n_wall)), film, value.T, travel], axis=1)
 
     @property
