@@ -29,13 +29,15 @@ from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, current_run, running
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.layout import ArrayTable, Series, SinglePoint, at_speed
-from petalfoil.results.parts import RunOutcome
+from petalfoil.results.parts import Branch, RunOutcome
 from petalfoil.results.record import Array, Record
 from petalfoil.results.schema import DataType, Role, TableLabel, Variable
 from petalfoil.walls import wall_kind
 
 DOWN = -math.pi / 2.0
 """Direction of a weight, along -y [rad]."""
+SOUGHT_ANEW = "sought anew: not followed from the speed before, where the load or its contacts jump"
+"""Solution path of a load that no path of equilibria joins to that of the speed before."""
 LBF, INCH, KRPM = 4.4482216152605, 0.0254, 1e3 * math.pi / 30.0
 """Pound-force [N], inch [m] and a thousand revolutions per minute [rad/s]."""
 
@@ -298,6 +300,10 @@ def carried(case: Case, capacity: Capacity) -> tuple[object, ...]:
         wall_kind(found.case).scalars(all_fields(found)),
         *rotor_parts(case, found.answer),
         carrier(found.contact_fraction),
+        Branch(
+            solution_path=SOUGHT_ANEW if capacity.sought_anew else found.answer.solution_path,
+            jump=capacity.sought_anew,
+        ),
         Carried(
             load_capacity=loaded.size,
             load_coefficient=coefficient,

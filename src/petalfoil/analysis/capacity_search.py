@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from petalfoil.analysis.load_limit import Capacity, largest_load
 from petalfoil.analysis.load_ray import Limits, LoadRay
@@ -72,7 +72,7 @@ class CapacitySearch:
                 beside = capacity.at.size, capacity.at.found.answer
                 self.known[angle] = beside[1]
                 self.loads[angle] = [*self.loads.get(angle, [])[-1:], (speed, beside[0], ray.growth(capacity.at))]
-            found.append(capacity)
+            found.append(replace(capacity, sought_anew=ray.lost))
         return found
 
     def guess(self, angle: float, speed: float) -> float:

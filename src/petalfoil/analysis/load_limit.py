@@ -47,10 +47,13 @@ class Capacity:
         The balance there; None where not even the least load keeps to them.
     status : str
         ``"converged"``, or what bounds the load instead of a limit.
+    sought_anew : bool
+        Whether it could not be followed from the speed before.
     """
 
     at: Loaded | None
     status: str = "converged"
+    sought_anew: bool = False
 
 
 def largest_load(ray: LoadRay, guess: float) -> Capacity:

@@ -118,6 +118,8 @@ class LoadRay:
         Whether contact points may be followed without an equilibrium with contacts at nodes beside them.
     hand : FactorAtHand
         The last factor of a search for a limit.
+    lost : bool
+        Whether the limit could not be followed from the known balance at another speed: the load or its contacts jump.
     """
 
     case: Case
@@ -126,6 +128,7 @@ class LoadRay:
     known: Solution | None = None
     points_alone: bool = False
     hand: FactorAtHand = field(default_factory=FactorAtHand)
+    lost: bool = field(default=False, init=False)
     base: CoupledProblem = field(init=False)
 
     def __post_init__(self) -> None:
@@ -198,6 +201,7 @@ class LoadRay:
             found = followed_to(self.base, known.elements, size, LoadLimit(unit, distance), self.hand)
             self.known = sampled_solution(clear_of_journal(found.positioned), found.size * unit)
         except NoPointsError as failure:
+            self.lost |= known.problem.bearing_number != self.base.bearing_number
             current_run().note("limit", outcome=str(failure))
             return None
         return self._judged(found.size, self.known)

@@ -10,8 +10,13 @@ import pytest
 
 import petalfoil
 from petalfoil import plot
+from petalfoil.analysis.capacity import SOUGHT_ANEW
 from petalfoil.case import Case
+from petalfoil.equilibrium import at_limit as at_limit_module
+from petalfoil.equilibrium.at_limit import LoadedState, LoadLimit
+from petalfoil.equilibrium.element_tangent import NoPointsError
 from petalfoil.errors import ConvergenceError, UsageError
+from petalfoil.solvers.near_factor import FactorAtHand
 from tests.cases import case
 from tests.random_packs import random_case
 
@@ -105,6 +110,31 @@ def test_contact_points_are_followed_over_speeds(cells: int, parts: np.ndarray) 
     assert float(found["residual"].max()) <= 1e-8
     cold = petalfoil.capacity(petals, min_film_thickness=4e-6, speed=speeds[-1])
     assert float(cold["load_capacity"]) == pytest.approx(float(found["load_capacity"][-1]), rel=1e-6)
+
+
+@pytest.mark.slow
+def test_a_load_that_cannot_be_followed_is_sought_anew_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    speeds = list(PETALS.operation.speed * np.array([0.95, 1.0]))
+    followed = petalfoil.capacity(PETALS, min_film_thickness=4e-6, speeds=speeds)
+    assert not followed["jump"].any()
+    assert SOUGHT_ANEW not in followed["solution_path"].to_numpy()
+    tried: list[float] = []
+
+    def at_limit(start: LoadedState, limit: LoadLimit, hand: FactorAtHand) -> LoadedState:
+        tried.append(start.equations.problem.bearing_number)
+        if len(set(tried)) > 1:
+            raise NoPointsError("lost")
+        return honest(start, limit, hand)
+
+    honest = at_limit_module.at_limit
+    monkeypatch.setattr(at_limit_module, "at_limit", at_limit)
+    anew = petalfoil.capacity(PETALS, min_film_thickness=4e-6, speeds=speeds)
+    assert anew["jump"].to_numpy().tolist() == [False, True]
+    assert str(anew["solution_path"].to_numpy()[1]) == SOUGHT_ANEW
+    first = tried[0]
+    parts = [round(math.log(number / first) / math.log(max(tried) / first), 9) for number in dict.fromkeys(tried)]
+    assert parts == [0.0, 1.0, 0.5, 0.25, 0.125]  # the whole way, its half, ... before it is given up
+    assert float(anew["load_capacity"][1]) == pytest.approx(float(followed["load_capacity"][1]), rel=1e-5)
 
 
 @pytest.mark.slow
