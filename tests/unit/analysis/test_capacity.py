@@ -209,6 +209,21 @@ def test_a_heated_bearing_tells_its_temperatures_at_the_capacity() -> None:
         assert float(found[result]) == pytest.approx(float(at[result]), rel=1e-5)
 
 
+CONTINUOUS = (9, 20, 26)
+"""Random bearings whose load changes continuously with the speed, three of ten between numbers 0 and 27."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", CONTINUOUS)
+def test_random_bearings_are_followed_over_speeds(seed: int) -> None:
+    bearing = random_case(np.random.default_rng(seed), **{"model.cells_per_pitch": 16})
+    speeds = list(bearing.operation.speed * np.array([0.9, 0.95, 1.0]))
+    found = petalfoil.capacity(bearing, min_film_thickness=1.5e-6, speeds=speeds)
+    assert not found["jump"].any()
+    assert int(found["factorizations"][1:].max()) <= 2
+    assert found["min_film_thickness"].to_numpy() == pytest.approx(1.5e-6, rel=1.1e-6)
+
+
 def found_or_bounded(seed: int, least: float = 1.5e-6) -> str:
     """How the search on a random bearing ended; the state that it gives keeps to the limit."""
     bearing = random_case(np.random.default_rng(seed), **{"model.cells_per_pitch": 16})
