@@ -30,7 +30,7 @@ from petalfoil.cli.app import STUDIES, app
 from petalfoil.cli.show import show_command
 from petalfoil.cli.study_commands import study_command
 from petalfoil.results import schema
-from petalfoil.results.schema import Role, Variable
+from petalfoil.results.variable import Role, Variable
 
 STUDY_FUNCTIONS = ("sweep", "tolerance", "optimize", "sobol_indices")
 """Functions that ask an analysis of many cases."""

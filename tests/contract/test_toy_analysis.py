@@ -27,8 +27,9 @@ from petalfoil.errors import UnitError, UsageError
 from petalfoil.results.layout import Series, SinglePoint, at_speed
 from petalfoil.results.parts import RunOutcome, scalars_of
 from petalfoil.results.record import Record
-from petalfoil.results.schema import COORDINATES, FIELDS, SCALARS, VARIABLES, Role, TableLabel, Variable
+from petalfoil.results.schema import COORDINATES, FIELDS, SCALARS, VARIABLES
 from petalfoil.results.store import load as load_result
+from petalfoil.results.variable import Role, TableLabel, Variable
 from tests.cases import EXAMPLES, case
 
 PLAIN = case("plain_journal")

@@ -16,7 +16,7 @@ from petalfoil.analysis.campbell import BRANCHES, Branches
 from petalfoil.cli.printed_tables import render
 from petalfoil.errors import UsageError
 from petalfoil.plot import campbell
-from petalfoil.results.layout import Answer
+from petalfoil.results.answer import Answer
 from petalfoil.results.store import load as stored
 from petalfoil.results.store import save
 from tests.cases import FAULTS

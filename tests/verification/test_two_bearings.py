@@ -22,7 +22,7 @@ from petalfoil.case import Case, warnings_of
 from petalfoil.cli.printed_tables import render
 from petalfoil.dynamics.rotor_motion import Inertia
 from petalfoil.errors import DefinitionError
-from petalfoil.results.layout import Answer
+from petalfoil.results.answer import Answer
 from petalfoil.results.record import Record
 from tests.cases import FAULTS, case
 

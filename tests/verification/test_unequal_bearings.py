@@ -33,7 +33,7 @@ from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.cli.printed_tables import render
 from petalfoil.equilibrium.run_context import running
 from petalfoil.errors import DefinitionError, UsageError
-from petalfoil.results.layout import Answer
+from petalfoil.results.answer import Answer
 from petalfoil.results.record import Record
 from tests.cases import FAULTS, case
 from tests.verification.test_campbell import exponents

@@ -31,7 +31,7 @@ from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.layout import ArrayTable, Series, SinglePoint, at_speed
 from petalfoil.results.parts import Branch, RunOutcome
 from petalfoil.results.record import Array, Record
-from petalfoil.results.schema import DataType, Role, TableLabel, Variable
+from petalfoil.results.variable import DataType, Role, TableLabel, Variable
 from petalfoil.walls import wall_kind
 
 DOWN = -math.pi / 2.0

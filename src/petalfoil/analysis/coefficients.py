@@ -12,8 +12,9 @@ import numpy as np
 from petalfoil.analysis.arguments import Flag, Load, Name, NumbersWithUnit, NumberWithUnit, Speed, Speeds, Whole
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.contact_model import ContactModel
-from petalfoil.analysis.declaration import Export, analysis
+from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.analysis.file_exports import Export
 from petalfoil.analysis.friction_told import FrictionTold
 from petalfoil.analysis.heat_results import heat_results
 from petalfoil.analysis.impedance import Array, cycle_impedance, elastic_and_sliding, impedances
@@ -31,8 +32,8 @@ from petalfoil.results.layout import ArrayTable, Cell, Series, SinglePoint, at_s
 from petalfoil.results.parts import AppliedLoad, RunOutcome
 from petalfoil.results.record import Record
 from petalfoil.results.ross import LEAST_POINTS, ross_frequencies
-from petalfoil.results.schema import Variable
 from petalfoil.results.summary import ABSENT, cell, number
+from petalfoil.results.variable import Variable
 from petalfoil.walls import Capability, required, wall_kind
 
 Frequencies = Annotated[

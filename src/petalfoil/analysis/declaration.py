@@ -2,7 +2,7 @@
 
 ::
 
-    @analysis(Point())
+    @analysis(SinglePoint())
     def balance(case: Case, load: Load = None, speed: Speed = None, *, progress: Progress | None = None) -> Record:
         \"\"\"Find the position of the journal under a load.\"\"\"
 
@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, get_type_hints
 from petalfoil.analysis.adapted_stations import with_stations
 from petalfoil.analysis.arguments import Accuracy, Argument, ErrorBars, StoredResult
 from petalfoil.analysis.error_bars import WithErrorBars
+from petalfoil.analysis.file_exports import TABLE, Export, Values
 from petalfoil.analysis.known_verbs import register
 from petalfoil.analysis.progress_bar import bar
 from petalfoil.analysis.resume import asked_for, points_done
@@ -33,63 +34,21 @@ from petalfoil.case import Case
 from petalfoil.case.hints import nearest
 from petalfoil.equilibrium.run_context import Progress, new_run
 from petalfoil.errors import UsageError
-from petalfoil.results.layout import Answer, Layout
+from petalfoil.results.answer import Answer
+from petalfoil.results.layout import Layout
 from petalfoil.results.record import Record, warnings_of_all
-from petalfoil.results.schema import Variable, declare
+from petalfoil.results.schema import declare
+from petalfoil.results.variable import Variable
 from petalfoil.units.reading import shown
 
 if TYPE_CHECKING:
     import xarray as xr
 
 QuestionFunction: TypeAlias = Callable[..., Record | Run]
-Values: TypeAlias = Mapping[str, Any]
-"""Arguments by name, SI."""
 LOG = logging.getLogger(__name__)
 ERROR, ACCURACY = "error", "accuracy"
 """The arguments that ask for error bars, and for bars below a limit."""
 
-
-@dataclass(frozen=True, kw_only=True)
-class Export:
-    """A file for another program, by an option of the command line.
-
-    Attributes
-    ----------
-    option : str
-        Name of the option.
-    help, metavar : str
-        Its help text.
-    suffixes : tuple of str
-        Suffixes of its files.
-    writer : str
-        Function of a dataset and a path, as ``module:function``; it is loaded when it is needed.
-    check : callable or None
-        Refuses arguments whose results it could not write; takes them by name in SI units, and their names as the
-        caller knows them.
-    fill : callable or None
-        Gives arguments that the caller left out the values that the file is best with; takes the others.
-    settings : mapping
-        Further arguments of the writer by name; exports that share one declare it alike.
-    """
-
-    option: str
-    help: str
-    metavar: str
-    suffixes: tuple[str, ...]
-    writer: str
-    check: Callable[[Values, Mapping[str, str]], None] | None = None
-    fill: Callable[[Values], Values] | None = None
-    settings: Mapping[str, Argument] = field(default_factory=dict)
-
-
-TABLE = Export(
-    option="table",
-    metavar="FILE.csv",
-    help="Write all results in SI units for other programs: .csv, or .xlsx with fields.",
-    suffixes=(".csv", ".xlsx"),
-    writer="petalfoil.results.spreadsheet:write_table",
-)
-"""File that every analysis can write."""
 
 RESUME = StoredResult(metavar="FILE.nc", help="Go on from the points that --out wrote for the same question.")
 """Option of every series."""

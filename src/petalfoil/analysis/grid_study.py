@@ -20,7 +20,8 @@ from petalfoil.errors import ConvergenceError
 from petalfoil.results.estimate import Estimate
 from petalfoil.results.places import MIN_FILM_PLACE, PEAK_PRESSURE_PLACE, films_at_peak
 from petalfoil.results.record import Record
-from petalfoil.results.schema import SCALARS, DataType, Role
+from petalfoil.results.schema import SCALARS
+from petalfoil.results.variable import DataType, Role
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 
 Array = NDArray[np.float64]

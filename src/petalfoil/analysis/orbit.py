@@ -9,7 +9,8 @@ from typing import Annotated, Any, Literal
 import numpy as np
 
 from petalfoil.analysis.arguments import Load, NumberWithUnit, Pair, Place, Ramp, StoredResult
-from petalfoil.analysis.declaration import Export, analysis
+from petalfoil.analysis.declaration import analysis
+from petalfoil.analysis.file_exports import Export
 from petalfoil.analysis.operating_point import Vector
 from petalfoil.analysis.orbit_motion import Orbit
 from petalfoil.analysis.release import TOLERANCE, OrbitRequest

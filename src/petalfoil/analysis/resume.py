@@ -12,7 +12,8 @@ import numpy as np
 
 from petalfoil.case import Case, warnings_of
 from petalfoil.errors import UsageError
-from petalfoil.results.layout import ASKED, Layout
+from petalfoil.results.answer import ASKED
+from petalfoil.results.layout import Layout
 from petalfoil.results.record import Record
 
 if TYPE_CHECKING:

@@ -37,7 +37,8 @@ from petalfoil.equilibrium.run_context import Progress, RunContext, running
 from petalfoil.errors import UsageError
 from petalfoil.results.parts import AppliedLoad
 from petalfoil.results.record import Record
-from petalfoil.results.schema import SCALARS, DataType, Role
+from petalfoil.results.schema import SCALARS
+from petalfoil.results.variable import DataType, Role
 from petalfoil.walls import Capability, required
 
 MAIN_RESULT = {

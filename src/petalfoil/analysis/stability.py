@@ -34,8 +34,8 @@ from petalfoil.results.grid import LoadSpeedGrid
 from petalfoil.results.layout import ArrayTable, Cell, Series, SinglePoint, at_speed
 from petalfoil.results.parts import AppliedLoad, RunOutcome
 from petalfoil.results.record import Array, Record
-from petalfoil.results.schema import Variable
 from petalfoil.results.summary import ABSENT, cell, number
+from petalfoil.results.variable import Variable
 
 MODES = ("natural_frequency", "mode_growth_rate", "damping_ratio", "participation", "whirl_direction")
 """What is told of each natural mode."""

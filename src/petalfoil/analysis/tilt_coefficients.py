@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
-from petalfoil.results.schema import Variable
+from petalfoil.results.variable import Variable
 from petalfoil.system.build import lever_of
 
 Array = NDArray[np.float64]

@@ -16,7 +16,7 @@ from petalfoil.errors import UsageError
 if TYPE_CHECKING:
     import xarray as xr
 
-    from petalfoil.analysis.declaration import Export
+    from petalfoil.analysis.file_exports import Export
 
 
 def export_options(exports: Iterable[Export]) -> list[inspect.Parameter]:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from petalfoil.analysis.declaration import Analysis
     from petalfoil.analysis.progress_bar import Report
     from petalfoil.analysis.runs import Run
-    from petalfoil.results.layout import Answer
+    from petalfoil.results.answer import Answer
 
 PERIOD = 2.0  # [s] between rewrites: a fast series is not slowed by its own file
 MAX_SHARE = 0.1  # of the time goes into rewriting: the file grows with the series, and is rewritten whole

@@ -18,7 +18,7 @@ from petalfoil.errors import UsageError
 if TYPE_CHECKING:
     import xarray as xr
 
-    from petalfoil.results.layout import Answer
+    from petalfoil.results.answer import Answer
 
 Writer: TypeAlias = "Callable[[xr.Dataset, Path], None]"
 

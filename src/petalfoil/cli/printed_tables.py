@@ -10,7 +10,7 @@ from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 
-from petalfoil.results.layout import Answer
+from petalfoil.results.answer import Answer
 from petalfoil.results.tables import TextTable, tables_of
 from petalfoil.text import for_terminal
 

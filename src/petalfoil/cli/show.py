@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from petalfoil.analysis.declaration import Export
+from petalfoil.analysis.file_exports import Export
 from petalfoil.analysis.known_verbs import find, summaries
 from petalfoil.cli.commands import JSON, KEYWORD, PLOT, command
 from petalfoil.cli.exports import chosen, export_options
 from petalfoil.cli.failures import handled
 from petalfoil.cli.outputs import Outputs
 from petalfoil.errors import UsageError
-from petalfoil.results.layout import Answer, Series, SinglePoint
+from petalfoil.results.answer import Answer
+from petalfoil.results.layout import Series, SinglePoint
 from petalfoil.results.store import load
 
 if TYPE_CHECKING:

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from petalfoil.errors import UsageError
 from petalfoil.plot.labels import QUANTITIES, RPM, PlottedQuantity, quantity
-from petalfoil.results.schema import SCALARS, DataType, Role
+from petalfoil.results.schema import SCALARS
 from petalfoil.results.summary import values_without_rounding
+from petalfoil.results.variable import DataType, Role
 from petalfoil.text import for_figure
 
 Floats = NDArray[np.float64]

@@ -14,7 +14,7 @@ from petalfoil.analysis import known_verbs
 from petalfoil.analysis.declaration import ERROR, Analysis
 from petalfoil.case import Case
 from petalfoil.errors import ConvergenceError, PetalfoilError
-from petalfoil.results.layout import Answer
+from petalfoil.results.answer import Answer
 from petalfoil.units.writing import format_quantity
 
 Progress: TypeAlias = Callable[[float, str], None]

@@ -11,7 +11,7 @@ from petalfoil.report.interpretations import Interpretation
 from petalfoil.report.load_characteristics import COMPARED, CharacteristicFamily
 from petalfoil.report.paper_grids import GridLoad
 from petalfoil.results import tables
-from petalfoil.results.layout import Answer
+from petalfoil.results.answer import Answer
 from petalfoil.results.tables import tables_of
 
 MISSING = "–"

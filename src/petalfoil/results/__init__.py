@@ -2,13 +2,15 @@
 
 In the order data flows:
 
-- ``schema``   every variable a result may hold: dimensions, SI unit, long name, symbol
+- ``variable`` what a result is: dimensions, SI unit, long name, symbol, type, label in tables
+- ``schema``   every variable a result may hold
 - ``record``   one answer as plain arrays (no xarray), checked against the schema
 - ``parts``    typed parts that a record is put together from
 - ``estimate`` what a sequence of grids tells about a result: limit, order, error bar
 - ``places``   where film and pressure have their extremes: one place, or several alike
 - ``summary``  a record as the object of ``--json`` and as the rows of the printed table
-- ``layout``   what an analysis returns: a point, a series; the answer in its layout, as JSON and as labelled data
+- ``layout``   what an analysis returns: a point or a series
+- ``answer``   the records of an analysis in their layout, as JSON and as labelled data
 - ``grid``     the same over load and speed
 - ``study``    the same of a grid study, with its estimates
 - ``tables``   an answer as tables of text
@@ -27,6 +29,7 @@ Conventions: SI units inside; a result of a state that did not converge is NaN; 
 """
 
 from petalfoil.results.record import Record, Scalar
-from petalfoil.results.schema import VARIABLES, DataType, Variable
+from petalfoil.results.schema import VARIABLES
+from petalfoil.results.variable import DataType, Variable
 
 __all__ = ["VARIABLES", "DataType", "Record", "Scalar", "Variable"]

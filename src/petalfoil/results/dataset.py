@@ -13,7 +13,8 @@ import xarray as xr
 
 from petalfoil.results import view  # noqa: F401 - gives datasets `petalfoil`, the tables of the result
 from petalfoil.results.record import Array, Record, Scalar, blank
-from petalfoil.results.schema import COORDINATES, FIELDS, SCALARS, DataType, Role, Variable
+from petalfoil.results.schema import COORDINATES, FIELDS, SCALARS
+from petalfoil.results.variable import DataType, Role, Variable
 
 CONVENTIONS = "CF-1.11"
 _DTYPES: dict[DataType, type] = {

@@ -10,8 +10,9 @@ import numpy as np
 
 from petalfoil.results.layout import Json, Layout, at_speed, load_of, of_load
 from petalfoil.results.record import Record, Scalar
-from petalfoil.results.schema import COORDINATES, SCALARS, Variable
+from petalfoil.results.schema import COORDINATES, SCALARS
 from petalfoil.results.summary import as_json
+from petalfoil.results.variable import Variable
 
 if TYPE_CHECKING:
     import xarray as xr

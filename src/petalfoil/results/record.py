@@ -10,7 +10,8 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from petalfoil.results.schema import COORDINATES, FIELDS, SCALARS, DataType, Role, Variable
+from petalfoil.results.schema import COORDINATES, FIELDS, SCALARS
+from petalfoil.results.variable import DataType, Role, Variable
 
 Array: TypeAlias = npt.NDArray[np.generic]
 Scalar: TypeAlias = float | int | bool | str

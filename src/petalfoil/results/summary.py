@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from petalfoil.results.places import label_of_several
 from petalfoil.results.record import Record, Scalar
-from petalfoil.results.schema import SCALARS, DataType, TableLabel
+from petalfoil.results.schema import SCALARS
+from petalfoil.results.variable import DataType, TableLabel
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -6,9 +6,10 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
+from petalfoil.results.answer import Answer
 from petalfoil.results.estimate import Estimate
 from petalfoil.results.grid import LoadSpeedGrid
-from petalfoil.results.layout import Answer, Cell, Layout, Series, SinglePoint
+from petalfoil.results.layout import Cell, Layout, Series, SinglePoint
 from petalfoil.results.record import Record, Scalar
 from petalfoil.results.study import GridStudy, grid_text
 from petalfoil.results.summary import ABSENT, cell, in_order, number, row, rows, with_bar, without_rounding

@@ -14,7 +14,8 @@ from itertools import zip_longest
 
 import xarray as xr
 
-from petalfoil.results.layout import Answer, Layout, Series, SinglePoint
+from petalfoil.results.answer import Answer
+from petalfoil.results.layout import Layout, Series, SinglePoint
 from petalfoil.results.study import GridStudy
 from petalfoil.results.tables import TextTable, tables_of
 

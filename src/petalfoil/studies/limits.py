@@ -15,8 +15,9 @@ from dataclasses import dataclass
 from petalfoil.case.hints import nearest
 from petalfoil.errors import UnitError, UsageError
 from petalfoil.results.record import Scalar
-from petalfoil.results.schema import SCALARS, DataType, Role
+from petalfoil.results.schema import SCALARS
 from petalfoil.results.summary import cell
+from petalfoil.results.variable import DataType, Role
 from petalfoil.units import parse_quantity
 from petalfoil.units.reading import shown
 

@@ -16,7 +16,8 @@ from petalfoil import __version__
 from petalfoil.results.atomic import replacing
 from petalfoil.results.dataset import CONVENTIONS
 from petalfoil.results.record import Scalar, blank
-from petalfoil.results.schema import SCALARS, DataType, Role, Variable
+from petalfoil.results.schema import SCALARS
+from petalfoil.results.variable import DataType, Role, Variable
 from petalfoil.studies.plan import Plan
 from petalfoil.studies.question import NOT_CONVERGED, CaseOutcome
 from petalfoil.studies.study_definition import Study

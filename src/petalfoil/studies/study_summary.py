@@ -11,8 +11,9 @@ import numpy as np
 import xarray as xr
 
 from petalfoil.analysis.neighbours import FROM_NEIGHBOUR
-from petalfoil.results.schema import SCALARS, DataType, Role
+from petalfoil.results.schema import SCALARS
 from petalfoil.results.summary import cell, in_order, values_without_rounding
+from petalfoil.results.variable import DataType, Role
 from petalfoil.studies.question import CONVERGED
 from petalfoil.units import format_quantity
 

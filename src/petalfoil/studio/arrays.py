@@ -9,9 +9,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from petalfoil.results.layout import Answer
+from petalfoil.results.answer import Answer
 from petalfoil.results.record import Record
-from petalfoil.results.schema import FIELDS, SCALARS, DataType, Role
+from petalfoil.results.schema import FIELDS, SCALARS
+from petalfoil.results.variable import DataType, Role
 from petalfoil.studio.protocol import Arrays
 
 CONTACTS = ("journal_contact_pressure", "petal_contact_pressure", "bushing_contact_pressure")

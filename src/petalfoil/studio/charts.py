@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from petalfoil.results.schema import SCALARS, VARIABLES, TableLabel
+from petalfoil.results.schema import SCALARS, VARIABLES
 from petalfoil.results.summary import shown_as
+from petalfoil.results.variable import TableLabel
 from petalfoil.studio.motion_chart import motion_chart
 from petalfoil.studio.protocol import FoundAnswer, Mapped, Searched
 from petalfoil.studio.section_chart import VIRIDIS, Chart, Floats, State, TraceData, note_at_foot

@@ -9,7 +9,7 @@ from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.plot import summary
 from petalfoil.report.html import bullets, page, paragraph, picture, section, table
 from petalfoil.report.page_tables import PageTable
-from petalfoil.results.layout import Answer
+from petalfoil.results.answer import Answer
 from petalfoil.results.tables import TextTable, tables_of
 from petalfoil.text import for_html, for_terminal
 

@@ -12,7 +12,8 @@ import xarray as xr
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress
 from petalfoil.errors import UsageError
-from petalfoil.results.schema import SCALARS, DataType, Role
+from petalfoil.results.schema import SCALARS
+from petalfoil.results.variable import DataType, Role
 from petalfoil.studies.optimize import BUDGET, optimize_study, variations_of
 from petalfoil.studies.plan import names_of
 from petalfoil.studies.question import Question

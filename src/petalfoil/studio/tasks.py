@@ -15,7 +15,8 @@ from petalfoil.case import Case, ModelKind
 from petalfoil.equilibrium.run_context import Progress
 from petalfoil.errors import DefinitionError, UsageError
 from petalfoil.memory import grid_of
-from petalfoil.results.layout import Answer, Layout
+from petalfoil.results.answer import Answer
+from petalfoil.results.layout import Layout
 from petalfoil.results.record import Record, warnings_of_all
 from petalfoil.results.summary import without_rounding
 from petalfoil.results.tables import tables_of

@@ -24,7 +24,8 @@ from petalfoil.case import Case
 from petalfoil.cli.printed_tables import render
 from petalfoil.equilibrium.run_context import Progress
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.results.layout import Answer, Series, SinglePoint
+from petalfoil.results.answer import Answer
+from petalfoil.results.layout import Series, SinglePoint
 from petalfoil.results.record import Record
 from tests.cases import FAULTS, case
 

@@ -18,7 +18,8 @@ from petalfoil.case import Case
 from petalfoil.cli.keeping import MAX_SHARE, PERIOD, Autosave, follow
 from petalfoil.errors import StoreError
 from petalfoil.results import Record
-from petalfoil.results.layout import Answer, Series
+from petalfoil.results.answer import Answer
+from petalfoil.results.layout import Series
 from petalfoil.results.store import load, save
 
 from .conftest import point

@@ -2,7 +2,8 @@ import subprocess
 import sys
 
 from petalfoil.analysis import sensitivity, sensitivity_table  # noqa: F401 - the analysis declares the table
-from petalfoil.results.schema import COORDINATES, FIELDS, HISTORIES, SCALARS, VARIABLES, DataType, Role
+from petalfoil.results.schema import COORDINATES, FIELDS, HISTORIES, SCALARS, VARIABLES
+from petalfoil.results.variable import DataType, Role
 
 UNITS_THAT_VARY = {
     name

@@ -8,8 +8,8 @@ import pytest
 import xarray as xr
 
 from petalfoil.results import Record
+from petalfoil.results.answer import Answer
 from petalfoil.results.estimate import Estimate
-from petalfoil.results.layout import Answer
 from petalfoil.results.store import load, save
 from petalfoil.results.study import GridStudy, error_bars_of, estimates_of, with_error_bars
 from petalfoil.results.summary import with_bar

@@ -13,7 +13,8 @@ from numpy.testing import assert_allclose
 from petalfoil.analysis.derivatives import GROWTH
 from petalfoil.analysis.neighbours import FROM_NEIGHBOUR, TRIALS, Memory, apart
 from petalfoil.errors import UsageError
-from petalfoil.results.schema import SCALARS, DataType, Role
+from petalfoil.results.schema import SCALARS
+from petalfoil.results.variable import DataType, Role
 from petalfoil.studies import question
 from petalfoil.studies.run import Execution, resume
 from petalfoil.studies.study_summary import headline
