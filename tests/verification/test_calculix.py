@@ -299,7 +299,7 @@ def pressed_by_calculix(folder: Path, name: str) -> float:
     return 2.0 * math.hypot(x, y) / width * of.bearing.length
 
 
-@pytest.mark.parametrize("name", ["paper_n8", "rig"])
+@pytest.mark.parametrize("name", ["paper_n8", pytest.param("rig", marks=pytest.mark.long)])
 def test_preload_of_a_petal_from_its_free_arc(tmp_path: Path, name: str) -> None:
     """Solid elements through large rotations press with the force of the elastica, within 0.2 %."""
     of = case(name, **{"petals.linear_about": "bore"})

@@ -239,11 +239,9 @@ def test_a_stiffer_membrane_holds_more_and_no_friction_holds_nothing() -> None:
 
 
 def test_where_petals_do_not_slide_is_said() -> None:
-    """3-D with friction is refused; friction in 2-D slides unless it is told not to."""
-    with pytest.raises(
-        DefinitionError, match=r'petals\.theory: friction of petals that stretch .* allowed: "inextensible"'
-    ):
-        case("paper_n8_spatial", **{"petals.theory": "shell", "surface.petal_friction": 0.3})
+    """The paper's own method is refused with them; friction in 2-D slides unless it is told not to."""
+    with pytest.raises(DefinitionError, match=r'petals\.theory: the paper.s petals do not stretch; allowed: "inext'):
+        case("paper_n8_spatial", **{"petals.theory": "shell", "model.method": "classic"})
     with pytest.raises(DefinitionError, match=r"petals\.theory"):
         case("paper_n8", **{"petals.theory": "shel"})
     assert case("paper_n8_spatial", **{"surface.petal_friction": 0.3}).petal_theory is PetalTheory.INEXTENSIBLE

@@ -169,7 +169,13 @@ class Case(Definition):
     def follows_friction(self) -> bool:
         """Whether equilibria can keep the friction forces of the path that the pack has gone (M6)."""
         slides = self.surface.petal_friction > 0.0 and self.petal_theory is PetalTheory.SHELL
-        return slides and self.petals is not None and self.heat is None and self.shares_evenly
+        return (
+            slides
+            and self.model.kind is ModelKind.TWO_D
+            and self.petals is not None
+            and self.heat is None
+            and self.shares_evenly
+        )
 
     @property
     def growth(self) -> Growth:

@@ -146,7 +146,7 @@ class Petals(LookedUp, WallTable):
     """Root free to turn, or clamped."""
     theory: PetalTheory | None = None
     """`shell` in 2-D where petals have friction, unless given: they then slide along themselves and stretch. Without
-    friction both are the same in 2-D. In 3-D `shell` is without friction, and `inextensible` the default."""
+    friction both are the same in 2-D. In 3-D the default is `inextensible`, as in the paper."""
     # before the numbers that a material gives
     material: str | None = None
     """Metal whose modulus, Poisson's ratio and yield strength are looked up, such as `inconel x-750`."""

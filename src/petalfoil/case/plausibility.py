@@ -134,8 +134,8 @@ def _of_inputs(case: Case, scalars: Scalars) -> Iterator[str]:
     if case.surface.petal_friction > 0.0 and case.petal_theory is PetalTheory.INEXTENSIBLE:
         yield (
             'surface.petal_friction: with petals.theory = "inextensible" it counts the turning of the faces only, '
-            "about a sixtieth of the slip in the paper's bearing: the damping it gives is no prediction; in 2-D "
-            'petals.theory = "shell" counts the whole slip'
+            "about a sixtieth of the slip in the paper's bearing: the damping it gives is no prediction; "
+            'petals.theory = "shell" counts the whole slip along the petals'
         )
     if case.rotor is not None and case.rotor.inertia_is_estimated:
         whole = case.rotor.with_inertias(case.bearing.journal_radius)

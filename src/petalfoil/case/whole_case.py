@@ -137,9 +137,6 @@ def _method_problems(case: Case) -> Iterator[Problem]:
 
 
 def _stretching_problems(case: Case) -> Iterator[Problem]:
-    if case.surface.petal_friction > 0.0:
-        text = 'friction of petals that stretch is modelled in 2-D alone; allowed: "inextensible", or no friction'
-        yield Problem("petals.theory", text, "shell", "inextensible, or surface.petal_friction = 0")
     if case.model.method is Method.CLASSIC:
         text = 'the paper\'s petals do not stretch; allowed: "inextensible", or model.method = "newton"'
         yield Problem("petals.theory", text, "shell", "inextensible, or newton")
