@@ -191,6 +191,7 @@ def test_thin_petals_do_not_lock_in_3d(name: str, propped: bool) -> None:
 GRID = {"model.cells_per_pitch": 10, "model.axial_cells": 6, "model.axial_density": "uniform"}
 
 
+@pytest.mark.slow
 def test_without_lateral_contraction_the_pack_on_the_journal_does_not_stretch() -> None:
     """Along the shaft everything is alike, so that no membrane is strained: the forces are those of bending alone."""
     same = {**GRID, "petals.poisson_ratio": 0.0}
@@ -207,7 +208,7 @@ def test_half_of_the_length_is_the_mirror_of_the_other() -> None:
     stretch = case("paper_n8_spatial", **GRID, **{"petals.theory": "shell"})
     half, whole = solve(stretch), solve(stretch.replace(**{"model.symmetry": False}))
     assert whole.force_y.item() == pytest.approx(half.force_y.item(), rel=1e-8)
-    assert whole.attrs["method"] == half.attrs["method"]
+    assert "mirrored" in str(whole.solution_path.item())
     assert int(whole.factorizations) <= int(half.factorizations) + 1
     tilted = solve(stretch.replace(**{"model.symmetry": False, "operation.tilt": (1e-4, 0.0)}))
     assert abs(tilted.moment_x.item()) > 1e-4

@@ -54,7 +54,7 @@ Amplitude = Annotated[
     NumberWithUnit(
         unit="m",
         help='Amplitude of the whirl at which petals with friction rub: "1 um"; by default they stick. In 2-D they '
-        "slide along themselves, in 3-D only their faces turn (petals.theory).",
+        "slide along themselves, in 3-D only their faces turn unless petals.theory is shell.",
         above=0.0,
     ),
 ]

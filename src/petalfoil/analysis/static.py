@@ -71,7 +71,7 @@ def static(
 
     With friction between the petals (surface.petal_friction) each point
     comes from the one before, the first from a thinner journal that grows
-    to its size (2-D); --loop goes back and there again.
+    to its size (not with inextensible petals); --loop goes back and there again.
 
     Example: petalfoil static case.toml --eccentricity "0 um : 280 um : 15"
 

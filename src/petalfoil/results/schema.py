@@ -101,7 +101,7 @@ FIELDS: dict[str, Variable] = {
         _PETAL, "Pa", "bending stress of the petal's metal along phi, assembly included", "sigma_phi"
     ),
     "membrane_stress": Variable(
-        _PETAL, "Pa", "mean stress over the petal's metal along phi, by friction that stretches it", "sigma_m"
+        _PETAL, "Pa", "mean stress over the petal's metal along phi, where petals stretch", "sigma_m"
     ),
 }
 
