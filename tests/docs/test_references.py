@@ -91,12 +91,13 @@ def commands() -> dict[str, Any]:
 
 @cache
 def options() -> set[str]:
-    """Options of the program, its commands and the benchmarks."""
+    """Options of the program, its commands, the benchmarks and the runs of random bearings."""
     group: Any = typer.main.get_command(app)
     inner = [part for command in commands().values() for part in getattr(command, "commands", {}).values()]
     every = [parameter for command in (group, *commands().values(), *inner) for parameter in command.params]
     found = {name for parameter in every for name in (*parameter.opts, *parameter.secondary_opts)}
-    of_scripts = [text(ROOT / "benchmarks" / name) for name in ("run.py", "studies.py")]
+    scripts = ("benchmarks/run.py", "benchmarks/studies.py", "tests/fuzz.py", "tests/fuzz_verbs.py")
+    of_scripts = [text(ROOT / name) for name in scripts]
     return found | {"--help"} | set(re.findall(r'"(--[a-z-]+)"', " ".join(of_scripts)))
 
 
