@@ -24,10 +24,6 @@ STEPS = 12
 SMALL = 1e-11
 """Correction of the unknowns at which the second equilibrium is reached."""
 
-ROUNDED = 1e-12
-"""The same with petals of continuous slopes, whose pressures over asperities feel changes of 5e-4 of the film: it is
-iterated until rounding is left, which with large deflections is more."""
-
 CLEAR = 2.5
 """Steps of the difference quotient that must fit before the nearest contact opens or closes."""
 
@@ -55,7 +51,7 @@ def on_elements(first: ElementEquilibrium, there: Equations) -> ElementEquilibri
     """The same with petals of continuous slopes: contacts stay, their places and reactions follow."""
     load = there.load
     tangent = ElementTangent.at(first.equations, load, current_run().probe_solver)
-    found, last = under(first, there), np.inf
+    found = under(first, there)
     assert found is not None
     for _ in range(STEPS):
         equations = found.equations
@@ -63,11 +59,8 @@ def on_elements(first: ElementEquilibrium, there: Equations) -> ElementEquilibri
         change, move = tangent.correction(equations.newton_residual, force)
         problem = equations.problem.at(displacement=equations.problem.displacement + move)
         found = found.moved(problem, change)
-        left = float(np.max(np.abs(change)))
-        rounded = left < SMALL * max(1.0, np.max(np.abs(found.equations.deflection)))
-        if left < ROUNDED or (rounded and left > 0.5 * last):
+        if np.max(np.abs(change)) < SMALL * max(1.0, np.max(np.abs(found.equations.deflection))):
             return found
-        last = left
     raise AssertionError("the second equilibrium was not reached")
 
 

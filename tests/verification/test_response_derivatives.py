@@ -10,9 +10,11 @@ from numpy.testing import assert_allclose
 import petalfoil
 from petalfoil.analysis.contact_model import reported
 from petalfoil.analysis.derivatives import DerivativesOf, ResultsOf
+from petalfoil.analysis.mode_derivatives import mode_results
 from petalfoil.analysis.operating_point import at_position, under_load
 from petalfoil.analysis.response_derivatives import coefficient_results, stability_derivatives, whirl_results
 from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
+from petalfoil.analysis.sensitivity_table import MODES
 from petalfoil.case import Case
 from petalfoil.case.parameters import with_values
 from petalfoil.equilibrium.small_motion import AT_POINTS
@@ -24,7 +26,15 @@ from tests.verification.resolved import difference_quotient
 PLAIN = {"model.cells_per_pitch": 12, "model.axial_cells": 4}
 
 
-EXACT = {"stiffness": 1e-5, "damping": 1e-5, "critical": 1e-6, "whirl": 1e-6, "logarithm of": 1e-6}
+EXACT = {
+    "stiffness": 1e-5,
+    "damping": 1e-5,
+    "critical": 1e-6,
+    "whirl": 1e-6,
+    "natural": 1e-6,
+    "mode": 2e-6,
+    "logarithm of": 1e-6,
+}
 """Agreement by kind of result. Stiffness with contact points is rounded to some 1e-11, and differenced over 1e-6."""
 
 
@@ -103,7 +113,7 @@ def test_critical_mass_of_a_plain_journal() -> None:
 @pytest.mark.slow
 def test_threshold_speed_of_a_plain_journal() -> None:
     of = loaded(case("plain_journal", **PLAIN), 15.0)
-    threshold = stability_derivatives(of, 2.0, threshold=True, as_points=True)[1]
+    threshold = stability_derivatives(of, 2.0, ["critical_mass", "threshold_speed"], as_points=True)[1]
     value, path = of.gas.viscosity, "gas.viscosity"
     speeds = [
         float(petalfoil.stability(with_values(of, {path: share * value}), mass="2 kg")["threshold_speed"])
@@ -116,8 +126,31 @@ def test_threshold_speed_of_a_plain_journal() -> None:
 def test_what_has_no_critical_mass_is_refused() -> None:
     of = loaded(case(**{"model.cells_per_pitch": 8}), 20.0)
     with pytest.raises(ConvergenceError, match="stable for any rotor mass"):
-        stability_derivatives(of, None, threshold=False, as_points=False)
+        stability_derivatives(of, None, ["critical_mass"], as_points=False)
     with pytest.raises(UsageError, match="turning shaft"):
         petalfoil.sensitivity(of.replace(**{"operation.speed": 0.0}), ask="coefficients")
     with pytest.raises(UsageError, match=r"--frequency is that of stiffness and damping: balance has none"):
         petalfoil.sensitivity(of, ask="balance", frequency="100 rad/s")
+
+
+@pytest.mark.slow
+def test_natural_modes() -> None:
+    of = loaded(case(**{"model.cells_per_pitch": 16}), 20.0)
+    found = derivatives(of, lambda there, answer: mode_results(there, answer, 2.0))
+    assert set(found.values) == {name for mode in MODES[:2] for name in mode}
+    modes = petalfoil.stability(of, mass=2.0)
+    for number, (frequency, growth, damping) in enumerate(MODES[:2]):
+        assert_allclose(found.values[frequency], float(modes["natural_frequency"][number]), rtol=1e-7)
+        assert_allclose(found.values[growth], float(modes["mode_growth_rate"][number]), rtol=1e-4)
+        assert_allclose(found.values[damping], float(modes["damping_ratio"][number]), rtol=1e-4)
+    assert_solved_again(found, ("petals.thickness", "bearing.bushing_radius"))
+
+
+def test_modes_need_a_mass() -> None:
+    plain = case("plain_journal", **PLAIN)
+    told = petalfoil.sensitivity(
+        plain, "gas.viscosity", ask="stability", mass=2.0, of="natural_frequency_1, damping_ratio_1"
+    )
+    assert list(told["quantity"].values) == ["natural_frequency_1", "damping_ratio_1"]
+    with pytest.raises(ConvergenceError, match="no derivative of natural modes"):
+        petalfoil.sensitivity(plain, "gas.viscosity", ask="stability", of="natural_frequency_1")

@@ -51,6 +51,9 @@ What they share:
 `adjoint.py`           the same from one solve for each result
 `result_gradients.py`  derivatives of results by the state
 `response_derivatives.py` stiffness, damping, critical mass, threshold speed
+`mode_derivatives.py`     frequency, growth rate and damping of natural modes
+`differentiable.py`       questions that have derivatives, and what they need
+`derivatives_in_series.py` those at each point of a load characteristic or a run-up
 `derivative_sources.py` where the results of each question have them
 `sensitivity_table.py` the rows of `sensitivity`
 `impedance.py`         small motions of the journal

@@ -66,10 +66,10 @@ def _points(cases: list[Case], progress: Progress | None, done: Sequence[Record]
     base = build_problem(cases[0])
     before = _regained(cases, base, done)
     for number, case in enumerate(cases[len(done) :], len(done)):
-        problem = _displaced(base, case)
+        problem = displaced_problem(base, case)
         with running(part(progress, number, len(cases)), "curve", typical_steps(case)) as run:
             try:
-                found = _point(case, problem, before)
+                found = point_after(case, problem, before)
                 before = found.answer
                 own = (asked_position(case), found.branch, effort(run.seconds))
                 record = solution_record("curve", Evaluation.of(case, before), *own)
@@ -78,7 +78,8 @@ def _points(cases: list[Case], progress: Progress | None, done: Sequence[Record]
         yield record
 
 
-def _displaced(base: CoupledProblem, case: Case) -> CoupledProblem:
+def displaced_problem(base: CoupledProblem, case: Case) -> CoupledProblem:
+    """The problem of `base` with the journal where the case has it."""
     return base.at(displacement=np.array(case.operation.eccentricity) / base.layout.scales.length)
 
 
@@ -102,13 +103,20 @@ def _along(cases: Sequence[Case], base: CoupledProblem) -> Solution | None:
     found: Solution | None = None
     for case in cases:
         try:
-            found = _point(case, _displaced(base, case), found).answer
+            found = point_after(case, displaced_problem(base, case), found).answer
         except ConvergenceError:
             found = None
     return found
 
 
-def _point(case: Case, problem: CoupledProblem, before: Solution | None) -> OperatingPoint:
+def point_after(case: Case, problem: CoupledProblem, before: Solution | None) -> OperatingPoint:
+    """A point of the curve, followed from the one `before`; from nothing where there is none.
+
+    Raises
+    ------
+    ConvergenceError
+        It was not found.
+    """
     if before is None or is_classic(case):
         found = relaxed(case, problem, before) if is_classic(case) else with_reported(case, at_position(case))
         return replace(found, branch=replace(found.branch, jump=False))

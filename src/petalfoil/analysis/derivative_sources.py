@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from petalfoil.analysis.adjoint import AdjointDerivatives
 from petalfoil.analysis.capacity_derivatives import capacity_derivatives
@@ -24,7 +24,7 @@ from petalfoil.analysis.liftoff import own_load
 from petalfoil.analysis.liftoff_derivatives import speed_derivatives
 from petalfoil.analysis.load_ray import Limits
 from petalfoil.analysis.operating_point import operating_point
-from petalfoil.analysis.response_derivatives import THRESHOLD, coefficient_results, stability_derivatives
+from petalfoil.analysis.response_derivatives import coefficient_results, stability_derivatives
 from petalfoil.analysis.sensitivity_table import ALL, Source
 from petalfoil.analysis.varied_case import VariedCase
 from petalfoil.case import Case
@@ -66,6 +66,8 @@ class DerivativeRequest:
         Mass of the rotor whose threshold speed is asked for [kg]; None for that of the case or its load.
     by_adjoint : bool
         Whether each result has a solve of its own, in place of each parameter.
+    series : mapping
+        Displacements of a `curve` [m] and speeds of a `runup` [rad/s]; None of other questions.
     """
 
     verb: str
@@ -80,6 +82,7 @@ class DerivativeRequest:
     frequency: float | None = None
     mass: float | None = None
     by_adjoint: bool = False
+    series: Mapping[str, Sequence[float] | None] = field(default_factory=dict)
 
 
 def sources_of(case: Case, asked: DerivativeRequest) -> Sequence[Source]:
@@ -90,8 +93,13 @@ def sources_of(case: Case, asked: DerivativeRequest) -> Sequence[Source]:
     ConvergenceError
         The equilibrium was not found.
     """
+    return best_of(by_tangent(case, asked), asked)
+
+
+def best_of(sources: Sequence[Derivatives | CrossingDerivatives], asked: DerivativeRequest) -> Sequence[Source]:
+    """The same by the adjoint where it is asked for, or has less rounding."""
     found: list[Source] = []
-    for source in by_tangent(case, asked):
+    for source in sources:
         found += with_adjoint(source, asked) if asked.by_adjoint or over_asperities(source) else [source]
     return found
 
@@ -168,13 +176,17 @@ def by_tangent(case: Case, asked: DerivativeRequest) -> Sequence[Derivatives | C
         at_rest = reported(case, at_zero_speed(case))
         return [derivatives_of(case, at_rest, results_at_rest, as_points=asked.as_points)]
     if asked.verb == "stability":
-        threshold = THRESHOLD in asked.quantities
-        return stability_derivatives(case, asked.mass, threshold=threshold, as_points=asked.as_points)
+        return stability_derivatives(case, asked.mass, asked.quantities, as_points=asked.as_points)
     solution = operating_point(case, None).answer
     if asked.verb == "coefficients":
         return [derivatives_of(case, solution, coefficient_results(asked.frequency), as_points=asked.as_points)]
+    return [of_equilibrium(case, solution, asked)]
+
+
+def of_equilibrium(case: Case, solution: Solution, asked: DerivativeRequest) -> Derivatives:
+    """Derivatives of the results of an equilibrium; of its leading eigenvalue where that is asked for."""
     results = results_with_growth(solution) if set(asked.quantities) & set(GROWTH) else equilibrium_results
-    return [derivatives_of(case, solution, results, as_points=asked.as_points)]
+    return derivatives_of(case, solution, results, as_points=asked.as_points)
 
 
 def at_zero_speed(case: Case) -> Solution:

@@ -12,6 +12,7 @@ with the eigenvalue `lambda` of the impedance at whirl ratio `nu`.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,9 +21,10 @@ from petalfoil.analysis.crossing_derivatives import CrossingDerivatives, newton_
 from petalfoil.analysis.derivatives import Results, ResultsOf
 from petalfoil.analysis.heated_derivatives import Derivatives, derivatives_of
 from petalfoil.analysis.impedance import elastic, impedance
+from petalfoil.analysis.mode_derivatives import mode_results
 from petalfoil.analysis.operating_point import at, operating_point
 from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
-from petalfoil.analysis.sensitivity_table import DAMPING, STIFFNESS
+from petalfoil.analysis.sensitivity_table import DAMPING, MODES, STIFFNESS
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.analysis.threshold import AtOwnSpeed, margin, rotor_mass, threshold_speed
 from petalfoil.case import Case, ModelKind
@@ -138,9 +140,11 @@ def whirl_results(case: Case, answer: Solution, mass: float | None) -> ResultsOf
 
 
 def stability_derivatives(
-    case: Case, mass: float | None, *, threshold: bool, as_points: bool
+    case: Case, mass: float | None, quantities: Sequence[str], *, as_points: bool
 ) -> list[Derivatives | CrossingDerivatives]:
-    """Derivatives of critical mass and whirl ratio, with a `threshold` of that speed too; `as_points` as elsewhere.
+    """Derivatives of critical mass and whirl ratio; of threshold speed and natural modes where these are asked for.
+
+    `quantities` are names of results, `as_points` is as in `DerivativesOf`.
 
     Raises
     ------
@@ -154,10 +158,15 @@ def stability_derivatives(
             advice="leave rotor.span out, or compare two runs of `stability`",
         )
     found = operating_point(case, None).answer
-    balance = derivatives_of(case, found, whirl_results(case, found, mass), as_points=as_points)
-    if not threshold:
-        return [balance]
-    return [balance, threshold_derivatives(case, found, mass, as_points=as_points)]
+    of_modes = {name for mode in MODES for name in mode}
+    sources: list[Derivatives | CrossingDerivatives] = []
+    if not set(quantities) <= of_modes:
+        sources += [derivatives_of(case, found, whirl_results(case, found, mass), as_points=as_points)]
+    if of_modes & set(quantities):
+        sources += [derivatives_of(case, found, mode_results(case, found, mass), as_points=as_points)]
+    if THRESHOLD in quantities:
+        sources += [threshold_derivatives(case, found, mass, as_points=as_points)]
+    return sources
 
 
 def threshold_derivatives(case: Case, answer: Solution, mass: float | None, *, as_points: bool) -> CrossingDerivatives:

@@ -3,63 +3,59 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Annotated
 
-from petalfoil.analysis.arguments import JournalPosition, Load, Mass, NumberWithUnit, Speed
-from petalfoil.analysis.capacity import DOWN, LoadDirection, MinFilm, Stress, check_limits
+from petalfoil.analysis.arguments import JournalPosition, Load, Mass, NumbersWithUnit, NumberWithUnit, Speed, Speeds
+from petalfoil.analysis.capacity import DOWN, LoadDirection, MinFilm, Stress
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.crossings import CONTACT_FRACTION
 from petalfoil.analysis.declaration import analysis
-from petalfoil.analysis.derivative_sources import DerivativeRequest, sources_of
+from petalfoil.analysis.derivative_sources import DerivativeRequest
+from petalfoil.analysis.derivatives_in_series import SERIES, Differentiated, points_of
+from petalfoil.analysis.differentiable import (
+    MAIN_RESULT,
+    WITHOUT_DERIVATIVES,
+    asked_verb,
+    checked,
+    default_paths,
+    posed,
+    refuse_limits,
+    state_of,
+)
 from petalfoil.analysis.friction_told import refuse_path
-from petalfoil.analysis.liftoff import own_load
 from petalfoil.analysis.load_ray import Limits
-from petalfoil.analysis.operating_point import Vector, applied_load, at
-from petalfoil.analysis.records import asked_position, effort, record_of
+from petalfoil.analysis.operating_point import at
+from petalfoil.analysis.records import effort, failed_record, record_of
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.sensitivity_table import (
     ALL,
     LAYOUT,
     MATRICES,
+    MODES,
     RESULTS,
     SensitivityLine,
     lines_of,
     ordered,
     rounding_of,
 )
-from petalfoil.analysis.solve import placed
+from petalfoil.analysis.session import part
 from petalfoil.analysis.words import Choice, Names, known
 from petalfoil.case import Case
-from petalfoil.case.parameters import parameter_of, parameters_of
 from petalfoil.equilibrium.run_context import Progress, RunContext, running
-from petalfoil.errors import UsageError
+from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.parts import AppliedLoad
 from petalfoil.results.record import Record
 from petalfoil.results.schema import SCALARS
 from petalfoil.results.variable import DataType, Role
-from petalfoil.walls import Capability, required
-
-MAIN_RESULT = {
-    "solve": "bearing_force",
-    "balance": "min_film_thickness",
-    "liftoff": "liftoff_speed",
-    "capacity": "load_capacity",
-    "static": "starting_torque",
-    "coefficients": "stiffness_yy",
-    "stability": "critical_mass",
-}
-"""Questions that have derivatives, and the result that is asked for unless another is."""
-
-WITHOUT_EFFECT = ("model.", "surface.friction_width", "surface.petal_friction", "petals.free_shape_tolerance")
-"""Numbers of the discretisation, and friction that acts in motions alone: derivatives by them are not looked for."""
 
 ANSWERS = [
     name
     for name, variable in SCALARS.items()
     if not variable.dims and variable.kind is DataType.FLOAT and variable.role is Role.ANSWER
-] + ["eccentricity_x", "eccentricity_y", "load_capacity", *MATRICES]
+] + ["eccentricity_x", "eccentricity_y", "load_capacity", *MATRICES, *chain(*MODES)]
 """Results that a question may have; which of them it has is known once it is answered."""
 
 Vary = Annotated[
@@ -72,9 +68,9 @@ Ask = Annotated[
     str | None,
     Choice(
         metavar="VERB",
-        words=tuple(MAIN_RESULT),
-        help="Whose results: solve, balance, liftoff, capacity, static, coefficients or stability; by default balance "
-        "where there is a load, else solve.",
+        words=(*MAIN_RESULT, *WITHOUT_DERIVATIVES),
+        help="Whose results: solve, balance, liftoff, capacity, curve, runup, static, coefficients or stability; by "
+        "default balance where there is a load, else solve.",
     ),
 ]
 Of = Annotated[
@@ -105,6 +101,12 @@ RelativeStep = Annotated[
 ]
 
 
+Distances = Annotated[
+    Sequence[float] | None,
+    NumbersWithUnit(
+        unit="m", metavar="LIST", help='Displacements of `curve` along the direction: "0 um : 280 um : 5".'
+    ),
+]
 WhirlFrequency = Annotated[
     float | None,
     NumberWithUnit(
@@ -145,6 +147,8 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     load: Load = None,
     eccentricity: JournalPosition = None,
     speed: Speed = None,
+    speeds: Speeds = None,
+    displacements: Distances = None,
     contact_fraction: AnyLimit = None,
     min_film_thickness: MinFilm = None,
     max_stress: Stress = None,
@@ -179,7 +183,7 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
             "derivatives are those of one bearing, and the bearings of this rotor do not share its load evenly: ask "
             "for one of them alone under its part of the load, as `balance` tells it, or compare two runs"
         )
-    verb = ask or ("balance" if load is not None or (case.operation.load and eccentricity is None) else "solve")
+    verb = asked_verb(case, ask, load, eccentricity)
     refuse_path(case, "derivatives are those")
     there = posed(at(case.replace(**{"model.contacts": contacts}), speed), verb, load, eccentricity)
     paths = default_paths(there, verb) if vary is None else [checked(there, path) for path in vary]
@@ -188,133 +192,51 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     fraction = CONTACT_FRACTION if contact_fraction is None else contact_fraction
     asked = DerivativeRequest(
         verb, paths, quantities, step, vary is None, contacts == "points", fraction, limits, direction,
-        frequency, mass, method == ADJOINT,
+        frequency, mass, method == ADJOINT, {"curve": displacements, "runup": speeds},
     )  # fmt: skip
     refuse_limits(there, asked)
     most = len(ANSWERS) if ALL in quantities else len(quantities)
-    return Points(_points(there, asked, progress), len(paths) * most, "effects")
+    points = points_of(there, asked)
+    return Points(_points(points, asked, progress), len(paths) * most * len(points), "effects")
 
 
-def posed(case: Case, verb: str, load: Vector | None, eccentricity: Vector | None) -> Case:
-    """The case with the load or the position that the question `verb` is about.
-
-    Raises
-    ------
-    UsageError
-        It has neither, or both.
-    """
-    if verb == "static":
-        required(case, Capability.PACK, "`static`")
-        if case.surface.petal_friction > 0.0:
-            raise UsageError(
-                "petals with friction remember how they came to rest, and no derivative tells that: set "
-                "surface.petal_friction to 0, or compare two runs of `static`"
-            )
-        return placed(at(case, 0.0), eccentricity or (0.0, 0.0))
-    if verb == "capacity":
-        if load is not None or eccentricity is not None:
-            raise UsageError("capacity finds the load: give --min-film, --contact-fraction or --max-stress alone")
-        return case.replace(**{"operation.load": None, "operation.eccentricity": (0.0, 0.0)})
-    if verb in ("coefficients", "stability"):
-        return posed_to_whirl(case, load, eccentricity)
-    if verb == "solve":
-        if load is not None:
-            raise UsageError("solve holds the journal at a position: give an eccentricity, or ask balance")
-        return placed(case, eccentricity)
-    if eccentricity is not None:
-        raise UsageError(f"{verb} finds the position under a load: give a load, or ask solve")
-    wanted = applied_load(case, load)
-    loaded = case.replace(**{"operation.load": wanted, "operation.eccentricity": (0.0, 0.0)})
-    if verb == "liftoff":
-        required(case, Capability.LIFT_OFF, "lift-off")
-        own_load(loaded)
-    return loaded
+def _points(points: list[Differentiated], asked: DerivativeRequest, progress: Progress | None) -> Iterator[Record]:
+    """One record for each parameter and result, by the size of the effect; of a series point by point."""
+    for number, point in enumerate(points):
+        here = part(progress, number, len(points)) if len(points) > 1 else progress
+        with running(here, "sensitivity") as run:
+            try:
+                records = _effects(point, asked, run, here)
+            except ConvergenceError as failure:
+                if asked.verb not in SERIES:
+                    raise
+                load = point.case.operation.load
+                given = [] if load is None else [AppliedLoad.of(load, point.case.operation.moment)]
+                records = [failed_record("sensitivity", point.case, failure, point.where, *given)]
+        yield from records
 
 
-def posed_to_whirl(case: Case, load: Vector | None, eccentricity: Vector | None) -> Case:
-    """The case with the load or the position about which the journal whirls.
-
-    Raises
-    ------
-    UsageError
-        The shaft does not turn, or the journal is free to tilt.
-    """
-    if not case.operation.speed > 0.0:
-        raise UsageError("small motions need a turning shaft: give a speed above zero")
-    if case.operation.moment is not None:
-        raise UsageError(
-            "stiffness, damping and critical mass have no derivatives under a moment: leave operation.moment out, or "
-            "compare two runs"
-        )
-    if eccentricity is not None or (load is None and case.operation.load is None):
-        return placed(case, eccentricity)
-    return case.replace(**{"operation.load": applied_load(case, load), "operation.eccentricity": (0.0, 0.0)})
-
-
-def refuse_limits(case: Case, asked: DerivativeRequest) -> None:
-    """Refuse a capacity without a limit, and limits of what has none.
-
-    Raises
-    ------
-    UsageError
-        A limit is missing, says nothing of this bearing, or is given for another question.
-    """
-    if asked.verb == "capacity":
-        check_limits(case, asked.limits)
-    elif asked.limits.min_film_thickness is not None or asked.limits.max_stress is not None:
-        raise UsageError(f"--min-film and --max-stress are limits of a load capacity: {asked.verb} has none")
-    if asked.frequency is not None and asked.verb != "coefficients":
-        raise UsageError(f"--frequency is that of stiffness and damping: {asked.verb} has none")
-    if asked.mass is not None and asked.verb != "stability":
-        raise UsageError(f"--mass is that of the rotor whose threshold speed is asked for: {asked.verb} has none")
-
-
-def default_paths(case: Case, verb: str) -> list[str]:
-    """Parameters that the results of a question may depend on."""
-    given = ["operation.load" if case.operation.load is None else "operation.eccentricity"]
-    given += {"capacity": ["operation.eccentricity"]}.get(verb, [])
-    without = (*WITHOUT_EFFECT, *given, *(["operation.speed"] if verb in ("liftoff", "static") else []))
-    known_ones = parameters_of(case).values()
-    return [p.path for p in known_ones if not p.is_count and p.value is not None and not p.path.startswith(without)]
-
-
-def checked(case: Case, path: str) -> str:
-    """A path of a parameter that has a derivative.
-
-    Raises
-    ------
-    UsageError, DefinitionError
-        It has none.
-    """
-    parameter = parameter_of(case, path)
-    if parameter.is_count:
-        raise UsageError(f"{path} is a whole number: it has no derivative; `sweep` varies it")
-    if parameter.value is None:
-        raise UsageError(f"{path} is left to a rule in this case: give it a value there")
-    return path
-
-
-def _points(case: Case, asked: DerivativeRequest, progress: Progress | None) -> Iterator[Record]:
-    """One record for each parameter and result, by the size of the effect."""
-    with running(progress, "sensitivity") as run:
-        there = {name: source for source in sources_of(case, asked) for name in source.values if name in SCALARS}
-        quantities = named(asked, list(there))
-        sources = {name: there[name] for name in quantities}
-        lines, before = [], solves_of(run)
-        for number, path in enumerate(asked.paths, 1):
-            lines += lines_of(path, sources, asked.step)
-            if progress is not None:
-                progress(number / len(asked.paths), f"sensitivity: {path}")
-        felt = [line for line in lines if not asked.all_of_them or is_felt(case, line)] or lines
-        cost = effort(run.seconds), Solves(solves_of(run) - before)
-        records = [
-            record_of("sensitivity", case, line.row, *state_of(case, asked.verb), *cost, line.outcome)
-            for line in ordered(felt, quantities)
-        ]
+def _effects(
+    point: Differentiated, asked: DerivativeRequest, run: RunContext, progress: Progress | None
+) -> list[Record]:
+    """The records of one equilibrium."""
+    case, found = point.case, point.sources()
+    there = {name: source for source in found for name in source.values if name in SCALARS}
+    quantities = named(asked, list(there))
+    sources = {name: there[name] for name in quantities}
+    lines, before = [], solves_of(run)
+    for number, path in enumerate(asked.paths, 1):
+        lines += lines_of(path, sources, asked.step)
+        if progress is not None:
+            progress(number / len(asked.paths), f"sensitivity: {path}")
+    felt = [line for line in lines if not asked.all_of_them or is_felt(case, line)] or lines
+    cost = effort(run.seconds), Solves(solves_of(run) - before)
+    own = point.where, *state_of(case, asked.verb), *cost
+    records = [record_of("sensitivity", case, line.row, *own, line.outcome) for line in ordered(felt, quantities)]
     silent = {line.row.parameter: True for line in lines if line.row.parameter not in {f.row.parameter for f in felt}}
     if records and silent:
         records[-1] = replace(records[-1], remarks=(f"without effect: {', '.join(silent)}",))
-    yield from records
+    return records
 
 
 @dataclass(frozen=True)
@@ -347,13 +269,3 @@ def is_felt(case: Case, line: SensitivityLine) -> bool:
     if math.isnan(line.row.effect):
         return not line.outcome.converged
     return line.row.is_felt(rounding_of(case, line.row.quantity))
-
-
-def state_of(case: Case, verb: str) -> tuple[object, ...]:
-    """What is given of the equilibrium: its load or its position, and its speed unless that is the result."""
-    if verb == "capacity":
-        return ({"speed": case.operation.speed},)
-    if case.operation.load is None:
-        return (asked_position(case),)
-    speed = {} if verb == "liftoff" else {"speed": case.operation.speed}
-    return speed, AppliedLoad.of(case.operation.load, case.operation.moment)

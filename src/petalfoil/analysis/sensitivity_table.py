@@ -42,8 +42,24 @@ MATRICES = {
 }
 """Entries of stiffness and damping, as results that have derivatives."""
 
+MODES = tuple(
+    (f"natural_frequency_{number}", f"mode_growth_rate_{number}", f"damping_ratio_{number}") for number in range(1, 7)
+)
+"""Results of the first natural modes: frequency, growth rate and damping ratio by number."""
+_OF_MODES = {
+    name: _number(f"{words} of natural mode {name[-1]}", f"{symbol}_{name[-1]}", units=units)
+    for mode in MODES
+    for name, (words, symbol, units) in zip(
+        mode,
+        (("frequency", "omega", "rad s-1"), ("growth rate", "sigma", "s-1"), ("damping ratio", "zeta", "1")),
+        strict=True,
+    )
+}
+
 RESULTS = {
     **MATRICES,
+    **_OF_MODES,
+    "place": _text("where the equilibrium of a series is", "-", "at"),
     "parameter": _text("dotted path of a parameter of the case", "p", "parameter"),
     "parameter_text": _text("value of the parameter with its unit", "p", "value"),
     "parameter_value": _number("value of the parameter, in its SI unit", "p", Role.GIVEN),
@@ -80,6 +96,7 @@ def of_parameter(record: Record) -> str:
 
 LAYOUT = Series(
     columns={
+        "place": "at",
         "parameter": "parameter",
         "parameter_text": "value",
         "change_text": "change",

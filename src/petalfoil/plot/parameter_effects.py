@@ -41,8 +41,11 @@ def tornado(ds: xr.Dataset) -> Figure:
     shown = ds.isel(point=np.flatnonzero(ds["converged"].values & np.isfinite(array(ds, "effect"))))
     if not shown.sizes["point"]:
         raise unconverged(str(ds["status"].values[-1]))
-    names = list(dict.fromkeys(str(name) for name in shown["quantity"].values))
-    panels = [shown.isel(point=np.flatnonzero(shown["quantity"].values == name)[:MOST_BARS]) for name in names]
+    places = shown["place"].values if "place" in shown else np.full(shown.sizes["point"], "")
+    of_bars = list(zip(shown["quantity"].values.astype(str), places.astype(str), strict=True))
+    names = list(dict.fromkeys(of_bars))
+    numbers = [[number for number, bar in enumerate(of_bars) if bar == name][:MOST_BARS] for name in names]
+    panels = [shown.isel(point=one) for one in numbers]
     heights = [panel.sizes["point"] for panel in panels]
     fig = style.figure(8.5, BAR * sum(heights) + 0.75 * len(names) + 0.8)
     axes = fig.subplots(len(names), 1, squeeze=False, gridspec_kw={"height_ratios": heights}).ravel()
@@ -55,11 +58,15 @@ def tornado(ds: xr.Dataset) -> Figure:
 
 def _state(ds: xr.Dataset) -> tuple[str, ...]:
     """Speed, load or displacement of the equilibrium."""
-    speed = labels.speed_fact(number(ds, "speed")) if "speed" in ds else ""
-    return speed, labels.load_fact(ds) if "load_x" in ds else labels.displacement_fact(ds)
+    varies = "place" in ds  # told beside each panel
+    speed = labels.speed_fact(number(ds, "speed")) if "speed" in ds and not (varies and "load_x" in ds) else ""
+    if "load_x" in ds:
+        return speed, labels.load_fact(ds)
+    return speed, "" if varies else labels.displacement_fact(ds)
 
 
-def _draw(ax: Axes, name: str, ds: xr.Dataset) -> None:
+def _draw(ax: Axes, of: tuple[str, str], ds: xr.Dataset) -> None:
+    name, place_text = of
     effect, opposite, unit = _effects(ds)
     place = -np.arange(len(effect))
     ax.barh(place, opposite, height=0.62, color=style.SKY, alpha=0.45, label="opposite change", gid="opposite")
@@ -70,7 +77,8 @@ def _draw(ax: Axes, name: str, ds: xr.Dataset) -> None:
     ax.set_yticks(place, [for_figure(f"{path} = {value}, {_signed(change)}") for path, value, change in changes])
     ax.axvline(0.0, color=style.GREY, linewidth=0.8)
     label = QUANTITIES[name].name if name in QUANTITIES else for_figure(name.replace("_", " "))
-    style.dress(ax, f"change of the {label} [{unit}]")
+    at = f" at {for_figure(place_text)}" if place_text else ""
+    style.dress(ax, f"change of the {label}{at} [{unit}]")
     ax.grid(False, axis="y")
     reach = max(float(np.max(np.abs(effect))), float(np.max(np.abs(opposite)))) or 1.0  # nothing has an effect
     ax.set_xlim(-1.1 * reach, 1.25 * reach)
