@@ -171,7 +171,7 @@ def test_a_motion_goes_on_only_from_a_state_that_is_one(motion: tuple[petalfoil.
         "has the shape": ds.isel(unknown=slice(1, None)),
     }
     for reason, bad in damaged.items():
-        with pytest.raises(UsageError, match=f"ends in a state that is none: .*{reason}"):
+        with pytest.raises(UsageError, match=f"ends in an invalid state: .*{reason}"):
             petalfoil.orbit(bearing, duration=1e-6, restart=bad)
 
 

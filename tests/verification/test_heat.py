@@ -425,7 +425,7 @@ def test_the_speed_of_a_runaway_under_load_parts_steady_from_unsteady() -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"heat": {"pack_to_bushing": 1.0}}, "heat: has no way out"),
+        ({"heat": {"pack_to_bushing": 1.0}}, "heat: carries no heat to the surroundings"),
         ({"heat": {"pack_to_bushing": -1.0}}, "heat.pack_to_bushing"),
         ({"shaft": {**STEEL, "temperature": 330.0}}, "shaft.temperature: is given beside [heat]"),
         ({"model.slip": True}, "model.slip: is for a gas of one temperature"),

@@ -40,7 +40,7 @@ def capacity_derivatives(
     if found.at is None or found.status != "converged":
         raise ConvergenceError(
             f"no derivative of the load capacity: {found.status}",
-            advice="ask `capacity` what bounds the load, and for limits that a smaller load reaches",
+            advice="run `capacity` to see what bounds the load, and give limits that a smaller load reaches",
         )
     size = found.at.size
     load = (size * direction[0], size * direction[1])

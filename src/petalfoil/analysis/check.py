@@ -44,7 +44,7 @@ def check(case: Case) -> Record:
     Raises
     ------
     ConvergenceError
-        The foil pack did not settle.
+        No equilibrium of the foil pack was found.
     """
     kind = wall_kind(case)
     derived = (*geometry(case), asked_position(case), bearing_numbers(case), kind.check_scalars(case))
@@ -56,7 +56,9 @@ def check(case: Case) -> Record:
     with running() as run:
         answer = rest(build_problem(slow))
     if answer is None:
-        raise ConvergenceError("the foil pack did not settle at rest", history=run.history, advice="check its geometry")
+        raise ConvergenceError(
+            "no equilibrium of the foil pack at zero speed was found", history=run.history, advice="check its geometry"
+        )
     found = Evaluation.of(slow, answer)
     section = kind.cross_section(slow, state_of_wall(found.state).deflection)
     return record_of("check", case, *derived, fields=dict(section), coords=coordinates(found), history=[])

@@ -221,8 +221,8 @@ class DerivativesOf(ByParameters):
         """
         parameter = parameter_of(self.case, path)
         if parameter.is_count or parameter.value is None:
-            why = "a whole number" if parameter.is_count else "left to a rule in this case: give it a value"
-            raise UsageError(f"no derivative by {path}: it is {why}")
+            why = "is a whole number" if parameter.is_count else "follows from other keys in this case; give it a value"
+            raise UsageError(f"no derivative by {path}: it {why}")
         return VariedCase(self.case, parameter, self.own, self.thinnest)
 
     def response(self, rates: EquationValues, nearest: float) -> ParameterResponse:

@@ -96,7 +96,7 @@ def posed_at_rest(case: Case, eccentricity: Vector | None) -> Case:
     required(case, Capability.PACK, "`static`")
     if case.surface.petal_friction > 0.0:
         raise UsageError(
-            "petals with friction remember how they came to rest, and no derivative tells that: set "
+            "the state of petals with friction depends on their path, and a derivative has no path: set "
             "surface.petal_friction to 0, or compare two runs of `static`"
         )
     return placed(at(case, 0.0), eccentricity or (0.0, 0.0))
@@ -183,7 +183,7 @@ def checked(case: Case, path: str) -> str:
     if parameter.is_count:
         raise UsageError(f"{path} is a whole number: it has no derivative; `sweep` varies it")
     if parameter.value is None:
-        raise UsageError(f"{path} is left to a rule in this case: give it a value there")
+        raise UsageError(f"{path} follows from other keys in this case; give it a value there")
     return path
 
 

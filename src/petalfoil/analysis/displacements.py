@@ -38,7 +38,7 @@ def displaced(case: Case, distances: Sequence[float], direction: float, speed: f
     """
     if case.operation.moment is not None:
         raise UsageError(
-            "operation.moment is balanced, and here the journal is held in place: give its slopes, operation.tilt"
+            "operation.moment is for a journal that is free to tilt, here it is held: give operation.tilt instead"
         )
     n = np.round([math.cos(direction), math.sin(direction)], 15)  # -90 deg means straight down
     return [at(case, speed, (float(e * n[0]), float(e * n[1]))) for e in distances]

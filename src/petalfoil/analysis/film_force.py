@@ -44,7 +44,7 @@ SAME_TIME = 1e-12
 """Relative difference of two times that are one."""
 
 SAME_PLACE = 1e-12
-"""Displacement that is none [m]."""
+"""Displacement that counts as zero [m]."""
 
 
 @dataclass(frozen=True)
@@ -290,7 +290,7 @@ class Film:
                 f"no film at ({1e6 * e[0] * still.layout.scales.length:.4g} µm, "
                 f"{1e6 * e[1] * still.layout.scales.length:.4g} µm) after {self._now.time:.6g} s: {outcome.value}",
                 history=list(self._run.history),
-                advice="take shorter steps, or a position that film and petals leave to the journal",
+                advice="take shorter steps, or a position at which the journal is clear of the solid pack",
             )
         self._tangents = dict([*self._tangents.items(), (length, found.tangent)][-KEPT:])
         self._stored = problem.stored(found.x)

@@ -228,7 +228,7 @@ def beyond_capacity(problem: CoupledProblem, load: Vector, failure: ConvergenceE
             f"a load of {size:g} N is beyond the capacity of the bearing: at {fraction * size:g} N solid contact "
             f"carries {format_percent(carried, digits=4)} of it already",
             history=failure.history,
-            advice="reduce the load; how much the film carries tells contact_fraction at smaller ones",
+            advice="reduce the load; contact_fraction at smaller loads tells how much solid contact carries",
         )
     return failure
 

@@ -163,7 +163,7 @@ def _state(result: xr.Dataset, name: str, size: int) -> Array:
 
 
 def _damaged(reason: str) -> UsageError:
-    return UsageError(f"the motion to go on from ends in a state that is none: {reason}; run it again")
+    return UsageError(f"the motion to go on from ends in an invalid state: {reason}; run it again")
 
 
 def continued(case: Case, schedule: Schedule, result: xr.Dataset) -> float:

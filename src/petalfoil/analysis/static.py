@@ -34,7 +34,7 @@ from petalfoil.system.coupled import CoupledProblem
 from petalfoil.walls import Capability, required, wall_kind
 
 Loop = Annotated[
-    bool, Flag(help=f"There, back and there again: the hysteresis of petals with friction. {TURNING_ONLY}")
+    bool, Flag(help=f"Load, unload and reload the pack: the hysteresis of petals with friction. {TURNING_ONLY}")
 ]
 
 
@@ -71,7 +71,7 @@ def static(
 
     With friction between the petals (surface.petal_friction) each point
     comes from the one before, the first from a thinner journal that grows
-    to its size (not with inextensible petals); --loop goes back and there again.
+    to its size (not with inextensible petals); --loop unloads and reloads it.
 
     Example: petalfoil static case.toml --eccentricity "0 um : 280 um : 15"
 
@@ -105,7 +105,7 @@ def _with_friction(
             progress(number / len(way), f"static: {point.leg}")
         with point.run.active():
             if point.answer is None:
-                reason = "the foil pack did not settle on the way"
+                reason = "no equilibrium of the foil pack was found on the path"
                 record = failed_record("static", point.case, reason, Leg(point.leg))
             else:
                 told = FrictionTold(ASSEMBLED if exact else TURNED, point.lost)
@@ -123,7 +123,7 @@ def _without_friction(cases: list[Case], progress: Progress | None, done: Sequen
         with running() as run:
             answer = at_rest(case, problem)
             if answer is None:
-                record = failed_record("static", case, "the foil pack did not settle")
+                record = failed_record("static", case, "no equilibrium of the foil pack was found")
             else:
                 answer = reported(case, answer)
                 record = static_record(case, answer, ContactModel.of(answer), effort(run.seconds))
@@ -131,7 +131,7 @@ def _without_friction(cases: list[Case], progress: Progress | None, done: Sequen
 
 
 def at_rest(case: Case, problem: CoupledProblem) -> Solution | None:
-    """The assembled pack by the method of `case`; None, and why in the history, if it did not settle."""
+    """The assembled pack by the method of `case`; None, and why in the history, if none was found."""
     if not is_classic(case):
         return rest(problem)
     try:

@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 Vector = tuple[float, float]
 
 SAME_PLACE = 1e-14
-"""Move of a journal that is none, in reference films."""
+"""Movement of the journal that counts as zero, in reference films."""
 
 BORROWED = replace(WARM, tangents=2, borrow=True)
 """The last tangent serves as long as its steps contract; with more than two new ones the bearing is followed anew."""

@@ -151,8 +151,8 @@ def heat_problems(heat: Heat, given: dict[str, bool]) -> Iterator[Problem]:
     out = heat.pack_to_bushing * heat.bushing_to_ambient + heat.shaft_to_ambient + heat.along_shaft
     if out + heat.pack_to_cooling * heat.cooling_flow <= 0.0:
         text = (
-            "has no way out: allowed: bushing_to_ambient with pack_to_bushing, shaft_to_ambient, along_shaft, or "
-            "pack_to_cooling with cooling_flow, above zero"
+            "carries no heat to the surroundings; allowed: bushing_to_ambient with pack_to_bushing, shaft_to_ambient, "
+            "along_shaft, or pack_to_cooling with cooling_flow, above zero"
         )
         yield Problem("heat", text, None, "a conductance to the surroundings")
     for key in ("shaft.temperature", "bushing.temperature"):

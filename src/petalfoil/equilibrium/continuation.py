@@ -219,7 +219,7 @@ def ascend(problem: CoupledProblem, options: AscentOptions | None = None) -> tup
 
 
 def rest(problem: CoupledProblem) -> Solution | None:
-    """The assembled foil pack at zero speed, its film at rest; None if it did not settle."""
+    """The assembled foil pack at zero speed, its film at rest; None if none was found."""
     still, run = problem.at(bearing_number=0.0), current_run()
     pack = at_rest(still)
     if pack is None:

@@ -29,7 +29,7 @@ LONGEST_INSERTION = 5e-5
 
 
 def assembled(friction: Friction, problem: CoupledProblem) -> FrictionResult | None:
-    """The foil pack as it is assembled; None if it did not settle.
+    """The foil pack as it is assembled; None if none was found.
 
     Petals that slide along themselves lie without friction round a thinner journal, short of its radius by the radial
     clearance, which then grows to its size: friction builds up as petals are pressed outward. Others are assembled

@@ -147,8 +147,7 @@ def no_rest(problem: CoupledProblem, leakage: float) -> ConvergenceError:
     own = problem.layout.case.bearing.length
     return ConvergenceError(
         "no equilibrium found in the limit of a long bearing (2-D, continuous edges): lengthened from a short one with "
-        f"ambient ends, equilibria were found up to a length of {length:.3g} m; beyond it film, petals and contacts "
-        "came to rest from no start",
+        f"ambient ends, equilibria were found up to a length of {length:.3g} m and none beyond it",
         history=current_run().history,
         advice=f'take the length of the bearing into account, {own:.3g} m: model.kind = "3d"; or model.edges = '
         '"ambient", if the films are vented at the petals\' edges',

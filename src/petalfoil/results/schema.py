@@ -268,9 +268,7 @@ SCALARS: dict[str, Variable] = {
     "iterations": _run("1", "iterations of the coupled system", "N_it", DataType.INT),
     "factorizations": _run("1", "factorisations of the coupled system", "N_lu", DataType.INT),
     "pack_iterations": _run("1", "iterations of the foil pack alone", "N_pk", DataType.INT),
-    "probe_factorizations": _run(
-        "1", "factorisations that only asked a question: stability, other equilibria", "N_probe", DataType.INT
-    ),
+    "probe_factorizations": _run("1", "factorisations for stability and other equilibria", "N_probe", DataType.INT),
     "cells_per_pitch": _run("1", "cells per pitch; of a plain bearing, round the circle", "N", DataType.INT),
     "axial_cells": _run("1", "cells over the whole length", "N_z", DataType.INT),
     "reference_film_thickness": _run("m", "film thickness the film equation is scaled with", "h_ref"),

@@ -110,7 +110,7 @@ def optimize_study(case: Case, vary: Mapping[str, Any], question: Question, sett
     plain = {path: text if isinstance(text, str) else list(text) for path, text in vary.items()}
     study = Study(kind="optimize", case=case, question=question, vary=plain, settings={"seed": 0, **settings})
     if int(study.settings["budget"]) < 1:
-        raise UsageError(f"a budget of {study.settings['budget']} designs is none; allowed: 1 or more")
+        raise UsageError(f"a budget of {study.settings['budget']} designs is too small; allowed: 1 or more")
     refuse_too_many(int(study.settings["budget"]))
     question.refuse_overridden(list(vary))
     variations = variations_of(study)

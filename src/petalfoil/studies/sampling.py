@@ -53,7 +53,7 @@ def by_sampling(search: DesignSearch, method: str, journal: Path | None, seed: i
         for trial, outcome in zip(batch, search.outcomes(points), strict=True):
             _tell(trials, trial, search.goals, outcome)
         if len(search.asked) == before and _is_finite(search.variations):
-            search.ended = f"{method}: it asks designs that it knows"
+            search.ended = f"{method}: it repeats designs that are answered"
             return
     search.ended = f"{method}: the budget is spent"
 

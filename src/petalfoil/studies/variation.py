@@ -196,7 +196,7 @@ def _scatter(parameter: Parameter, kind: str, width: str) -> Scatter:
     else:
         size = parse_quantity(width, parameter.unit)
     if not size > 0.0:
-        text = f"{parameter.path}: a scatter of {shown(width)} is none; allowed: greater than 0"
+        text = f"{parameter.path}: a scatter of {shown(width)} is too small; allowed: greater than 0"
         raise DefinitionError(text, key=parameter.path, given=width, allowed="greater than 0")
     return Scatter(parameter, kind, float(parameter.value), size)
 

@@ -109,7 +109,7 @@ def test_the_command_prints_the_table_and_one_json_object() -> None:
         ({"of": "min_film"}, UsageError, "Did you mean 'min_film_thickness'"),
         ({"vary": "petals.thicknes"}, DefinitionError, "petals.thickness"),
         ({"vary": "petals.count"}, UsageError, "petals.count is a whole number"),
-        ({"vary": "petals.root_tilt"}, UsageError, "left to a rule"),
+        ({"vary": "petals.root_tilt"}, UsageError, "follows from other keys"),
         ({"vary": "petals.thickness,"}, UsageError, "names nothing between two commas"),
         ({"step": 0.0}, UsageError, "step"),
         ({"ask": "solve", "load": "20 N"}, UsageError, "solve holds the journal at a position"),
@@ -178,5 +178,5 @@ def test_limits_are_those_of_a_load_capacity(arguments: dict[str, object], told:
 
 
 def test_petals_that_remember_have_no_derivative_at_rest() -> None:
-    with pytest.raises(UsageError, match="remember how they came to rest"):
+    with pytest.raises(UsageError, match="depends on their path"):
         petalfoil.sensitivity(SMALL.replace(**{"surface.petal_friction": 0.2}), "gas.viscosity", ask="static")

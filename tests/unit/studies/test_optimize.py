@@ -165,7 +165,7 @@ def test_an_optimum_of_a_bearing_goes_on_and_gives_case_files(tmp_path: Path) ->
             "slsqp has one objective",
         ),
         ("petals.thickness", {"maximize": "bearing_force", "subject": ["film > 3 um"]}, "is no result of an analysis"),
-        ("petals.thickness", {"maximize": "bearing_force", "budget": 0}, "a budget of 0 designs is none"),
+        ("petals.thickness", {"maximize": "bearing_force", "budget": 0}, "a budget of 0 designs is too small"),
         ("petals.thickness", {"maximize": "liftoff_speed", "budget": 2}, "solve gives no liftoff_speed"),
     ],
 )
