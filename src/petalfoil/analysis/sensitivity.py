@@ -172,7 +172,7 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     Raises
     ------
     UsageError
-        A parameter is none of the case, a whole number or without a value of its own; a result is none of the question; a load
+        A parameter is none of the case, a whole number or has no value; a result is none of the question; a load
         capacity has no limit.
     ConvergenceError
         The equilibrium was not found, or its contacts do not determine it.
