@@ -14,7 +14,15 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from petalfoil.analysis.accuracy import finer, remark_on, shortfalls
-from petalfoil.analysis.grid_study import array_error_bars, error_bars, grid_of, grid_text, grids, unknowns
+from petalfoil.analysis.grid_study import (
+    array_error_bars,
+    contacts_alike,
+    error_bars,
+    grid_of,
+    grid_text,
+    grids,
+    unknowns,
+)
 from petalfoil.analysis.runs import Run
 from petalfoil.case import Case, warnings_of_errors
 from petalfoil.equilibrium.run_context import Progress
@@ -146,8 +154,11 @@ def field_bars(record: Record, number: int, answers: Answers) -> dict[str, Array
         answer = (record,) if grid == grid_of(case) else answers[grid]
         place = 0 if grid == grid_of(case) else number
         others.append(None if isinstance(answer, ConvergenceError) else answer[place])
+    alike = contacts_alike(others)
     return {
-        f"{name}_error": array_error_bars(own.astype(np.float64), [values_of(other, name, record) for other in others])
+        f"{name}_error": array_error_bars(
+            own.astype(np.float64), [values_of(other, name, record) for other in others], alike=alike
+        )
         for name, own in record.fields.items()
         if f"{name}_error" in FIELDS
     }

@@ -167,10 +167,10 @@ def error_bars(own: Record, point: Point, progress: Progress | None = None) -> d
     return {estimate.name: _bar(estimate, float(own.scalars[estimate.name])) for estimate in estimates}
 
 
-def array_error_bars(own: Array, on_grids: Sequence[Array | None]) -> Array:
+def array_error_bars(own: Array, on_grids: Sequence[Array | None], *, alike: bool = True) -> Array:
     """Error bars of the entries of an array on one of the grids, coarsest first; None where a grid has no answer.
 
-    An entry that fewer than two grids have has none: nan.
+    An entry that fewer than two grids have has none: nan. Contacts are described `alike` on all grids, or not.
     """
     missing = np.full_like(own, np.nan)
     values = np.stack([missing if array is None else array for array in on_grids])
@@ -181,8 +181,14 @@ def array_error_bars(own: Array, on_grids: Sequence[Array | None]) -> Array:
             bars[entry] = np.nan
             continue
         counted = _unbroken(here)
-        bars[entry] = abs(own[entry] - counted[-1]) + richardson([float(v) for v in counted], RATIO).error
+        bars[entry] = abs(own[entry] - counted[-1]) + richardson([float(v) for v in counted], RATIO, alike=alike).error
     return bars
+
+
+def contacts_alike(records: Sequence[Record | None]) -> bool:
+    """Whether contacts are described alike (points, asperities or nodes) on all grids that have an answer."""
+    answered = [record for record in records if record is not None and record.converged]
+    return len({record.scalars.get("contact_model") for record in answered}) <= 1
 
 
 def resolution(record: Record) -> dict[str, float]:
@@ -282,7 +288,7 @@ def _estimate(name: str, records: Sequence[Record], scale: float) -> Estimate:
     counted = _unbroken(values)
     if name in ANGLES:
         counted = np.unwrap(counted)
-    found = richardson([float(value) for value in counted], RATIO, scale)
+    found = richardson([float(value) for value in counted], RATIO, scale, alike=contacts_alike(records))
     return Estimate(
         name=name,
         values=tuple(float(value) for value in values),

@@ -58,7 +58,9 @@ class Extrapolation:
     trusted: bool
 
 
-def richardson(values: Sequence[float], ratio: float = 2.0, resolution: float = 0.0) -> Extrapolation:
+def richardson(
+    values: Sequence[float], ratio: float = 2.0, resolution: float = 0.0, *, alike: bool = True
+) -> Extrapolation:
     """Extrapolate values on grids whose cells shrink by one ratio; the last three of them count.
 
     Parameters
@@ -69,6 +71,9 @@ def richardson(values: Sequence[float], ratio: float = 2.0, resolution: float = 
         Cell size over that of the next grid [1].
     resolution : float
         Difference below which values are equal whatever their size, in the unit of the values.
+    alike : bool
+        Contacts are described alike on all grids. Where they are not, part of a difference does not shrink with the
+        cells: the limit is the finest value, and the bar is not below the largest difference.
 
     Returns
     -------
@@ -90,6 +95,9 @@ def richardson(values: Sequence[float], ratio: float = 2.0, resolution: float = 
     if math.isnan(order):
         return Extrapolation(finest, order, max(SUSPICION * largest, resolved), False)
     used = min(max(order, LEAST_ORDER), LARGEST_ORDER)
+    if not alike:
+        error = max(largest, SUSPICION * cautious(differences, ratio, used), resolved)
+        return Extrapolation(finest, order, error, False)
     limit = finest + differences[1] / (ratio**used - 1.0)
     if abs(order - DECLARED_ORDER) <= CREDIBLE:
         return Extrapolation(limit, order, max(SAFETY * abs(limit - finest), resolved), True)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
+from scipy.sparse import _sparsetools  # the loops behind `@`; SciPy has no public way to them
 
 from petalfoil.sparsity import Elimination, Order, postorder
 
@@ -121,23 +123,76 @@ class LinearSolver:
         if not np.all(np.isfinite(matrix.data)):
             raise SingularMatrixError("matrix with entries that are not finite")
         scaled, row, col = equilibrate(without_zeros(matrix))
-        places = None if order is None else order.known(scaled.nnz)
+        places = None if order is None else order.known(len(scaled.data))
         try:
             factor = Factor(symmetric_lu(scaled, places), row, col, places, self.counter)
             if trusted(scaled, factor):
-                if order is not None and scaled.shape[0]:  # active contacts may hold all unknowns
-                    fill = factor.lu.nnz / scaled.shape[0]
-                    found = postorder(scaled, np.argsort(factor.lu.perm_c)) if places is None else None
-                    order.learn(found, fill, scaled.nnz)
+                if order is not None and scaled.n:  # active contacts may hold all unknowns
+                    fill = factor.lu.nnz / scaled.n
+                    found = postorder(scaled.matrix, np.argsort(factor.lu.perm_c)) if places is None else None
+                    order.learn(found, fill, len(scaled.data))
                 return factor
         except RuntimeError:  # SuperLU met a zero pivot: without the diagonal it may still do
             pass
         try:
             return Factor(
-                spla.splu(scaled, permc_spec="COLAMD", options={"Equil": False}), row, col, None, self.counter
+                spla.splu(scaled.matrix, permc_spec="COLAMD", options={"Equil": False}), row, col, None, self.counter
             )
         except RuntimeError as failure:  # SuperLU says "Factor is exactly singular" this way
             raise SingularMatrixError(str(failure)) from failure
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Entries of a square matrix by columns.
+
+    SciPy's arrays check types, shapes and index types at every step: for a thousand unknowns that took six times as
+    long as SuperLU.
+
+    Attributes
+    ----------
+    data : (k,) array
+        Entries [1].
+    indices : (k,) array
+        Their rows.
+    indptr : (n + 1,) array
+        First entry of each column.
+    """
+
+    data: NDArray[Any]
+    indices: NDArray[Any]
+    indptr: NDArray[Any]
+
+    @property
+    def n(self) -> int:
+        """Rows."""
+        return len(self.indptr) - 1
+
+    @property
+    def matrix(self) -> sp.csc_array:
+        """As an array of SciPy's, in canonical format as long as no entry stands twice."""
+        return sp.csc_array((self.data, self.indices, self.indptr), shape=(self.n, self.n))
+
+    @property
+    def magnitude(self) -> Columns:
+        """Magnitudes of the entries."""
+        return Columns(np.abs(self.data), self.indices, self.indptr)
+
+    def times(self, x: NDArray[Any]) -> NDArray[Any]:
+        """The product with a vector (n,) of the same type."""
+        out = np.zeros(self.n, dtype=x.dtype)
+        _sparsetools.csc_matvec(self.n, self.n, self.indptr, self.indices, self.data, x, out)
+        return out
+
+    def in_order(self, order: Index) -> Columns:
+        """Rows and columns in another order."""
+        place = np.empty(self.n, dtype=self.indices.dtype)
+        place[order] = np.arange(self.n, dtype=self.indices.dtype)
+        held = np.diff(self.indptr)[order]
+        indptr = np.zeros(self.n + 1, dtype=self.indptr.dtype)
+        np.cumsum(held, out=indptr[1:])
+        taken = np.repeat(self.indptr[:-1][order] - indptr[:-1], held) + np.arange(len(self.data))
+        return Columns(self.data[taken], place[self.indices[taken]], indptr)
 
 
 def without_zeros(matrix: sp.csc_array) -> sp.csc_array:
@@ -149,31 +204,37 @@ def without_zeros(matrix: sp.csc_array) -> sp.csc_array:
     return bare
 
 
-def symmetric_lu(scaled: sp.csc_array, order: Index | None) -> Any:
+def symmetric_lu(scaled: Columns, order: Index | None) -> Any:
     """Factorise with pivots on the diagonal where they are large enough, in the given order or minimum degree."""
     options = {"Equil": False, "SymmetricMode": True}
-    panel = next(columns for most, columns in PANELS if scaled.shape[0] <= most)
+    panel = next(columns for most, columns in PANELS if scaled.n <= most)
     numbers = {"diag_pivot_thresh": PIVOT, "panel_size": panel, "options": options}
     if order is None:
-        return spla.splu(scaled, permc_spec="MMD_AT_PLUS_A", **numbers)
-    place = np.empty(len(order), dtype=scaled.indices.dtype)
-    place[order] = np.arange(len(order))
-    ordered = sp.csc_array((scaled.data, place[scaled.indices], scaled.indptr), shape=scaled.shape)[:, order]
+        return spla.splu(scaled.matrix, permc_spec="MMD_AT_PLUS_A", **numbers)
+    ordered = scaled.in_order(order).matrix
     ordered.has_canonical_format = True  # no entry stands twice, and SuperLU does not ask for sorted rows
     return spla.splu(ordered, permc_spec="NATURAL", **numbers)
 
 
-def trusted(scaled: sp.csc_array, factor: Factor) -> bool:
+def trusted(scaled: Columns, factor: Factor) -> bool:
     """The factorisation solves with a small backward error (one solve, a twentieth of the work)."""
-    rhs = np.random.default_rng(0).standard_normal(scaled.shape[0])
+    rhs = trial(scaled.n)
     x = factor.scaled(rhs)
     if not np.all(np.isfinite(x)):
         return False
-    size = sp.csc_array((np.abs(scaled.data), scaled.indices, scaled.indptr), shape=scaled.shape) @ np.abs(x)
-    return bool(np.max(np.abs(scaled @ x - rhs) / (size + np.abs(rhs)), initial=0.0) < BACKWARD_ERROR)
+    size = scaled.magnitude.times(np.abs(x)) + np.abs(rhs)
+    return bool(np.max(np.abs(scaled.times(x) - rhs) / size, initial=0.0) < BACKWARD_ERROR)
 
 
-def equilibrate(matrix: sp.csc_array) -> tuple[sp.csc_array, Array, Array]:
+@lru_cache(maxsize=8)
+def trial(n: int) -> Array:
+    """The right-hand side that a factorisation is tried on, (n,)."""
+    rhs = np.random.default_rng(0).standard_normal(n)
+    rhs.setflags(write=False)
+    return rhs
+
+
+def equilibrate(matrix: sp.csc_array) -> tuple[Columns, Array, Array]:
     """Scale rows to sums of 1, then columns to largest entries of 1; returns the scaled matrix and both factors."""
     rows = np.bincount(matrix.indices, np.abs(matrix.data), matrix.shape[0])
     row = 1.0 / np.where(rows > 0.0, rows, 1.0)
@@ -183,5 +244,4 @@ def equilibrate(matrix: sp.csc_array) -> tuple[sp.csc_array, Array, Array]:
     tallest = np.ones(len(starts))
     tallest[filled] = np.maximum.reduceat(np.abs(data), starts[filled])
     col = 1.0 / np.where(tallest > 0.0, tallest, 1.0)
-    data = data * np.repeat(col, held)
-    return sp.csc_array((data, matrix.indices, matrix.indptr), shape=matrix.shape), row, col
+    return Columns(data * np.repeat(col, held), matrix.indices, matrix.indptr), row, col

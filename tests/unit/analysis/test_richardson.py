@@ -129,3 +129,12 @@ def test_order_of_two_differences() -> None:
 def test_caution_takes_the_larger_of_what_is_and_what_should_be() -> None:
     assert cautious([4.0, 0.5], 2.0, 3.0) == 1.0 / 3.0
     assert cautious([4.0, 2.0], 2.0, 1.0) == 2.0
+
+
+def test_where_contacts_are_described_otherwise_no_order_is_believed() -> None:
+    """A jump between descriptions does not shrink with the cells."""
+    values = [-15664.9, -15422.0, -15384.0]  # points, points, asperities; on a finer grid -15525 with points
+    believed, cautious = richardson(values), richardson(values, alike=False)
+    assert believed.error < abs(-15525.0 - values[-1]) < cautious.error
+    assert (cautious.limit, cautious.trusted) == (values[-1], False)
+    assert cautious.error == pytest.approx(values[1] - values[0])

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
-from petalfoil.solvers.sparse_lu import LinearSolver, SingularMatrixError, equilibrate
+from petalfoil.solvers.sparse_lu import Columns, LinearSolver, SingularMatrixError, equilibrate
 
 
 def badly_scaled(n: int = 30) -> sp.csc_array:
@@ -17,7 +17,8 @@ def badly_scaled(n: int = 30) -> sp.csc_array:
 
 def test_equilibrate_scales_to_one() -> None:
     matrix = badly_scaled()
-    scaled, row, col = equilibrate(matrix)
+    columns, row, col = equilibrate(matrix)
+    scaled = columns.matrix
     assert_allclose(scaled.toarray(), row[:, None] * matrix.toarray() * col[None, :], rtol=1e-12)
     assert_allclose(abs(scaled).max(axis=0).toarray().ravel(), 1.0, rtol=1e-12)
     assert abs(scaled).max() <= 1.0 + 1e-12
@@ -26,8 +27,19 @@ def test_equilibrate_scales_to_one() -> None:
 def test_equilibrate_leaves_empty_lines_alone() -> None:
     matrix = sp.csc_array(np.array([[0.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, -8.0]]))
     scaled, row, col = equilibrate(matrix)
-    assert_allclose(scaled.toarray(), np.diag([0.0, 1.0, -1.0]), rtol=0.0)
+    assert_allclose(scaled.matrix.toarray(), np.diag([0.0, 1.0, -1.0]), rtol=0.0)
     assert row[0] == col[0] == 1.0
+
+
+@pytest.mark.parametrize("weight", [1.0, 1.0 + 2.0j], ids=["real", "complex"])
+def test_columns_in_another_order_and_times_a_vector(weight: complex) -> None:
+    rng = np.random.default_rng(3)
+    matrix = sp.csc_array(weight * badly_scaled()) if weight.imag else badly_scaled()
+    columns, x, order = Columns(matrix.data, matrix.indices, matrix.indptr), rng.normal(size=30), rng.permutation(30)
+    x = x.astype(matrix.dtype)
+    assert_array_equal(columns.in_order(order).matrix.toarray(), matrix.toarray()[np.ix_(order, order)])
+    assert_array_equal(columns.times(x), matrix @ x)
+    assert_array_equal(columns.magnitude.matrix.toarray(), np.abs(matrix.toarray()))
 
 
 def test_solve_of_one_and_several_right_hand_sides() -> None:
