@@ -12,6 +12,7 @@ import scipy.sparse as sp
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
+from petalfoil.analysis.sensitivity import sensitivity
 from petalfoil.analysis.solve import solve
 from petalfoil.analysis.static import static
 from petalfoil.mesh.axial import AxialGrid, axis_2d, axis_3d
@@ -213,3 +214,14 @@ def test_half_of_the_length_is_the_mirror_of_the_other() -> None:
     tilted = solve(stretch.replace(**{"model.symmetry": False, "operation.tilt": (1e-4, 0.0)}))
     assert abs(tilted.moment_x.item()) > 1e-4
     assert float(tilted.max_membrane_stress) > 1e6
+
+
+@pytest.mark.slow
+def test_derivatives_know_what_stretches() -> None:
+    """By Poisson's ratio, which couples strains along and across: against equilibria that are solved again."""
+    at_nodes = case("paper_n8_spatial", **GRID, **{"petals.theory": "shell", "model.contacts": "nodes"})
+    told = sensitivity(at_nodes, vary=["petals.poisson_ratio"], of=["force_y"], contacts="nodes")
+    step = 3e-7
+    more, less = (solve(at_nodes.replace(**{"petals.poisson_ratio": 0.3 + way})) for way in (step, -step))
+    by_differences = (more.force_y.item() - less.force_y.item()) / (2.0 * step)
+    assert told.derivative.item() == pytest.approx(by_differences, rel=1e-5)
