@@ -79,7 +79,7 @@ What they share:
 `classic_method.py`    the paper's own method
 `friction_told.py`     which friction forces between petals an equilibrium has
 `contact_model.py`     where contacts are, and the equilibrium that results are taken from
-`evaluation.py`        a solution evaluated once, as typed parts
+`evaluation.py`        results of a solution, such as `min_film_thickness`, as typed parts
 `extremes.py`          extremes between nodes
 `heat_results.py`      temperatures and where the heat goes
 `thermal_limit.py`     the speed above which no temperature is steady

@@ -11,7 +11,7 @@
 `point_equations.py`     film and petals with contact points as unknowns
 `asperity_equations.py`  film and petals with contact pressures over asperities
 `loaded.py`              the journal's position unknown, a load given
-`friction.py`            friction between petals, and a problem with it
+`friction.py`            residual of the friction forces between petals, and a problem with it
 `time_step.py`           an implicit step in time: the film stores gas
 `shaft_layout.py`        what stays the same of two bearings on one shaft
 `on_shaft.py`            both side by side in a step in time
