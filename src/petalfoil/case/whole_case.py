@@ -114,7 +114,7 @@ def _history_problems(case: Case) -> Iterator[Problem]:
         return
     if not case.surface.petal_friction > 0.0:
         lacks = "surface.petal_friction above 0"
-    elif case.petal_theory is not PetalTheory.SHELL:
+    elif case.petal_theory is not PetalTheory.SHELL or case.model.kind is ModelKind.THREE_D:
         lacks = 'petals that slide along themselves (2-D, petals.theory = "shell")'
     else:
         lacks = "one temperature (no [heat]), and bearings that share the load of a rotor evenly"
