@@ -262,14 +262,25 @@ def check_amplitude(case: Case, asked: CoefficientRequest) -> None:
     """
     if asked.amplitude is None:
         return
-    required(case, Capability.RUBBING, "an amplitude")
-    if not case.surface.petal_friction > 0.0:
-        raise UsageError("an amplitude says how far petals rub, and here none do: surface.petal_friction is 0")
+    check_rubbing(case)
     if np.any(asked.frequencies == 0.0):
         raise UsageError(
             "with an amplitude, whirl frequencies must be above zero: what friction takes in a cycle does not vanish "
             "with the frequency, so its equivalent damping has no bound"
         )
+
+
+def check_rubbing(case: Case) -> None:
+    """Refuse an amplitude where no petals rub.
+
+    Raises
+    ------
+    UsageError
+        None do.
+    """
+    required(case, Capability.RUBBING, "an amplitude")
+    if not case.surface.petal_friction > 0.0:
+        raise UsageError("an amplitude says how far petals rub, and here none do: surface.petal_friction is 0")
 
 
 def check_loss(case: Case, asked: CoefficientRequest) -> None:

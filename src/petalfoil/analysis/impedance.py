@@ -56,7 +56,7 @@ def elastic_and_sliding(case: Case, answer: Solution) -> tuple[Motion, SlidingCo
     sliding = sliding_at(case, answer)
     if answer.friction is not None and sliding is not None:  # a contact that sticks does not travel
         stuck = SmallMotion.at_nodes(answer, sliding.sticking(len(answer.x)))
-        return replace(stuck, contact_model=HELD_AT_NODES), sliding
+        return replace(stuck, contact_model=HELD_AT_NODES, stuck=sliding.friction), sliding
     if sliding is None and answer.lines is not None:
         return answer.lines.motion, None
     motion = SmallMotion.about(answer, None if sliding is None else sliding.sticking(len(answer.x)))
@@ -66,7 +66,7 @@ def elastic_and_sliding(case: Case, answer: Solution) -> tuple[Motion, SlidingCo
             history=current_run().history,
             advice="lower the load, or ask `balance` what part of it solid contact carries",
         )
-    return motion, sliding
+    return (motion if sliding is None else replace(motion, stuck=sliding.friction)), sliding
 
 
 def on_elements(case: Case, found: ElementEquilibrium) -> tuple[Motion, SlidingContacts | None]:

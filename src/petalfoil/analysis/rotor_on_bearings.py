@@ -21,6 +21,8 @@ from petalfoil.dynamics.joint_motion import JointMotion
 from petalfoil.dynamics.natural_modes import Mode, natural_modes
 from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.dynamics.rotor_motion import Inertia
+from petalfoil.dynamics.rubbing_modes import NeutralWhirls, RubbingRotor
+from petalfoil.dynamics.rubbing_whirl import RubbingWhirl
 from petalfoil.equilibrium.element_response import ElementMotion
 from petalfoil.equilibrium.element_tangent import NoPointsError
 from petalfoil.equilibrium.point_contacts import PointContacts, followed
@@ -41,10 +43,13 @@ class RotorOnBearings:
         The bearing; where the rotor runs in two of them, on the grid of its whole length.
     mass : float
         Mass of the rotor [kg]; nan where none is known.
+    amplitude : float or None
+        Amplitude of the whirl at which petals rub [m]; None where they stick.
     """
 
     case: Case
     mass: float
+    amplitude: float | None = None
 
     @cached_property
     def inertia(self) -> Inertia:
@@ -119,12 +124,17 @@ class RotorOnBearings:
         return JointMotion(tuple(elastic(support.case, state) for support, state in both), (first, second))
 
     def whirl(self, impedance: Impedance, speed: float) -> Whirl:
-        """The first neutral whirl at a speed [rad/s]."""
-        return neutral_whirl(impedance, speed, None if self.case.bearings == 1 else self.inertia)
+        """The first neutral whirl at a speed [rad/s]; with an amplitude one that goes on with it."""
+        if self.amplitude is None:
+            return neutral_whirl(impedance, speed, None if self.case.bearings == 1 else self.inertia)
+        inertia = Inertia.of_mass(1.0) if self.case.bearings == 1 else self.inertia
+        return NeutralWhirls(RubbingWhirl.of(impedance.motion, self.amplitude), inertia, speed).least()
 
     def modes(self, impedance: Impedance, speed: float) -> list[Mode]:
-        """The natural modes at a speed [rad/s]."""
-        return natural_modes(impedance, self.inertia, speed)
+        """The natural modes at a speed [rad/s], and at the amplitude if there is one."""
+        if self.amplitude is None:
+            return natural_modes(impedance, self.inertia, speed)
+        return RubbingRotor(RubbingWhirl.of(impedance.motion, self.amplitude), self.inertia, speed).modes(impedance)
 
 
 def whole_length(case: Case) -> Case:

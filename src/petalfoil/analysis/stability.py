@@ -13,7 +13,7 @@ import numpy as np
 from petalfoil.analysis.arguments import Load, Loads, Mass, Speed, Speeds
 from petalfoil.analysis.campbell import BRANCHES, CRITICAL, Branches
 from petalfoil.analysis.classic_method import newton_only
-from petalfoil.analysis.coefficients import state_parts
+from petalfoil.analysis.coefficients import Amplitude, Amplitudes, check_rubbing, state_parts
 from petalfoil.analysis.contact_model import ContactModel
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.operating_point import OperatingPoint, Vector, applied_load, at, operating_point
@@ -126,7 +126,7 @@ class RotorThreshold:
     SinglePoint(lists=MODES, histories=(TILT, *MODE_BARS), table=MODE_TABLE),
     GRID,
     Campbell(lists=(*MODES, CRITICAL), histories=(TILT,), table=CAMPBELL_TABLE, at=at_speed),
-    excludes={"speed": ("speeds",), "load": ("loads",), "mass": ("loads",)},
+    excludes={"speed": ("speeds",), "load": ("loads",), "mass": ("loads",), "amplitude": ("speeds", "loads")},
     results={CRITICAL: Variable(("mode",), "rad s-1", "speed at which the natural frequency is the speed", "omega_c")},
     error_bars=True,
 )
@@ -138,31 +138,35 @@ def stability(  # noqa: PLR0913 - the options of the verb
     speed: Speed = None,
     speeds: Speeds = None,
     loads: Loads = None,
+    amplitude: Amplitude = None,
     progress: Progress | None = None,
 ) -> Record | Points:
     """Find critical mass, threshold speed and damped natural frequencies of a rigid rotor.
 
     At the case's eccentricity, or under a load where one is given; with
     --speeds or --loads as a table over load and speed. Petals with friction
-    stick, as in the smallest motions. Where contacts of the slopes are at
-    nodes and petals lie on each other along stretches, frequencies are known
-    to several per cent, small damping to half of it. Of a rotor in two
-    bearings (rotor.span) load and masses are those of the whole rotor, and it
-    may tilt. With --speeds and --mass as a Campbell diagram: natural modes
-    over speed.
+    stick, as in the smallest motions; with an --amplitude they rub: modes
+    pass that amplitude, and a rotor of the critical mass whirls on with it.
+    Where contacts of the slopes are at nodes and petals lie on each other
+    along stretches, frequencies are known to several per cent, small damping
+    to half of it. Of a rotor in two bearings (rotor.span) load and masses are
+    those of the whole rotor, and it may tilt. With --speeds and --mass as a
+    Campbell diagram: natural modes over speed.
 
     Example: petalfoil stability case.toml --load "20 N" --mass "2 kg"
 
     Raises
     ------
     UsageError
-        The shaft does not turn, or there is no load where a table needs one.
+        The shaft does not turn, there is no load where a table needs one, or nothing rubs at an amplitude.
     ConvergenceError
         The operating point was not found, or the pack is bottomed out.
     """
     newton_only(case)
     if speeds is None and loads is None:
-        return point(turning(at(case, speed)), load, mass, progress)
+        if amplitude is not None:
+            check_rubbing(case)
+        return point(turning(at(case, speed)), load, (mass, amplitude), progress)
     if speeds is not None and mass is not None:
         over = [turning(at(case, omega)) for omega in speeds]
         return Points(partial(_campbell, over, load, mass, progress), len(over), layout=Campbell)
@@ -179,24 +183,31 @@ def turning(case: Case) -> Case:
     return case
 
 
-def point(case: Case, load: Vector | None, mass: float | None, progress: Progress | None) -> Record:
-    """Critical mass at the operating point, the speed at which a rotor of `mass` [kg] becomes unstable, and its modes.
+def point(
+    case: Case, load: Vector | None, rotor_asked: tuple[float | None, float | None], progress: Progress | None
+) -> Record:
+    """Critical mass at the operating point, the speed at which the rotor becomes unstable, and its modes.
 
-    Without `mass` that of the case's rotor is taken, without one the load over gravity; without a load there are no
-    threshold speed (nan) and no modes.
+    `rotor_asked` are its mass [kg] and the amplitude [m] of its whirl. Without a mass that of the case's rotor is
+    taken, without one the load over gravity; without a load there are no threshold speed (nan) and no modes.
     """
+    mass, amplitude = rotor_asked
     with running(progress, "stability") as run:
-        speed, rotor = case.operation.speed, RotorOnBearings(whole_length(case), rotor_mass(case, load, mass))
+        speed = case.operation.speed
+        rotor = RotorOnBearings(whole_length(case), rotor_mass(case, load, mass), amplitude)
         found = operating_point(rotor.case, load)
         impedance = rotor.impedance(found.answer)
         whirl = rotor.whirl(impedance, speed)
         modes = None if math.isnan(rotor.mass) else rotor.modes(impedance, speed)
-        threshold, ended = threshold_speed(rotor, load, AtOwnSpeed(found.answer, impedance.motion, whirl))
-        contacts = ContactModel.of_motion(impedance.motion)
+        if amplitude is None:
+            threshold, ended = threshold_speed(rotor, load, AtOwnSpeed(found.answer, impedance.motion, whirl))
+        else:
+            threshold, ended = math.nan, "no threshold speed at an amplitude"
         parts = (
             RotorThreshold(rotor.mass, threshold),
+            *(() if amplitude is None else (Amplitudes(amplitude),)),
             *whirl_parts(case, found, whirl, ended),
-            contacts,
+            ContactModel.of_motion(impedance.motion),
             effort(run.seconds),
         )
         fields, coords = ({}, {}) if modes is None else mode_fields(modes, speed, tilts=case.bearings > 1)

@@ -8,6 +8,8 @@
 `critical_mass.py`         smallest unstable mass of a rigid rotor
 `natural_modes.py`         damped natural motions of a rigid rotor
 `harmonic_balance.py`      friction between petals in a whirl of given amplitude
+`rubbing_whirl.py`         the bearing in such a whirl, on an ellipse of any shape
+`rubbing_modes.py`         natural modes and neutral whirls at that amplitude
 `speed_schedule.py`        speed and angle of the shaft over time
 `rotor_motion.py`          mass, loads and unbalance in the units of the problem
 `time_state.py`            state at an instant

@@ -69,6 +69,11 @@ class SlidingContacts:
         law = friction.in_step(lam).among(kept)
         return cls(law, law.coefficient * normal[kept])
 
+    @classmethod
+    def of_stuck(cls, friction: Friction) -> SlidingContacts:
+        """Those of contacts that carry load, from the law in which they stick: `k s_f = mu N`."""
+        return cls(friction, friction.stiffness * friction.width)
+
     def sticking(self, n: int) -> sp.csc_array:
         """What adds to the tangent where all of them stick and nothing stretches, (n, n)."""
         return friction_tangent(self.friction, self.friction.stiffness, n)

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from petalfoil.equilibrium.small_motion import AT_NODES
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.travelling_contacts import TravellingContacts
+from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.problem import Border
 from petalfoil.solvers.reduced_model import MovedSystem
 from petalfoil.solvers.sparse_lu import LinearSolver
@@ -51,6 +52,8 @@ class SmallMotion:
         What friction between petals that stick adds to the tangent (E11).
     contact_model : str
         Where its contacts are, for people.
+    stuck : Friction or None
+        The friction that `sticking` is of.
     """
 
     problem: CoupledProblem
@@ -58,6 +61,7 @@ class SmallMotion:
     contacts: TravellingContacts
     sticking: sp.csc_array | None = None
     contact_model: str = AT_NODES
+    stuck: Friction | None = None
 
     @classmethod
     def about(cls, solution: Solution, sticking: sp.csc_array | None = None) -> SmallMotion:
@@ -79,7 +83,7 @@ class SmallMotion:
     @property
     def frictionless(self) -> Self:
         """The same, petals sliding freely on each other."""
-        return replace(self, sticking=None)
+        return replace(self, sticking=None, stuck=None)
 
     @cached_property
     def steady(self) -> sp.csc_array:

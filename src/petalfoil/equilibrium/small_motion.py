@@ -12,6 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.physics.dry_friction import Friction
 from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.solvers.reduced_model import MovedSystem
 from petalfoil.solvers.sparse_lu import LinearSolver
@@ -229,6 +230,10 @@ class JournalMotion(Protocol):
 
 class Motion(JournalMotion, Protocol):
     """The system about one equilibrium, whatever the frequency."""
+
+    @property
+    def stuck(self) -> Friction | None:
+        """Friction in contacts that carry load and stick; None without any."""
 
     @property
     def frictionless(self) -> Self:

@@ -1,0 +1,254 @@
+"""Free whirls of a rotor while petals rub, at a stated amplitude: natural modes and the neutral whirl (E18), (E19).
+
+    omega^2 (M s^2 + G s) v + Z(s) v + N(s, a, v) = 0                  with complex s                    (E19)
+
+A natural mode passes the amplitude `a` with the frequency `Im s` and decays or grows there at the rate `Re s`; a
+neutral whirl goes on with it. Both are solved by Levenberg and Marquardt's method in `s` (or the eigenvalue) and the
+shape `v`, one of whose coordinates is 1. Modes are led from those in which petals stick, by raising the amplitude from
+the largest at which all of them do; those without friction are tried as well.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from petalfoil.dynamics.critical_mass import SCAN, Whirl, whirl_impedance, whirls_at_any_mass
+from petalfoil.dynamics.natural_modes import Mode, natural_modes, orbit, same, shows, tilt_of, upper
+from petalfoil.dynamics.reduced_impedance import Impedance
+from petalfoil.dynamics.rotor_motion import Inertia
+from petalfoil.dynamics.rubbing_whirl import IN_PLANE, RubbingWhirl
+from petalfoil.equilibrium.run_context import current_run
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+PRECISION = 1e-12
+"""Relative change of the unknowns after which a solution is found."""
+
+SOLVED = 1e-8
+"""Residual over the stiffness of the bearing below which it is one."""
+
+EVALUATIONS = 60
+"""Most evaluations for one solution: ten to forty are typical."""
+
+RAISED = 2.0
+"""Factor between amplitudes that a mode is led through."""
+
+LOOKS = (0.1, 0.25, 0.5, 0.9)
+"""Whirl ratios near which neutral whirls are looked for: those of gas bearings are at a half and below."""
+
+
+def packed(first: complex, v: Complex, pivot: int) -> Array:
+    """Real unknowns: a complex number, then the shape, whose coordinate `pivot` is 1 and left out."""
+    z = np.append(first, np.delete(v / v[pivot], pivot))
+    return np.concatenate([z.real, z.imag])
+
+
+def unpacked(z: Array, pivot: int) -> tuple[complex, Complex]:
+    """The number and the shape."""
+    both = z[: len(z) // 2] + 1j * z[len(z) // 2 :]
+    return complex(both[0]), np.insert(both[1:], pivot, 1.0)
+
+
+@dataclass(frozen=True)
+class Found:
+    """A number and a shape that solve their equations.
+
+    Attributes
+    ----------
+    number : complex
+        `s`, or an eigenvalue.
+    v : (d,) array
+        The shape.
+    slope : (2 d, 2 d) array
+        Derivative of the real residual by real unknowns, the number over `unit` among them.
+    unit : float
+        Unit of the number.
+    """
+
+    number: complex
+    v: Complex
+    slope: Array
+    unit: float
+
+
+def solved(
+    residual: Callable[[complex, Complex], Complex], start: tuple[complex, Complex], size: float
+) -> Found | None:
+    """Solution near `start`, the residual below `SOLVED` times `size`; None if none is found."""
+    pivot, unit = int(np.argmax(np.abs(start[1]))), abs(start[0]) or 1.0
+
+    def real(z: Array) -> Array:
+        number, v = unpacked(z, pivot)
+        left = residual(unit * number, v) / size
+        return np.concatenate([left.real, left.imag])
+
+    begin = packed(start[0] / unit, start[1], pivot)
+    found = least_squares(
+        real, begin, method="lm", max_nfev=EVALUATIONS, xtol=PRECISION, ftol=PRECISION, gtol=PRECISION
+    )
+    if not np.max(np.abs(found.fun)) <= SOLVED:
+        return None
+    number, v = unpacked(found.x, pivot)
+    return Found(unit * number, v, size * found.jac, unit)
+
+
+# ------------------------------------------------------------------------------------------ natural modes
+
+
+def across(v: Complex) -> Complex:
+    """A shape at right angles to `v` in the plane of the journal: the other of a pair of modes."""
+    other = v.copy()
+    other[IN_PLANE] = -v[1].conj(), v[0].conj()
+    return other
+
+
+@dataclass(frozen=True)
+class RubbingRotor:
+    """A rotor on bearings whose petals rub.
+
+    Attributes
+    ----------
+    whirl : RubbingWhirl
+        The bearings and the amplitude.
+    inertia : Inertia
+        The rotor's.
+    speed : float
+        Angular speed of the shaft [rad/s].
+    """
+
+    whirl: RubbingWhirl
+    inertia: Inertia
+    speed: float
+
+    def modes(self, stuck: Impedance) -> list[Mode]:
+        """The natural modes at the amplitude that show a resonance or grow, by frequency.
+
+        `stuck` is the impedance of petals that stick. A mode that is lost on the way is told by the run log.
+        """
+        every = [self.led(start) for start in self.starts(stuck)]
+        every += [self.near(start) for start in self.starts(whirl_impedance(self.whirl.frictionless))]
+        known = [one for one in every if one is not None]
+        every += [self.near((one.number, across(one.v))) for one in known]
+        modes: list[Mode] = []
+        for mode in (self.mode(one) for one in every if one is not None):
+            if shows(mode.s) and not any(same(mode, other) for other in modes):
+                modes.append(mode)
+        current_run().note("modes", found=len(modes), lost=sum(one is None for one in every))
+        return sorted(modes, key=lambda mode: mode.s.imag)
+
+    def starts(self, impedance: Impedance) -> Iterator[tuple[complex, Complex]]:
+        """Eigenvalues and shapes of the modes on a linear bearing."""
+        for mode in natural_modes(impedance, self.inertia, self.speed):
+            D = self.inert(mode.s) + impedance.at(mode.s)
+            yield mode.s, np.linalg.svd(D)[2][-1].conj()
+
+    def inert(self, s: complex) -> Complex:
+        """`omega^2 (M s^2 + G s)`, (d, d) [N/m]."""
+        return np.asarray(self.speed**2 * (self.inertia.mass * s**2 + self.inertia.gyroscopic * s))
+
+    def near(self, start: tuple[complex, Complex]) -> Found | None:
+        """The mode near `start`; None if none is found."""
+
+        def residual(s: complex, v: Complex) -> Complex:
+            left: Complex = self.inert(s) @ v + self.whirl.resistance(self.whirl.at(s), v)
+            return left
+
+        return solved(residual, start, float(np.linalg.norm(self.inert(start[0]))))
+
+    def led(self, start: tuple[complex, Complex]) -> Found | None:
+        """The mode at the amplitude, from one in which petals stick; None where it is lost."""
+        amplitude, found = self.whirl.amplitude, None
+        sticks = min(self.whirl.sticks(start), amplitude)
+        for step in range(math.ceil(math.log(amplitude / sticks, RAISED)), -1, -1):
+            whirl = replace(self.whirl, amplitude=amplitude / RAISED**step)
+            found = replace(self, whirl=whirl).near(start)
+            if found is None:
+                return None
+            start = found.number, found.v
+        return found
+
+    def mode(self, found: Found) -> Mode:
+        """A solution as a mode. Its participation (E9) is that of the nonlinear equations, the amplitude held."""
+        by_mass = self.inert(found.number) @ found.v
+        moved = np.linalg.solve(found.slope, -np.concatenate([by_mass.real, by_mass.imag]))
+        change = found.unit * complex(moved[0], moved[len(moved) // 2])
+        share = 2.0 * abs(change / found.number)
+        return Mode(upper(found.number), share, orbit(found.v), tilt_of(found.v))
+
+
+# ------------------------------------------------------------------------------------------ the neutral whirl
+
+
+@dataclass(frozen=True)
+class NeutralWhirls:
+    """Whirls at the amplitude that neither grow nor die out, for rotors of any mass.
+
+    Attributes
+    ----------
+    whirl : RubbingWhirl
+        The bearings and the amplitude.
+    inertia : Inertia
+        That of a rotor of any mass, whose inertias are in proportion to it.
+    speed : float
+        Angular speed of the shaft [rad/s].
+    """
+
+    whirl: RubbingWhirl
+    inertia: Inertia
+    speed: float
+
+    def least(self) -> Whirl:
+        """The one of the smallest mass; infinite if none is found.
+
+        They are looked for from several whirl ratios, and there from the shapes of linear bearings (petals that stick,
+        petals without friction) and from circles both ways.
+        """
+        if whirls_at_any_mass(self.whirl.frictionless):
+            return Whirl(0.0, 0.5)
+        found = [self.near(nu, v) for nu in LOOKS for v in self.shapes(nu)]
+        return min((one for one in found if one is not None), key=lambda one: one.mass, default=Whirl(np.inf, np.nan))
+
+    def shapes(self, nu: float) -> Iterator[Complex]:
+        """Shapes to begin with at a whirl ratio."""
+        gradient = self.whirl.frictionless.growing(1j * nu, current_run().probe_solver).force_gradient
+        yield from np.linalg.eig(np.linalg.solve(self.shape(nu), gradient))[1].T
+        for turn in (1j, -1j):
+            circle = np.zeros(len(gradient), dtype=complex)
+            circle[IN_PLANE] = 1.0, -turn
+            yield circle
+
+    def shape(self, nu: float) -> Complex:
+        """`(M - i G / nu) / m`, inertia over mass at a whirl ratio, (d, d) [1]."""
+        return np.asarray((self.inertia.mass - 1j * self.inertia.gyroscopic / nu) / self.inertia.mass[0, 0])
+
+    def near(self, nu: float, v: Complex) -> Whirl | None:
+        """The neutral whirl near a whirl ratio and a shape; None if none is found there, or none of a positive mass."""
+        resists = self.whirl.resistance(self.whirl.at(1j * nu), v)
+        value = float((v.conj() @ resists / (v.conj() @ self.shape(nu) @ v)).real)
+        if not value > 0.0:
+            return None
+
+        def residual(logarithms: complex, v: Complex) -> Complex:
+            ratio, size = within(nu * math.exp(logarithms.real)), value * math.exp(logarithms.imag)
+            left: Complex = self.whirl.resistance(self.whirl.at(1j * ratio), v) - size * (self.shape(ratio) @ v)
+            return left
+
+        found = solved(residual, (0.0, v), value * float(np.linalg.norm(v)))
+        if found is None:
+            return None
+        ratio = nu * math.exp(found.number.real)
+        if within(ratio) != ratio:
+            return None
+        return Whirl(value * math.exp(found.number.imag) / (ratio * self.speed) ** 2, ratio)
+
+
+def within(ratio: float) -> float:
+    """The nearest whirl ratio of those that are looked at."""
+    return float(np.clip(ratio, SCAN[0], SCAN[-1]))

@@ -1,0 +1,174 @@
+"""A bearing whose petals rub while the journal moves on an ellipse of a stated size (E18).
+
+In `e = Re(a v exp(s tau))` every contact slips on a cycle of its own size, and friction has the equivalent stiffness
+(E10) there. With the slips `s_v` that the ellipse `v` gives without friction, (E11) has one solution, and the force
+
+    dF = -Z(s) v - N(s, a, v)                                                                          (E18)
+
+is homogeneous in `v` but not linear. Unlike columns of stiffness and damping it does not depend on the directions of
+the axes. Its free whirls are in `rubbing_modes.py`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
+from petalfoil.dynamics.joint_motion import JointMotion
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.small_motion import JournalMotion, Motion, Response
+from petalfoil.system.friction import against_slip, slips
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+IN_PLANE = slice(0, 2)
+"""Coordinates of a journal's centre; slopes of its axis follow."""
+
+
+def half_axis(v: Complex) -> float:
+    """Major half axis of the ellipse `Re(v exp(i tau))`, v of shape (2,)."""
+    return float(np.sqrt(0.5 * (np.linalg.norm(v) ** 2 + abs(v @ v))))
+
+
+@dataclass(frozen=True)
+class RubbingBearing:
+    """One bearing.
+
+    Attributes
+    ----------
+    motion : Motion
+        Small motions without friction.
+    sliding : SlidingContacts or None
+        Contacts that slide and carry load; None without any.
+    by_shaft : (n_position, d) array
+        Displacement of its journal by the coordinates of the motion.
+    units : (float, float)
+        Unit of length of the first bearing over its own, unit of force of its own over that of the first.
+    """
+
+    motion: Motion
+    sliding: SlidingContacts | None
+    by_shaft: Array
+    units: tuple[float, float]
+
+    @classmethod
+    def of(cls, motion: Motion, by_shaft: Array, units: tuple[float, float]) -> RubbingBearing:
+        """From small motions in which petals stick."""
+        sliding = None if motion.stuck is None else SlidingContacts.of_stuck(motion.stuck)
+        return cls(motion.frictionless, sliding, by_shaft, units)
+
+    def at(self, s: complex) -> RubbingResponse:
+        """The response to motions in `exp(s tau)`; one factorisation, and a solve for each contact."""
+        response = self.motion.growing(s, current_run().probe_solver)
+        if self.sliding is None:
+            return RubbingResponse(self, response, np.zeros((0, 0), dtype=complex))
+        return RubbingResponse(self, response, FrictionCycle(self.sliding, response, 1.0).compliance())
+
+
+@dataclass(frozen=True)
+class RubbingResponse:
+    """One bearing at one rate of change, factorised.
+
+    Attributes
+    ----------
+    bearing : RubbingBearing
+        The bearing.
+    response : Response
+        Linear response without friction.
+    compliance : (k, k) array
+        Slips against unit friction forces.
+    """
+
+    bearing: RubbingBearing
+    response: Response
+    compliance: Complex
+
+    def sticks(self, v: Complex, scale: float) -> float:
+        """Part of the amplitude `scale`, of a shaft that moves by `v`, up to which contacts stick; inf without any."""
+        sliding = self.bearing.sliding
+        if sliding is None or not len(sliding.limit):
+            return np.inf
+        free = slips(sliding.friction, self.response.units @ (self.bearing.units[0] * (self.bearing.by_shaft @ v)))
+        stiffness = sliding.friction.stiffness
+        slip = np.linalg.solve(np.eye(len(free)) + self.compliance * stiffness, free)
+        return float(np.min(sliding.limit / (stiffness * scale * np.abs(slip))))
+
+    def force(self, v: Complex, scale: float) -> Complex:
+        """Force on the shaft that moves by `scale * v` (d,), over `scale` and the units of the first bearing; (d,) [1].
+
+        Raises
+        ------
+        ConvergenceError
+            Slips and friction did not agree.
+        """
+        (length, unit), arm, sliding = self.bearing.units, self.bearing.by_shaft, self.bearing.sliding
+        e = length * (arm @ v)
+        total = self.response.force_gradient @ e
+        if sliding is not None:
+            cycle, n = FrictionCycle(sliding, self.response, scale), len(self.response.units)
+            slip = cycle.settled(slips(sliding.friction, self.response.units @ e), self.compliance)
+            against = sliding.equivalent(slip, scale)[0] * slip
+            total = total + self.response.forced(-against_slip(sliding.friction, against, n))[1]
+        return np.asarray(unit * (arm.T @ total), dtype=np.complex128)
+
+
+@dataclass(frozen=True)
+class RubbingWhirl:
+    """Bearings of a rotor whose journals whirl at one amplitude.
+
+    Attributes
+    ----------
+    bearings : tuple of RubbingBearing
+        One, or both.
+    amplitude : float
+        Largest displacement of a journal's centre, over the reference length [1].
+    stiffness_unit : float
+        Unit of force over unit of length [N/m].
+    """
+
+    bearings: tuple[RubbingBearing, ...]
+    amplitude: float
+    stiffness_unit: float
+
+    @classmethod
+    def of(cls, motion: JournalMotion, amplitude: float) -> RubbingWhirl:
+        """From small motions in which petals stick, at an amplitude [m]."""
+        scales = motion.problem.layout.scales
+        if isinstance(motion, JointMotion):
+            each = zip(motion.parts, motion.by_shaft, motion.units, strict=True)
+            bearings = tuple(RubbingBearing.of(*one) for one in each)
+        else:
+            alone = cast(Motion, motion)  # what is not both bearings is one
+            bearings = (RubbingBearing.of(alone, np.eye(alone.problem.layout.n_position), (1.0, 1.0)),)
+        return cls(bearings, amplitude / scales.length, scales.force / scales.length)
+
+    @property
+    def frictionless(self) -> JournalMotion:
+        """Small motions without friction, of one bearing or of both."""
+        if len(self.bearings) == 1:
+            return self.bearings[0].motion
+        return JointMotion(tuple(one.motion for one in self.bearings), tuple(one.by_shaft for one in self.bearings))
+
+    def scale(self, v: Complex) -> float:
+        """Amplitude over the major half axis of the largest ellipse that `v` (d,) stands for."""
+        return self.amplitude / max(half_axis((one.by_shaft @ v)[IN_PLANE]) for one in self.bearings)
+
+    def at(self, s: complex) -> tuple[RubbingResponse, ...]:
+        """The responses to motions in `exp(s tau)`."""
+        return tuple(one.at(s) for one in self.bearings)
+
+    def sticks(self, motion: tuple[complex, Complex]) -> float:
+        """Amplitude over the reference length up to which all contacts stick in a motion `s`, `v`."""
+        s, v = motion
+        return self.amplitude * min(one.sticks(v, self.scale(v)) for one in self.at(s))
+
+    def resistance(self, responses: tuple[RubbingResponse, ...], v: Complex) -> Complex:
+        """`Z v + N(v)` [N/m], what resists an ellipse of the shape `v`, for each unit of `v`; (d,)."""
+        scale = self.scale(v)
+        total: Complex = -self.stiffness_unit * np.sum([one.force(v, scale) for one in responses], axis=0)
+        return total
