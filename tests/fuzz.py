@@ -132,6 +132,7 @@ def main() -> None:
     drawn = {one.number: one for one in earlier if one.number in wanted}
     with ProcessPoolExecutor(asked.jobs) as pool, into.open("w") as file:
         file.writelines(line(one) for one in earlier)
+        file.flush()  # a run that is stopped before its first outcome loses nothing
         left = [number for number in wanted if number not in drawn]
         for done in as_completed(pool.submit(solved, number, asked.edges, asked.nodes) for number in left):
             one = done.result()

@@ -278,6 +278,7 @@ def main() -> None:
         wanted = [run for run in in_rounds(asked.first, asked.count, asked.verbs) if run not in known]
         with ProcessPoolExecutor(asked.jobs) as pool, into.open("w") as file:
             file.writelines(line(one) for one in done)
+            file.flush()  # a run that is stopped before its first outcome loses nothing
             for run in as_completed(pool.submit(ran, *which, asked.seconds) for which in wanted):
                 done.append(run.result())
                 file.write(line(done[-1]))
