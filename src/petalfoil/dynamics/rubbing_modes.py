@@ -57,7 +57,7 @@ def unpacked(z: Array, pivot: int) -> tuple[complex, Complex]:
 
 
 @dataclass(frozen=True)
-class RubbingWhirl:
+class Eigenpair:
     """A number and a shape that solve their equations.
 
     Attributes
@@ -80,7 +80,7 @@ class RubbingWhirl:
 
 def solved(
     residual: Callable[[complex, Complex], Complex], start: tuple[complex, Complex], size: float
-) -> RubbingWhirl | None:
+) -> Eigenpair | None:
     """Solution near `start`, the residual below `SOLVED` times `size`; None if none is found."""
     pivot, unit = int(np.argmax(np.abs(start[1]))), abs(start[0]) or 1.0
 
@@ -96,7 +96,7 @@ def solved(
     if not np.max(np.abs(found.fun)) <= SOLVED:
         return None
     number, v = unpacked(found.x, pivot)
-    return RubbingWhirl(unit * number, v, size * found.jac, unit)
+    return Eigenpair(unit * number, v, size * found.jac, unit)
 
 
 # ------------------------------------------------------------------------------------------ natural modes
@@ -153,7 +153,7 @@ class RubbingRotor:
         """`omega^2 (M s^2 + G s)`, (d, d) [N/m]."""
         return np.asarray(self.speed**2 * (self.inertia.mass * s**2 + self.inertia.gyroscopic * s))
 
-    def near(self, start: tuple[complex, Complex]) -> RubbingWhirl | None:
+    def near(self, start: tuple[complex, Complex]) -> Eigenpair | None:
         """The mode near `start`; None if none is found."""
 
         def residual(s: complex, v: Complex) -> Complex:
@@ -162,7 +162,7 @@ class RubbingRotor:
 
         return solved(residual, start, float(np.linalg.norm(self.inert(start[0]))))
 
-    def led(self, start: tuple[complex, Complex]) -> RubbingWhirl | None:
+    def led(self, start: tuple[complex, Complex]) -> Eigenpair | None:
         """The mode at the amplitude, from one in which petals stick; None where it is lost."""
         amplitude, found = self.whirl.amplitude, None
         sticks = min(self.whirl.sticks(start), amplitude)
@@ -174,7 +174,7 @@ class RubbingRotor:
             start = found.number, found.v
         return found
 
-    def mode(self, found: RubbingWhirl) -> Mode:
+    def mode(self, found: Eigenpair) -> Mode:
         """A solution as a mode. Its participation (E9) is that of the nonlinear equations, the amplitude held."""
         by_mass = self.inert(found.number) @ found.v
         moved = np.linalg.solve(found.slope, -np.concatenate([by_mass.real, by_mass.imag]))
