@@ -53,6 +53,10 @@ def barred(name: str, record: Record, mode: int, shown_as: str = "") -> Cell:
     return found[0] if bars is None and not shown_as else " ± ".join(shown)
 
 
+AT_AMPLITUDE = "no threshold speed at an amplitude"
+"""What is told of the threshold speed of a rotor whose petals rub."""
+
+
 MODE_TABLE = ArrayTable(
     dim="mode",
     columns={
@@ -202,7 +206,7 @@ def point(
         if amplitude is None:
             threshold, ended = threshold_speed(rotor, load, AtOwnSpeed(found.answer, impedance.motion, whirl))
         else:
-            threshold, ended = math.nan, "no threshold speed at an amplitude"
+            threshold, ended = math.nan, AT_AMPLITUDE
         parts = (
             RotorThreshold(rotor.mass, threshold),
             *(() if amplitude is None else (Amplitudes(amplitude),)),
@@ -217,6 +221,8 @@ def point(
 def whirl_parts(case: Case, found: OperatingPoint, whirl: Whirl, ended: str) -> tuple[object, ...]:
     """The state and its critical mass; what has no number is told by the status."""
     any_mass = {0.0: "whirls at half the speed at any speed and rotor mass", math.inf: "stable for any rotor mass"}
+    if ended == AT_AMPLITUDE:
+        any_mass[math.inf] = "no whirl was found that goes on at the amplitude"
     remarks = ["converged", any_mass.get(whirl.mass, ""), ended]
     outcome = RunOutcome(status="; ".join(filter(None, remarks)), residual=found.answer.reported_residual)
     return *state_parts(case, found), CriticalMass(whirl.mass, whirl.ratio), outcome
