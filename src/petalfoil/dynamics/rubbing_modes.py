@@ -40,6 +40,9 @@ EVALUATIONS = 60
 RAISED = 2.0
 """Factor between amplitudes that a mode is led through."""
 
+FAR = 20.0
+"""Logarithms of whirl ratio and mass over those begun with beyond which a search has gone astray."""
+
 LOOKS = (0.1, 0.25, 0.5, 0.9)
 """Whirl ratios near which neutral whirls are looked for: those of gas bearings are at a half and below."""
 
@@ -236,12 +239,15 @@ class NeutralWhirls:
             return None
 
         def residual(logarithms: complex, v: Complex) -> Complex:
-            ratio, size = within(nu * math.exp(logarithms.real)), value * math.exp(logarithms.imag)
+            by_ratio, by_size = np.clip([logarithms.real, logarithms.imag], -FAR, FAR)
+            ratio, size = within(nu * math.exp(by_ratio)), value * math.exp(by_size)
             left: Complex = self.whirl.resistance(self.whirl.at(1j * ratio), v) - size * (self.shape(ratio) @ v)
             return left
 
         found = solved(residual, (0.0, v), value * float(np.linalg.norm(v)))
         if found is None:
+            return None
+        if max(abs(found.number.real), abs(found.number.imag)) >= FAR:
             return None
         ratio = nu * math.exp(found.number.real)
         if within(ratio) != ratio:
