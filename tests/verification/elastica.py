@@ -18,6 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_bvp
 
+from petalfoil.case import Case
+from petalfoil.physics.petal_elements import PetalElements
+from petalfoil.solvers.lcp import solve_lcp
+
 Array = NDArray[np.float64]
 Start = tuple[Array, Array, Array]
 """Mesh, states and parameters."""
@@ -119,3 +123,40 @@ def solved(rates: object, ends: object, start: Start) -> Start:
     if not found.success:
         raise ArithmeticError(found.message)
     return found.x, found.y, found.p
+
+
+NODES = 128
+"""Elements of the linear petal; its gaps are looked at on their nodes."""
+
+
+def pressed_radius(of: Case) -> float:
+    """Radius of the mid-surface of a petal on the centred journal [m]."""
+    assert of.pack is not None
+    return of.bearing.journal_radius + 0.5 * of.pack.thickness + of.surface.contact_film_thickness
+
+
+def linear_force(of: Case, radius: float) -> float:
+    """Force of the journal on one hinged petal whose free edge lies on the bore [N]."""
+    assert of.pack is not None
+    assert of.petals is not None
+    pack, D = of.pack, of.petals.bending_stiffness
+    phi = np.linspace(0.0, pack.petal_angle, NODES + 1)
+    petal = PetalElements(phi, of.bearing.length, pack.metric_radius, pack.reference_radius, D, clamped=False)
+    K = petal.stiffness.toarray()
+    free = np.delete(np.arange(len(K)), len(K) - 2)  # the free edge lies on the bore
+    inner = np.searchsorted(free, 1 + 2 * np.arange(NODES - 1))
+    compliance = np.linalg.inv(K[np.ix_(free, free)])[np.ix_(inner, inner)]
+    gaps = pack.free_radius(phi[1:-1]) - radius
+    scale = float(np.max(compliance))
+    lam = solve_lcp(compliance / scale, gaps, gaps < 0.0)
+    assert lam is not None
+    return float(lam.sum()) / scale
+
+
+def elastica_force(of: Case, radius: float) -> float:
+    """The same of an elastica of the petal's length [N]."""
+    assert of.pack is not None
+    assert of.petals is not None
+    r_m = of.pack.metric_radius
+    petal = PressedPetal(of.petals.arc_length / r_m, of.pack.bend_radius / r_m)
+    return petal.normal_force(radius / r_m) * of.petals.bending_stiffness * of.bearing.length / r_m**2

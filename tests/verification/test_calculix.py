@@ -26,9 +26,8 @@ from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.walls.sliding import stretching
 from tests.cases import case
 from tests.verification import calculix as ccx
-from tests.verification.elastica import PressedPetal
+from tests.verification.elastica import PressedPetal, elastica_force, pressed_radius
 from tests.verification.shell_helpers import Array, uniform_load
-from tests.verification.test_elastica import elastica_force, pressed_radius
 
 pytestmark = [pytest.mark.skipif(ccx.CCX is None, reason=ccx.NEEDED), pytest.mark.slow]
 
