@@ -14,8 +14,8 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -110,6 +110,37 @@ def table(drawn: Iterable[Drawn]) -> Iterator[str]:
         yield f"| {stratum} | {all_of} | {lost} | {100.0 * lost / all_of:.1f} % | {unstable} |"
 
 
+HEAD = (
+    "| stratum | ambient edges: bearings | no equilibrium found | continuous edges: bearings | no equilibrium found |"
+)
+GROUPS = {
+    "all": ("all",),
+    "hinged, clamped": ("hinged", "clamped"),
+    "with slip, without": ("slip", "no slip"),
+    "below 0.5 bar, 0.5 to 2 bar, above 2 bar": ("0.1 to 0.5 bar", "0.5 to 2 bar", "2 to 10 bar"),
+    "below 10 m/s, 10 to 100 m/s, above 100 m/s": ("0.5 to 10 m/s", "10 to 100 m/s", "100 to 400 m/s"),
+    "3 to 5, 6 to 12, 13 to 20 petals": ("3 to 6 petals", "6 to 13 petals", "13 to 20 petals"),
+    "overlap 1 to 2, 2 to 3, 3 to 3.9": ("1 to 2 overlap", "2 to 3 overlap", "3 to 3.9 overlap"),
+    "chordal roots, tilted roots": ("chordal root", "tilted root"),
+}
+"""Rows of the table of docs/random-bearings.md, and the strata that each counts one after the other."""
+
+
+def page_table(drawn: Sequence[Drawn]) -> Iterator[str]:
+    """The table of docs/random-bearings.md."""
+    bearings = Counter(stratum for one in drawn for stratum in one.strata)
+    lost = Counter(stratum for one in drawn if one.solution_path is None for stratum in one.strata)
+    yield from (HEAD, "|---|---:|---:|---:|---:|")
+    for label, parts in GROUPS.items():
+        cells = []
+        for edges in ("ambient", "continuous"):
+            among, without = ([counts[f"{edges} edges, {part}"] for part in parts] for counts in (bearings, lost))
+            cells += [", ".join(map(str, among)), ", ".join(map(str, without))]
+            if label == "all" and without[0]:
+                cells[-1] += f" ({100.0 * without[0] / among[0]:.1f} %)"
+        yield f"| {label} | {' | '.join(cells)} |"
+
+
 def line(one: Drawn) -> str:
     """One line of such a file."""
     return json.dumps(asdict(one)) + "\n"
@@ -139,7 +170,7 @@ def main() -> None:
             drawn[one.number] = one
             file.write(line(one))
             file.flush()
-    print("\n".join(table(drawn.values())))
+    print("\n".join(table(drawn.values())), "", *page_table(list(drawn.values())), sep="\n")
     print("no equilibrium found:", *sorted(number for number, one in drawn.items() if one.solution_path is None))
 
 

@@ -234,15 +234,21 @@ def in_rounds(first: int, count: int, verbs: list[str]) -> Iterator[tuple[int, s
                 yield number, verb
 
 
+HEAD = "| verb | runs | converged | typed errors | stopped by the limit | untyped errors |"
+
+
 def table(done: list[Ran]) -> Iterator[str]:
-    """Markdown rows: verb, runs, outcomes, processor time."""
-    yield "| verb | runs | outcomes | processor time of a run |\n|---|---:|---|---:|"
+    """The table of docs/random-bearings.md, the processor time of a run of each verb, and untyped errors."""
+    yield from (HEAD, "|---|---:|---:|---:|---:|---:|")
+    seconds = []
     for verb in RUNS:
         of_verb = [one for one in done if one.verb == verb]
         counts = Counter(one.outcome for one in of_verb)
-        told = ", ".join(f"{n} {kind}" for kind, n in counts.most_common())
-        mean = sum(one.seconds for one in of_verb) / max(len(of_verb), 1)
-        yield f"| {verb} | {len(of_verb)} | {told} | {mean:.2f} s |"
+        typed = len(of_verb) - sum(counts[kind] for kind in ("converged", "slow", "UNTYPED"))
+        cells = (len(of_verb), counts["converged"], typed, counts["slow"], counts["UNTYPED"])
+        yield f"| `{verb}` | {' | '.join(map(str, cells))} |"
+        seconds.append(f"{verb} {sum(one.seconds for one in of_verb) / max(len(of_verb), 1):.2f} s")
+    yield f"\nprocessor time of a run: {', '.join(seconds)}"
     for one in done:
         if one.outcome == "UNTYPED":
             yield f"bearing {one.number}, {one.verb}: {one.text}"

@@ -9,12 +9,14 @@ import pytest
 from benchmarks.page_tables import lines, standing
 from benchmarks.validation_tables import TABLES
 
+from tests import fuzz, fuzz_verbs
 from tests.docs.console import alike
 from tests.docs.texts import DOCS, ROOT, text
+from tests.verification.test_rig_table1 import script
 
 PAGES = [
     *(path for path in sorted((DOCS / "validation").glob("*.md")) if path.name != "recorded-runs.md"),
-    *(DOCS / name for name in ("paper-values.md", "validation-rig.md")),
+    *(DOCS / name for name in ("paper-values.md", "random-bearings.md", "validation-rig.md")),
 ]
 MARKED = re.compile(r"<!-- table ([\w-]+) -->\n\n.*?\n\n<!-- end of table \1 -->", re.DOTALL)
 
@@ -22,6 +24,7 @@ SCRIPTS = {
     "accuracy-3d.md": ("benchmarks/accuracy_3d.py",),
     "grid-accuracy.md": ("benchmarks/grid_accuracy.py",),
     "paper-values.md": ("examples/paper_values.py",),
+    "random-bearings.md": ("tests/fuzz.py", "tests/fuzz_verbs.py"),
     "rig-friction.md": ("examples/rig_friction.py",),
     "validation-rig.md": ("examples/rig_report.py", "examples/rig_study.py"),
 }
@@ -33,6 +36,7 @@ GIVEN = {
     "| | value | |": "what the paper prints, what is assumed",
     "| searched | from | to |": "ranges that were chosen",
     "| path | estimate | |": "estimates, each with its formula",
+    "| bearing | length over journal radius | lengthened up to | beyond |": "what refusals told, each of one command",
     "| | petal bearing of the paper | test rig of the paper | single-pad bump foil | measured bump foil |": (
         "what publications print; a test below compares the last row with the page"
     ),
@@ -63,7 +67,7 @@ def test_a_table_has_a_script_that_writes_it() -> None:
     lost = []
     for page in PAGES:
         scripts = [ROOT / name for name in SCRIPTS.get(page.name, ())]
-        assert all(script.name in text(page) for script in scripts), page.name
+        assert all(script.name in text(page) or f"tests.{script.stem} " in text(page) for script in scripts)
         for table in tables(MARKED.sub("", text(page))):
             if table[0] not in GIVEN and not any(written_by(table, script) for script in scripts):
                 lost.append((page.name, table[0]))
@@ -73,6 +77,14 @@ def test_a_table_has_a_script_that_writes_it() -> None:
 def test_what_is_given_is_still_there() -> None:
     heads = {table[0] for page in PAGES for table in tables(text(page))}
     assert set(GIVEN) <= heads
+
+
+def test_tables_of_long_runs_have_the_heads_and_labels_of_their_scripts() -> None:
+    random = tables(text(DOCS / "random-bearings.md"))
+    labels = {table[0]: [cells(line)[0] for line in table[2:]] for table in random}
+    assert labels[fuzz.HEAD] == list(fuzz.GROUPS)
+    assert sorted(labels[fuzz_verbs.HEAD]) == sorted(f"`{verb}`" for verb in fuzz_verbs.RUNS)
+    assert script("rig_study").table([]) in text(DOCS / "validation-rig.md")
 
 
 def test_marks_are_those_of_the_script() -> None:
