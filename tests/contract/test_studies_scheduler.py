@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import socket
 import subprocess
@@ -9,6 +10,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner
@@ -130,14 +132,23 @@ def test_workers_that_do_not_start_are_told_in_words(
     assert f"{text}. Ask fewer of them with --workers, or --workers 0" in str(refusal.value)
 
 
+def cluster_of_threads() -> Any:
+    """A cluster with one worker in this process. Its event loop, which has ten seconds to start, is tried thrice."""
+    distributed = pytest.importorskip("distributed")
+    options = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+    for _ in range(2):
+        with contextlib.suppress(AssertionError):
+            return distributed.LocalCluster(**options, silence_logs=50)
+    return distributed.LocalCluster(**options, silence_logs=50)
+
+
 @pytest.mark.slow
 def test_a_scheduler_that_goes_away_is_told_in_words() -> None:
     distributed = pytest.importorskip("distributed")
     base, question = PLAIN.to_toml(), Question.read("solve", {})
     tasks = [CaseTask(f"{k}", base, {"operation.speed": 3000.0 + k}, question) for k in range(20)]
-    inside = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
     with (
-        distributed.LocalCluster(**inside, silence_logs=50) as cluster,
+        cluster_of_threads() as cluster,
         distributed.Client(cluster.scheduler_address, timeout=10, set_as_default=False) as client,
     ):
         outcomes = case_engine.OnCluster(client, 1).outcomes(tasks)

@@ -164,7 +164,7 @@ def test_the_paper_s_bearing_is_optimized_within_its_limits(tmp_path: Path) -> N
     assert "8 petals: " in script.line(found)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_petals_that_differ_scatter_the_lift_off_of_the_rig(tmp_path: Path) -> None:
     script = module(EXAMPLES / "scatter_rig.py")
     coarse = script.Case.load(EXAMPLES / "rig.toml").replace(**{"model.cells_per_pitch": 32})

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from pydantic import BaseModel
 
+from petalfoil.analysis.known_verbs import find, summaries
 from petalfoil.case import Case
 from petalfoil.case.number_fields import Quantity
 from petalfoil.results.schema import VARIABLES
@@ -55,6 +56,7 @@ def normal(unit: str) -> str:
 
 
 def test_every_result_variable_has_one_row_with_its_unit_and_dimensions() -> None:
+    assert all(find(verb) for verb in summaries())  # each declares its own results when it is loaded
     wrong = {}
     for name, variable in VARIABLES.items():
         declared = (normal(variable.units), f"({', '.join(variable.dims)})" if variable.dims else "no dimensions")

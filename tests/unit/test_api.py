@@ -87,7 +87,7 @@ def test_an_analysis_looks_like_its_function() -> None:
     assert list(inspect.signature(petalfoil.curve).parameters)[:3] == ["case", "eccentricities", "direction"]
     assert petalfoil.curve.__name__ == "curve"
     assert "Example: petalfoil curve" in str(petalfoil.curve.__doc__)
-    assert "direction : Quantity, optional" in str(petalfoil.curve.__doc__)
+    assert "direction : NumberWithUnit, optional" in str(petalfoil.curve.__doc__)
 
 
 def test_a_point_without_error_bars_says_so(monkeypatch: pytest.MonkeyPatch) -> None:

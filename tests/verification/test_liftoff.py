@@ -115,7 +115,7 @@ def test_a_plain_bearing_has_no_pack_to_lift_off_from() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["paper_n6", "paper_n8", "paper_n10"])
+@pytest.mark.parametrize("name", [pytest.param("paper_n6", marks=pytest.mark.long), "paper_n8", "paper_n10"])
 def test_continuous_edges_lift_off_too(name: str) -> None:
     """Balances there may be unstable in the time of the gas: the march with a damped wall finds them."""
     (record,) = liftoff.records(case(name, **{"model.cells_per_pitch": 24, "model.edges": "continuous"}), [15.0])

@@ -143,7 +143,9 @@ def measured_impedance(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("ratio", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize(
+    "ratio", [pytest.param(0.5, marks=pytest.mark.long), 1.0, pytest.param(2.0, marks=pytest.mark.long)]
+)
 def test_forced_orbits_of_petals_give_back_stiffness_and_damping(ratio: float) -> None:
     """K and C each within 1 % of their size; free motions hardly die out here, and are fitted beside.
 
@@ -165,7 +167,13 @@ STRIPS = [row for row in table("a3_squeeze_linear.csv") if row["shape"] == "stri
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("row", STRIPS, ids=lambda row: f"sigma={row['sigma']}")
+@pytest.mark.parametrize(
+    "row",
+    [
+        pytest.param(row, id=f"sigma={row['sigma']}", marks=[pytest.mark.long] * (row["sigma"] == "50"))
+        for row in STRIPS
+    ],
+)
 def test_squeeze_film_of_a_journal_at_rest(row: dict[str, str]) -> None:
     """A journal that does not turn in a very short bearing squeezes strips: stiffness and damping within 0.5 %.
 

@@ -90,7 +90,7 @@ def answered(task: WorkerTask, analysis: Analysis, progress: Progress) -> FoundA
         warnings=answer.warnings,
         failures=tuple(answer.failures()),
         scalars=scalars,
-        bars={name: bar for name, bar in (last.errors or {}).items() if name not in rounded},
+        bars={name: bar for name, bar in (last.errors or {}).items() if bar and name not in rounded},
         arrays=arrays_of(answer),
         records=() if task.coarse else answer.records,
         grid=grid_of(case).words,
