@@ -13,6 +13,7 @@ import pytest
 import typer.main
 
 from petalfoil.analysis import known_verbs
+from petalfoil.analysis.sensitivity_table import RESULTS
 from petalfoil.case import Case
 from petalfoil.cli.app import STUDIES, app
 from petalfoil.cli.commands import command_of
@@ -164,9 +165,9 @@ def imports(name: str) -> bool:
 
 @cache
 def words_of_the_code() -> set[str]:
-    """Every word of the code, the benchmarks and the examples."""
+    """Every word of the code, the benchmarks and the examples, and results whose names the code puts together."""
     files = [*modules(), *(ROOT / "benchmarks").glob("*.py"), *(ROOT / "examples").glob("*.py")]
-    return {word for path in files for word in re.findall(r"[A-Za-z_]\w*", text(path))}
+    return {word for path in files for word in re.findall(r"[A-Za-z_]\w*", text(path))} | set(RESULTS)
 
 
 FOREIGN = {"BearingElement", "assert_allclose"}
