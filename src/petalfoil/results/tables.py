@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from petalfoil.results.answer import Answer
@@ -77,17 +77,26 @@ def tables_of(answer: Answer) -> Iterator[TextTable]:
 
 
 def _with_bars(record: Record) -> Iterator[tuple[str, ...]]:
-    reported, errors = without_rounding(record), record.errors or {}
-    if not errors:
+    if not record.errors:
         yield from rows(record)
         return
+    reported = without_rounding(record)
+    bars = shown_bars(record, reported)
     for name in in_order(reported):
         line, bar = row(name, reported, record), ""
-        is_rounding = reported[name] == 0.0 != record.scalars[name]
-        if errors.get(name) and not is_rounding:  # 0 on every grid, such as the force of no contact, needs no bar
-            (value,), bar = with_bar(name, [float(reported[name])], errors[name])
+        if name in bars:
+            (value,), bar = with_bar(name, [float(reported[name])], bars[name])
             line = line._replace(value=value)
         yield line.label, line.value, bar and f"± {bar}", line.unit
+
+
+def shown_bars(record: Record, reported: Mapping[str, Scalar]) -> dict[str, float]:
+    """Error bars of a point that are shown beside what is `reported` of it.
+
+    What is 0 on every grid, such as the force of no contact, has none; nor has what is nothing but rounding.
+    """
+    rounded = {name for name, value in reported.items() if value == 0.0 != record.scalars[name]}
+    return {name: bar for name, bar in (record.errors or {}).items() if bar and name not in rounded}
 
 
 def _study(records: Sequence[Record], found: Sequence[Estimate]) -> TextTable:

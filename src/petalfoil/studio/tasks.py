@@ -19,7 +19,7 @@ from petalfoil.results.answer import Answer
 from petalfoil.results.layout import Layout
 from petalfoil.results.record import Record, warnings_of_all
 from petalfoil.results.summary import without_rounding
-from petalfoil.results.tables import tables_of
+from petalfoil.results.tables import shown_bars, tables_of
 from petalfoil.studio.arrays import arrays_of
 from petalfoil.studio.design import Design, without_files
 from petalfoil.studio.protocol import FoundAnswer, Mapped, Searched, Work, WorkerTask
@@ -83,14 +83,13 @@ def answered(task: WorkerTask, analysis: Analysis, progress: Progress) -> FoundA
     answer = analysis.answer(run)
     last = answer.records[-1]
     scalars = without_rounding(last)
-    rounded = {name for name, value in scalars.items() if value == 0.0 != last.scalars[name]}
     return FoundAnswer(
         verb=task.verb,
         tables=tuple(tables_of(answer)),
         warnings=answer.warnings,
         failures=tuple(answer.failures()),
         scalars=scalars,
-        bars={name: bar for name, bar in (last.errors or {}).items() if bar and name not in rounded},
+        bars=shown_bars(last, scalars),
         arrays=arrays_of(answer),
         records=() if task.coarse else answer.records,
         grid=grid_of(case).words,
