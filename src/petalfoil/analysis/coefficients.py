@@ -351,9 +351,7 @@ def point(case: Case, asked: CoefficientRequest, load: Vector | None) -> Record:
 def state_parts(case: Case, found: OperatingPoint) -> tuple[object, ...]:
     """What is told of the equilibrium that small motions are about."""
     bearing = bearing_of(case, found.answer)
-    contact, hot = (
-        SolidContact(Evaluation.of(bearing, found.answer).contact_fraction),
-        heat_results(bearing, found.answer),
-    )
+    contact = SolidContact(Evaluation.of(bearing, found.answer).contact_fraction)
+    hot = heat_results(bearing, found.answer)
     told = (*(() if hot is None else (hot,)), *rotor_parts(case, found.answer), FrictionTold.of(case, found.answer))
     return *geometry(bearing), position(bearing, found.answer), contact, found.branch, *found.loaded, *told
