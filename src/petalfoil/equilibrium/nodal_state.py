@@ -10,6 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.small_motion import ElementEquilibrium, LineEquilibrium
@@ -99,9 +101,23 @@ def sampled_solution(found: ElementEquilibrium, load: Array) -> Solution:
     """
     problem, state = found.equations.problem, NodalState.of_elements(found)
     x = np.zeros(problem.layout.n)
-    x[problem.layout.unknowns[DEFLECTION]], x[problem.positive] = state.deflection, found.equations.pressures
+    wall = with_motion_along(problem.layout.stiffness, state.deflection)
+    x[problem.layout.unknowns[DEFLECTION]], x[problem.positive] = wall, found.equations.pressures
     nodal = RefinedState(x, np.zeros(problem.layout.n_wall), state.lam)
     return Solution(problem, nodal, found.residual, FOLLOWED, load=load, elements=found, elements_sought=True)
+
+
+def with_motion_along(stiffness: sp.csr_array, deflection: Array) -> Array:
+    """All unknowns of the petals (n_wall,) at a deflection.
+
+    Behind the deflections are the displacements of petals that stretch in their own surface, on which nothing but the
+    membrane acts (M5): what bending asks of them; none of petals that only bend.
+    """
+    n = len(deflection)
+    if stiffness.shape[0] == n:
+        return deflection
+    own, by_deflection = stiffness[n:, n:], stiffness[n:, :n]
+    return np.concatenate([deflection, spla.spsolve(sp.csc_array(own), -(by_deflection @ deflection))])
 
 
 def shared_reactions(found: ElementEquilibrium) -> Array:

@@ -201,6 +201,15 @@ def test_what_says_nothing_is_refused(bearing: Case, arguments: dict[str, object
 
 
 @pytest.mark.slow
+def test_petals_that_stretch_have_a_capacity_too() -> None:
+    """Friction brings displacements along the petals among the unknowns, on which the film does not act."""
+    stretching = PETALS.replace(**{"petals.theory": "shell", "surface.petal_friction": 0.1})
+    found, bending = (petalfoil.capacity(one, min_film_thickness=3e-6) for one in (stretching, PETALS))
+    assert float(found["load_capacity"]) == pytest.approx(float(bending["load_capacity"]), rel=1e-6)
+    assert float(found["min_film_thickness"]) == pytest.approx(3e-6, rel=1.1e-6)
+
+
+@pytest.mark.slow
 def test_a_heated_bearing_tells_its_temperatures_at_the_capacity() -> None:
     hot = case("rig_hot", **{"model.cells_per_pitch": 24})
     found = petalfoil.capacity(hot, contact_fraction=0.01)
