@@ -6,6 +6,7 @@ loses nothing: its task goes to another one, and after `ATTEMPTS` deaths the cas
 
 from __future__ import annotations
 
+import gc
 import os
 import time
 from collections.abc import Iterable, Iterator
@@ -264,11 +265,15 @@ def _local(workers: int, memory: float | None) -> Iterator[Engine]:
 def _remote(address: str) -> Iterator[Engine]:
     from distributed import Client
 
+    refused = ""
     try:
         # As default it would stay what every file is written through, even where there is no scheduler.
         client = Client(address, timeout=PATIENCE, set_as_default=False)
     except NOT_STARTED as error:
-        raise UsageError(f"--scheduler: there is no scheduler at {address}: {told(error)}") from error
+        refused = told(error)
+    if refused:
+        gc.collect()  # it closes its event loop as it is collected: within the start of another one they would lock
+        raise UsageError(f"--scheduler: there is no scheduler at {address}: {refused}")
     with client:
         threads = sum(client.nthreads().values())
         if not threads:
