@@ -106,8 +106,8 @@ class Film:
         self._run: RunContext = new_run()
         with self._run.active(), one_thread():
             start = self._equilibrium()
-        layout, radius = start.problem.layout, case.bearing.journal_radius
-        radian = layout.scales.bearing_number(case.gas.viscosity, 1.0, radius)
+        layout = start.problem.layout
+        radian = layout.bearing_number(1.0)
         self._rate = case.operation.speed or 1.0 / radian
         self._number_of_radian = radian
         self._still = StepProblem(layout, 0.0, start.problem.displacement, self._rate * radian)

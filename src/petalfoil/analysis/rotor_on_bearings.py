@@ -90,8 +90,7 @@ class RotorOnBearings:
             return None
         if wanted is not None and (last.contacts.gradient is None or len(wanted) != len(problem.displacement)):
             return None
-        scales, R_j = problem.layout.scales, self.case.bearing.journal_radius
-        there = problem.at(bearing_number=scales.bearing_number(self.case.gas.viscosity, speed, R_j))
+        there = problem.at(bearing_number=problem.layout.bearing_number(speed))
         near = last.contacts
         try:
             found = followed(near, there, wanted) if isinstance(near, PointContacts) else near.at(there, wanted)

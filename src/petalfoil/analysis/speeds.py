@@ -95,9 +95,8 @@ class SpeedLine:
         """
         if self.rotor is not None:
             return self._on_shaft(self.rotor, speed, after)
-        scales, R_j = self.base.layout.scales, self.case.bearing.journal_radius
-        number = scales.bearing_number(self.case.gas.viscosity, speed, R_j)
-        problem, load = self.base.at(bearing_number=number), load_of(self.case, self.load, self.base.layout)
+        layout = self.base.layout
+        problem, load = self.base.at(bearing_number=layout.bearing_number(speed)), load_of(self.case, self.load, layout)
         if self.path is not None:
             return self._with_friction(self.path, problem)
         warm, before = self.temperatures, self.known

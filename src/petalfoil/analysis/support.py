@@ -131,19 +131,17 @@ class Support:
         ConvergenceError
             None was found from there.
         """
-        scales, case = known.problem.layout.scales, self.case
-        number = scales.bearing_number(case.gas.viscosity, speed, case.bearing.journal_radius)
-        found = from_neighbour(known, known.problem.at(bearing_number=number), np.array(load) / scales.force)
+        layout = known.problem.layout
+        here = known.problem.at(bearing_number=layout.bearing_number(speed))
+        found = from_neighbour(known, here, np.array(load) / layout.scales.force)
         if found is None:
             raise no_way()
         return replace(found if self.network is None else heated(found, self.network), load=None)
 
     def at_speed(self, known: Solution, speed: float) -> Solution:
         """The equilibrium at another speed [rad/s], the shaft where it was."""
-        scales, case = known.problem.layout.scales, self.case
-        number = scales.bearing_number(case.gas.viscosity, speed, case.bearing.journal_radius)
-        here = known.problem.at(bearing_number=number)
-        if number == known.problem.bearing_number:
+        here = known.problem.at(bearing_number=known.problem.layout.bearing_number(speed))
+        if here.bearing_number == known.problem.bearing_number:
             return replace(known, load=None, elements=None, elements_sought=False, nodal_force_difference=None)
         return self._followed(known, here) or self.warm(solve_cold(here))
 

@@ -160,8 +160,7 @@ class PositionLine:
             None was found.
         """
         before, problem = self.known, self.known.problem
-        number = problem.layout.scales.bearing_number(self.case.gas.viscosity, speed, self.case.bearing.journal_radius)
-        found, _ = advance(before, problem.at(bearing_number=number))
+        found, _ = advance(before, problem.at(bearing_number=problem.layout.bearing_number(speed)))
         self.known = reported(self.case, found, before) if self.seeks else replace(found, elements_sought=True)
         return self.known
 

@@ -176,10 +176,10 @@ class Solution:
     @property
     def operating_state(self) -> OperatingState:
         """Speed, displacement and load, SI."""
-        case, scales = self.case, self.problem.layout.scales
-        radian = scales.bearing_number(case.gas.viscosity, 1.0, case.bearing.journal_radius)
+        layout = self.problem.layout
+        speed, scales = layout.speed(self.problem.bearing_number), layout.scales
         load = None if self.load is None else self.load * scales.force
-        return OperatingState(self.problem.bearing_number / radian, self.position * scales.length, load)
+        return OperatingState(speed, self.position * scales.length, load)
 
     @property
     def unbalanced(self) -> Array:

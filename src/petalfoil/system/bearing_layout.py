@@ -73,14 +73,13 @@ class BearingLayout:
         initial = {field.name: field.initial for field in self.fields}
         return self.unknowns.join({DEFLECTION: deflection, PRESSURE: 1.0, **initial})
 
-    @cached_property
-    def _radian(self) -> float:
-        """Bearing number of a speed of 1 rad/s [s]."""
-        return self.scales.bearing_number(self.case.gas.viscosity, 1.0, self.balance.radius)
+    def bearing_number(self, speed: float) -> float:
+        """Bearing number (F1) of the gas as it enters, at an angular velocity [rad/s]."""
+        return self.scales.bearing_number(self.case.gas.viscosity, speed, self.balance.radius)
 
     def speed(self, bearing_number: float) -> float:
         """Angular velocity at a bearing number of the gas as it enters [rad/s]."""
-        return bearing_number / self._radian
+        return bearing_number / self.bearing_number(1.0)
 
     def closing(self, bearing_number: float, warm: Temperatures | None = None) -> float:
         """What growth takes from the gaps on the journal at a bearing number (G5), over the reference length [1]."""

@@ -75,8 +75,7 @@ def build_pair(case: Case, supports: Sequence[Case] = ()) -> ShaftStep:
     askew = [askew_of(one) / length for one in both]
     layout = ShaftLayout((first, second), (arms[0], arms[1]), (askew[0], askew[1]))
     position = np.append(case.operation.eccentricity, np.zeros(2)) / length
-    radius, speed = case.bearing.journal_radius, case.operation.speed
-    return ShaftStep(layout, first.scales.bearing_number(both[0].gas.viscosity, speed, radius), position)
+    return ShaftStep(layout, first.bearing_number(case.operation.speed), position)
 
 
 def layout_on_shaft(case: Case, units: Scales | None = None) -> BearingLayout:
@@ -113,10 +112,6 @@ def same_wall(one: Case, other: Case) -> bool:
 def discretised(case: Case, wall: Wall, displacement: NDArray[np.float64]) -> CoupledProblem:
     """The equations on a wall at a displacement [m]."""
     scales = scales_of(case, wall)
-    radius, speed = case.bearing.journal_radius, case.operation.speed
-    balance = FilmBalance(wall.film, radius, case.slip_length / scales.length)
-    return CoupledProblem(
-        layout=BearingLayout(case, wall, balance, scales),
-        bearing_number=scales.bearing_number(case.gas.viscosity, speed, radius),
-        displacement=displacement / scales.length,
-    )
+    balance = FilmBalance(wall.film, case.bearing.journal_radius, case.slip_length / scales.length)
+    layout = BearingLayout(case, wall, balance, scales)
+    return CoupledProblem(layout, layout.bearing_number(case.operation.speed), displacement / scales.length)

@@ -83,8 +83,8 @@ class ShaftLayout:
     @cached_property
     def rates(self) -> tuple[float, ...]:
         """Bearing number of each bearing over that of the first [1]."""
-        radian = [part.scales.bearing_number(part.case.gas.viscosity, 1.0, part.balance.radius) for part in self.parts]
-        return tuple(one / radian[0] for one in radian)
+        first = self.parts[0].bearing_number(1.0)
+        return tuple(part.bearing_number(1.0) / first for part in self.parts)
 
     @cached_property
     def G(self) -> SparseRows:
