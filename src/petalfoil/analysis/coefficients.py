@@ -172,14 +172,14 @@ EXPORTS = (
     Export(
         option="xltrc",
         metavar="FILE.txt",
-        help="Write those of synchronous whirl over speed for XLTRC2: for unbalance, not for stability.",
+        help="Write the coefficients of synchronous whirl over speed for XLTRC2: for unbalance, not for stability.",
         suffixes=(".txt", ".csv"),
         writer="petalfoil.results.export:write_xltrc",
     ),
     Export(
         option="ross",
         metavar="FILE.toml",
-        help="Write them for ROSS 3 over speed and whirl frequency: .toml or .json; needs 5 speeds or more.",
+        help="Write the coefficients for ROSS 3 over speed (5 or more) and whirl frequency: .toml or .json.",
         suffixes=(".toml", ".json"),
         writer="petalfoil.results.ross:write_ross",
         check=check_ross,
@@ -189,7 +189,7 @@ EXPORTS = (
     Export(
         option="ross2",
         metavar="FILE.toml",
-        help="Write those of synchronous whirl for ROSS 2: for unbalance, not for stability.",
+        help="Write the coefficients of synchronous whirl for ROSS 2: for unbalance, not for stability.",
         suffixes=(".toml", ".json"),
         writer="petalfoil.results.ross:write_ross_synchronous",
         check=check_ross_synchronous,

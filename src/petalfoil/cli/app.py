@@ -98,7 +98,7 @@ def petalfoil(
     version: Annotated[
         bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
     ] = False,
-    verbose: Annotated[bool, typer.Option("-v", "--verbose", help="Tell every step of the solvers.")] = False,
+    verbose: Annotated[bool, typer.Option("-v", "--verbose", help="Log every step of the solvers.")] = False,
 ) -> None:
     """Simulate petal (multi-leaf foil) gas bearings.
 

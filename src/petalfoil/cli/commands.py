@@ -31,7 +31,7 @@ PLOT = Annotated[Path | None, typer.Option("--plot", metavar="FILE.png", help="D
 RESUME_FILE = Annotated[Path | None, typer.Option("--resume", metavar=RESUME.metavar, help=RESUME.help)]
 VERBOSE = Annotated[
     bool,
-    typer.Option("-v", "--verbose", callback=be_verbose, expose_value=False, help="Tell every step of the solvers."),
+    typer.Option("-v", "--verbose", callback=be_verbose, expose_value=False, help="Log every step of the solvers."),
 ]
 HELP = ["-h", "--help"]
 """Options that print the help text."""

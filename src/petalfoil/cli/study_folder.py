@@ -27,6 +27,7 @@ AlsoFields = Annotated[bool, typer.Option("--fields", help="Write film and petal
 def study_commands() -> Any:
     """The commands ``show``, ``resume`` and ``export``."""
     group = typer.Typer(
+        add_completion=False,
         help="Show, resume or export the study in a folder.",
         no_args_is_help=True,
         pretty_exceptions_enable=False,
