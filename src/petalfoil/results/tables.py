@@ -120,15 +120,15 @@ def _series(layout: Series, records: Sequence[Record]) -> TextTable:
     columns = [TextColumn(headings[name], cell(name, 0.0).unit) for name in names]
     table = TextTable((TextColumn("point"), *columns, TextColumn("", of_numbers=False)))
     for position, (point, record) in enumerate(zip(points, records, strict=True), start=1):
-        values = [_with_bar(name, point.get(name, math.nan), record) for name in names]
+        bars = shown_bars(record, point)
+        values = [_with_bar(name, point.get(name, math.nan), bars.get(name)) for name in names]
         table.lines.append((str(position), *values, _remark(record)))
     return table
 
 
-def _with_bar(name: str, value: Scalar, record: Record) -> str:
+def _with_bar(name: str, value: Scalar, error: float | None) -> str:
     """A result of a point, and its error bar where it has one."""
-    error = (record.errors or {}).get(name)
-    if not error:
+    if error is None:
         return cell(name, value).value
     (shown,), bar = with_bar(name, [float(value)], error)
     return f"{shown} ± {bar}"
