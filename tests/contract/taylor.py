@@ -54,6 +54,9 @@ BEARINGS: dict[str, tuple[str, str, str, bool]] = {
     "bump foil, 2d": ("bump_foil", "2d", "ambient", True),
     "bump foil, half": ("bump_foil", "3d", "ambient", True),
     "bending bump foil, whole": ("bump_foil", "3d", "ambient", False),
+    "rubbed petals, 2d": ("paper_n8", "2d", "ambient", True),
+    "rubbed stretching petals, half": ("paper_n8", "3d", "ambient", True),
+    "rubbed plain, 2d": ("plain_journal", "2d", "ambient", True),
     "slipping plain, 2d": ("plain_journal", "2d", "ambient", True),
     "slipping plain, half": ("plain_journal", "3d", "ambient", True),
     "slipping petals, half": ("paper_n8", "3d", "ambient", True),
@@ -68,6 +71,8 @@ THIN = {"model.slip": True, "gas.ambient_pressure": 2e3}
 TILTED = {"operation.tilt": (3e-4, -2e-4)}
 TILTING = {"operation.moment": (0.0, 0.0)}
 """A journal that is held at slopes, and one that is free to tilt."""
+RUBBED = {"surface.journal_rubbing": "force", "surface.friction_coefficient": 0.4}
+"""A journal that drags petals along."""
 BENDING = {
     "bump_foil.top_foil_thickness": "0.2 mm",
     "bump_foil.youngs_modulus": "213 GPa",
@@ -86,7 +91,8 @@ def bearing(name: str) -> Case:
         "model.cells_per_pitch": 6 if "petals" in name else 16,
         "model.axial_cells": 4,
         **(BENDING if name.startswith("bending") else {}),
-        **({"petals.theory": "shell"} if name.startswith("stretching") else {}),
+        **({"petals.theory": "shell"} if "stretching" in name else {}),
+        **(RUBBED if name.startswith("rubbed") else {}),
         **(THIN if name.startswith("slipping") else {}),
         **(TILTED if name.startswith("tilted") else {}),
         **(TILTING if name.startswith("tilting") else {}),

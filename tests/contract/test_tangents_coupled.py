@@ -80,7 +80,7 @@ def test_derivative_by_the_gaps_shift(name: str, rate: float) -> None:
 
 @pytest.mark.parametrize("name", BEARINGS)
 def test_gaps_and_what_they_add_to_the_matrix(name: str) -> None:
-    """`g` is linear with derivative `G`, and `theta` enters as `G^T diag(theta) G`."""
+    """`g` is linear with derivative `G`, and `theta` enters as `H^T diag(theta) G`."""
     problem, rng = build_problem(bearing(name)), np.random.default_rng(13)
     x = open_state(problem, rng)
     direction, theta = rng.uniform(-1.0, 1.0, len(x)), rng.uniform(0.0, 2.0, problem.G.shape[0])
@@ -88,7 +88,7 @@ def test_gaps_and_what_they_add_to_the_matrix(name: str) -> None:
     assert_allclose(problem.gaps(x + direction), problem.gaps(x) + problem.G @ direction, rtol=0.0, atol=1e-14 * size)
     line = problem.linearize(x)
     added = (line.matrix(theta) - line.matrix(0.0 * theta)) @ direction
-    expected = problem.G.T @ (theta * (problem.G @ direction))
+    expected = problem.acting.T @ (theta * (problem.G @ direction))
     largest = np.max(np.abs(line.matrix(0.0 * theta)).data)  # the difference of the two matrices rounds by this
     assert_allclose(added, expected, rtol=0.0, atol=1e-14 * largest)
 
@@ -123,7 +123,7 @@ def cone_point(problem: CoupledProblem, side: str, rng: np.random.Generator) -> 
 @pytest.mark.parametrize("side", SIDES_OF_THE_KINK)
 @pytest.mark.parametrize("name", PETALS)
 def test_newton_direction_of_the_interior_point(name: str, side: str, rate: float) -> None:
-    """Along Newton's direction `[F - G^T lam; s - g; lam s - target]` goes to zero as `1 - t`, up to `t^2`."""
+    """Along Newton's direction `[F - H^T lam; s - g; lam s - target]` goes to zero as `1 - t`, up to `t^2`."""
     problem, rng = build_problem(bearing(name)), np.random.default_rng(14)
     point = cone_point(problem, side, rng)
     target = 0.1 * point.barrier(problem.weight) * problem.weight
@@ -136,7 +136,7 @@ def test_newton_direction_of_the_interior_point(name: str, side: str, rate: floa
 
     def equations(t: float) -> tuple[Array, Array, Array]:
         moved = point.s + t * s - problem.gaps(point.x + t * x)
-        forces = stepped_residual(problem, point.x + t * x, moved, start) - problem.G.T @ (point.lam + t * lam)
+        forces = stepped_residual(problem, point.x + t * x, moved, start) - problem.acting.T @ (point.lam + t * lam)
         return forces, moved, (point.lam + t * lam) * (point.s + t * s) - target
 
     forces, gaps, products = equations(0.0)
@@ -146,7 +146,7 @@ def test_newton_direction_of_the_interior_point(name: str, side: str, rate: floa
     assert_tangent(lambda t: equations(t)[2], -products, largest=1.0)
     # the wall's rows and the gaps are linear: a full step closes them, up to rounding of their terms
     there = equations(1.0)
-    terms = problem.layout.stiffness_size @ np.abs(x[:wall]) + abs(problem.G[:, :wall].T) @ np.abs(lam)
+    terms = problem.layout.stiffness_size @ np.abs(x[:wall]) + abs(problem.acting[:, :wall].T) @ np.abs(lam)
     assert_allclose(there[0][:wall], 0.0, rtol=0.0, atol=1e-13 * np.max(terms))
     assert_allclose(there[1], 0.0, rtol=0.0, atol=1e-13 * np.max(np.abs(gaps)))
     # gap by gap, small ones beside large ones
@@ -160,13 +160,13 @@ def test_tangent_with_active_contacts(name: str, share: float) -> None:
     """Unknowns in active contact move together: the reduced matrix is the derivative of the merged equations."""
     problem, rng = build_problem(bearing(name)), np.random.default_rng(15)
     x = open_state(problem, rng)
-    ties = constrain(problem.G, rng.random(problem.G.shape[0]) < share)
+    ties = constrain(problem.G, rng.random(problem.G.shape[0]) < share, acting=problem.acting)
     direction = rng.uniform(-1.0, 1.0, ties.n_free)
     free_of_wall = np.unique(ties.group[problem.layout.n_wall :])
     change = ties.reduce(problem.linearize(x).matrix(np.zeros(problem.G.shape[0]))) @ direction
 
     def merged(t: float) -> Array:
-        return ties.gather(problem.linearize(x + t * ties.spread(direction)).residual)[free_of_wall]
+        return ties.balanced(problem.linearize(x + t * ties.spread(direction)).residual)[free_of_wall]
 
     assert_tangent(merged, change[free_of_wall], largest=2.0**-8)
 
@@ -180,7 +180,7 @@ def path_point(name: str) -> PathPoint:
 
 def path_residual(point: PathPoint) -> Array:
     """Imbalance of the equations, then slacks over gaps."""
-    imbalance = point.linearized.residual - point.problem.G.T @ point.lam
+    imbalance = point.linearized.residual - point.problem.acting.T @ point.lam
     return np.concatenate([imbalance, point.open_by])
 
 

@@ -102,13 +102,18 @@ class ElasticProblem:
 
     K: sp.csr_array
     force: Array
-    G: sp.csr_array
+    G: SparseRows
     rest: Array
     weight: Array
 
     def __post_init__(self) -> None:
         """Take the rows of any sparse matrix."""
         object.__setattr__(self, "G", SparseRows(self.G))
+
+    @property
+    def acting(self) -> SparseRows:
+        """Reactions act along the gaps."""
+        return self.G
 
     @property
     def n(self) -> int:

@@ -82,7 +82,8 @@ def strip_gradient(cells: int, *, travelling: bool) -> Array:
     contacts = Contacts(problem.G, rest, by_e, np.ones(n), none, none, none, lines)
     points = IsolatedContacts.of(contacts, problem.gaps(answer.x), answer.lam, answer.active)
     assert len(points.travel_stiffness) == int(travelling)
-    moving = travelling_contacts(problem.G, by_e, points.placed(turning_compliance(problem.G, matrix, points, None)))
+    compliance = turning_compliance(problem.G, matrix, points, None)
+    moving = travelling_contacts((problem.G, problem.G), by_e, points.placed(compliance))
     matrix, constraints = sp.csc_array(matrix + moving.tangent), moving.constraints
     tangent = Tangent(matrix, constraints, constraints.factor(matrix, LinearSolver(), None))
     border = Border(moving.gap_by_e, -moving.forcing.T, slice(0, n))

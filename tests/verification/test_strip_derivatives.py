@@ -69,6 +69,10 @@ class Strip:
     def G(self) -> sp.csr_array:
         return sp.csr_array(([-1.0], ([0], [self.cells - 1])), shape=(1, self.cells))
 
+    @property
+    def acting(self) -> sp.csr_array:
+        return self.G
+
     weight = np.ones(1)
     displacement = np.zeros(0)
     elimination_key = None

@@ -196,7 +196,7 @@ def by_nodes(fields: FieldGradient, found: Solution) -> StateWeights:
     """Derivatives by the state of an equilibrium with contacts at nodes, from those by its fields."""
     problem, x = found.problem, found.x
     layout, border = problem.layout, problem.border
-    by_x, by_lam = np.zeros(len(x)), border.gap_derivative @ fields.contact_force
+    by_x, by_lam = np.zeros(len(x)), border.by_reactions.T @ fields.contact_force
     by_lam[layout.wall.contacts.journal] += fields.reactions
     by_x[problem.positive] = at_unknowns(layout.wall.film.unknown, fields.pressure, len(x[problem.positive]))
     by_x[border.columns] += border.row_derivative.T @ fields.film_force

@@ -40,8 +40,9 @@ def reaction_balance(answer: Solution) -> float:
     x, lam, rest = (answer.x, answer.lam, answer.state.low_order) if lines is None else (lines.x, lines.lam, 0.0)
     w, P = x[layout.unknowns[DEFLECTION]], x[answer.problem.positive]
     wall, unit = layout.wall, layout.scales.length / layout.scales.force
-    loads = layout.push @ (P - 1.0) + wall.contacts.G.T @ lam
-    parts = layout.push @ np.abs(P - 1.0) + abs(wall.contacts.G.T) @ np.abs(lam)
+    H = answer.problem.wall_acting
+    loads = layout.push @ (P - 1.0) + H.T @ lam
+    parts = layout.push @ np.abs(P - 1.0) + abs(H.T) @ np.abs(lam)
     error = wall.free_motions.T @ loads + unit * (wall.support @ w + wall.support @ (rest + np.zeros_like(w)))
     return largest(error, abs(wall.free_motions.T) @ parts)
 
@@ -53,9 +54,9 @@ def balance_with_friction(answer: Solution) -> float:
         raise ValueError("an equilibrium without friction forces")
     wall, layout, x = problem.layout.wall, problem.layout, answer.x
     w, P, rubbing = x[layout.unknowns[DEFLECTION]], x[problem.positive], answer.friction.state.force
-    G, B = wall.contacts.G, friction.slip
-    loads = layout.push @ (P - 1.0) + G.T @ answer.lam - B.T @ rubbing - layout.elastic_force(w)
-    parts = layout.push @ np.abs(P - 1.0) + abs(G.T) @ np.abs(answer.lam) + abs(B.T) @ np.abs(rubbing)
+    H, B = problem.wall_acting, friction.slip
+    loads = layout.push @ (P - 1.0) + H.T @ answer.lam - B.T @ rubbing - layout.elastic_force(w)
+    parts = layout.push @ np.abs(P - 1.0) + abs(H.T) @ np.abs(answer.lam) + abs(B.T) @ np.abs(rubbing)
     return largest(wall.free_motions.T @ loads, abs(wall.free_motions.T) @ parts)
 
 

@@ -81,6 +81,17 @@ def film_work(before: BearingState, after: BearingState) -> float:
     return float(force @ (later.displacement - earlier.displacement) + pushed @ (X[wall] - x[wall]))
 
 
+def dragging_work(before: BearingState, after: BearingState) -> float:
+    """Work of the journal's dry friction on wall and rotor between two instants (D6), (D7) [1], not on the shaft."""
+    (earlier, x, lam), (later, X, LAM) = before, after
+    if later.acting is later.G:
+        return 0.0
+    pulled = 0.5 * (lam + LAM)
+    on_wall = (later.acting.T @ pulled - later.G.T @ pulled) @ (X - x)
+    on_rotor = (later.border.by_reactions - later.border.gap_derivative.T) @ pulled
+    return float(on_wall + on_rotor @ (later.displacement - earlier.displacement))
+
+
 def growth_work(before: BearingState, after: BearingState) -> float:
     """Work of a journal that grows on the contacts that it touches between two instants [1]."""
     (earlier, _, lam), (later, _, LAM) = before, after

@@ -93,11 +93,13 @@ def wall_imbalance(instant: Instant, system: RotorBearing) -> float:
 
     What a wall that loses energy is out of balance by is the rate of its loss: nothing is left over.
     """
-    problem = system.problem.at(bearing_number=0.0, displacement=instant.e)  # the wall does not know the speed
+    # of the speed the wall only knows whether the journal turns
+    turning = system.rotor.bearing_number(instant.tau)
+    problem = system.problem.at(bearing_number=turning, displacement=instant.e)
     if any(part.layout.loss is not None for part, _, _ in problem.each(instant.x, instant.lam)):
         return 0.0
     linearized, wall = problem.linearize(instant.x), problem.layout.unknowns[DEFLECTION]
-    residual = linearized.residual - problem.G.T @ instant.lam
+    residual = linearized.residual - problem.acting.T @ instant.lam
     if system.friction is not None and instant.friction is not None:
         residual = residual + against_slip(system.friction, instant.friction.force, len(instant.x))
     return float(np.max(np.abs(residual[wall]) / linearized.row_scale[wall], initial=0.0))

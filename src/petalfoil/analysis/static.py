@@ -66,7 +66,8 @@ def static(
     """Press the journal into the foil pack at zero speed: preload, load, starting torque.
 
     Preload and starting torque are those of the centred journal, so let the
-    displacements begin at 0. With --out the file is rewritten as points
+    displacements begin at 0. A journal whose rubbing pulls at the petals
+    (surface.journal_rubbing) is about to turn. With --out the file is rewritten as points
     finish; Ctrl-C keeps what is finished, and --resume goes on from it.
 
     With friction between the petals (surface.petal_friction) each point
@@ -85,6 +86,11 @@ def static(
     required(case, Capability.PACK, "`static`")
     cases = displaced(case, eccentricities, direction, 0.0)
     if case.surface.petal_friction > 0.0 and not is_classic(case):
+        if case.drags_petals:
+            raise UsageError(
+                "friction between petals is followed round a journal that does not turn: set "
+                'surface.journal_rubbing = "torque", or ask `runup`, whose path ends with a journal that does'
+            )
         if loop and len(cases) < 2:
             raise UsageError("a loop needs at least two displacements")
         way = legs(cases, loop)

@@ -64,7 +64,7 @@ def fastest_swing(bearing: RotorBearing, start: Instant) -> float:
     Zero where the contacts there do not determine the stiffness. One factorisation.
     """
     problem = bearing.problem.at(displacement=start.e, bearing_number=bearing.rotor.bearing_number(start.tau))
-    constraints = constrain(problem.G, start.active)
+    constraints = constrain(problem.G, start.active, acting=problem.acting)
     if not constraints.determinate:
         return 0.0
     linearized = problem.linearize(start.x)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
-from petalfoil.analysis.film_figures import BearingState, FilmFigures, film_work, growth_work
+from petalfoil.analysis.film_figures import BearingState, FilmFigures, dragging_work, film_work, growth_work
 from petalfoil.case import Case
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
@@ -168,7 +168,9 @@ class Trace:
         parts = self._bearings(instant)
         stored = self.system.problem.stored_of_each(instant.moving.stored)
         films = [FilmFigures.of(part, gas) for part, gas in zip(parts, stored, strict=True)]
-        pushed = self.system.problem.at(displacement=instant.e).journal_force(instant.x, instant.lam) * self._units[2]
+        number = self.system.rotor.bearing_number(instant.tau)
+        there = self.system.problem.at(bearing_number=number, displacement=instant.e)
+        pushed = there.journal_force(instant.x, instant.lam) * self._units[2]
         touching, pressed = sum(film.touching for film in films), np.concatenate([film.pressed for film in films])
         return {
             "min_film_thickness": min(film.thinnest for film in films),
@@ -186,7 +188,7 @@ class Trace:
         """Work of film, loads and growth on rotor and petals since the latest instant, by the trapezium rule [J]."""
         before = self.last
         if before is None:
-            return {"film_step": 0.0, "load_step": 0.0, "petals_step": 0.0, "growth_step": 0.0}
+            return dict.fromkeys(("film_step", "load_step", "petals_step", "growth_step", "dragging_step"), 0.0)
         system, unit = self.system, self._units[2] * self._units[0]
         pairs = list(zip(self._bearings(before), self._bearings(instant), strict=True))
         loads = 0.5 * (system.rotor.outside(before.tau) + system.rotor.outside(instant.tau))
@@ -198,6 +200,7 @@ class Trace:
             "load_step": float(loads @ (instant.e - before.e)) * unit,
             "petals_step": worn * unit,
             "growth_step": sum(growth_work(*pair) for pair in pairs) * unit,
+            "dragging_step": sum(dragging_work(*pair) for pair in pairs) * unit,
         }
 
     def _lost(self, before: Instant, instant: Instant) -> float:
@@ -233,6 +236,7 @@ class Trace:
         energy = over["kinetic_energy"] + over["elastic_energy"] - over["kinetic_energy"][0]
         missing = energy - over["load_work"] - over["film_work"] + over["petal_friction_work"]
         missing -= np.cumsum(self.column("growth_step"))  # a journal that grows bends the petals it touches
+        missing -= np.cumsum(self.column("dragging_step"))  # one that rubs moves them along itself
         exchanged = np.sum(np.abs(self.column("load_step"))) + np.sum(np.abs(self.column("film_step")))
         return Audits(
             mass_balance_error=float(np.max(np.abs(gained)) / gas[0]) if gas[0] else 0.0,

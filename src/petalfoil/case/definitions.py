@@ -27,6 +27,7 @@ from petalfoil.case.sections import (
     ADAPTED,
     Bearing,
     ContactDiscretization,
+    JournalRubbing,
     Method,
     Model,
     ModelKind,
@@ -162,8 +163,19 @@ class Case(Definition):
         """Whether petals slide along themselves and stretch, the default filled in."""
         if self.petals is not None and self.petals.theory is not None:
             return self.petals.theory
-        slides = self.surface.petal_friction > 0.0 and self.model.kind is ModelKind.TWO_D and self.backing is None
+        rubs = self.surface.petal_friction > 0.0 or self.drags_petals
+        slides = rubs and self.model.kind is ModelKind.TWO_D and self.backing is None
         return PetalTheory.SHELL if slides else PetalTheory.INEXTENSIBLE
+
+    @property
+    def rubbing_pulls(self) -> bool:
+        """Whether the turning journal pulls at what it touches, and is held back (D6), (D7)."""
+        return self.surface.journal_rubbing is JournalRubbing.FORCE
+
+    @property
+    def drags_petals(self) -> bool:
+        """Whether what it pulls at are petals."""
+        return self.rubbing_pulls and self.petals is not None
 
     @property
     def follows_friction(self) -> bool:
@@ -287,7 +299,8 @@ class Case(Definition):
         """Whether contacts are looked for between nodes: of petals in 2-D on a rigid bushing."""
         model, on_bushing = self.model, self.petals is not None and self.backing is None
         newton_2d = model.kind is ModelKind.TWO_D and model.method is Method.NEWTON
-        return on_bushing and newton_2d and model.contacts is ContactDiscretization.POINTS
+        points = model.contacts is ContactDiscretization.POINTS and not self.rubbing_pulls
+        return on_bushing and newton_2d and points
 
     @property
     def has_contact_lines(self) -> bool:
@@ -295,7 +308,8 @@ class Case(Definition):
         model = self.model
         newton_3d = model.kind is ModelKind.THREE_D and model.method is Method.NEWTON
         unbacked = self.petals is not None and self.backing is None
-        return newton_3d and model.contacts is ContactDiscretization.POINTS and unbacked
+        points = model.contacts is ContactDiscretization.POINTS and not self.rubbing_pulls
+        return newton_3d and points and unbacked
 
     @property
     def adapts_stations(self) -> bool:

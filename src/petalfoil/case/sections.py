@@ -40,6 +40,13 @@ class FrictionHistory(StrEnum):
     ASSEMBLED = "assembled"
 
 
+class JournalRubbing(StrEnum):
+    """What dry friction of the journal does: resist its turning alone, or also pull at petals and rotor."""
+
+    TORQUE = "torque"
+    FORCE = "force"
+
+
 class Surface(Definition):
     """Roughness and dry friction of journal and petals."""
 
@@ -58,6 +65,10 @@ class Surface(Definition):
     friction_coefficient: Annotated[
         float, Quantity(unit="1", meaning="dry friction coefficient", symbol="mu_f", at_least=0.0, at_most=5.0)
     ] = 0.3
+    journal_rubbing: JournalRubbing = JournalRubbing.TORQUE
+    """What dry friction of the turning journal does where it touches: `torque` resists its turning alone; `force` also
+    drags the petals along the journal's motion, and holds the rotor back (D6), (D7). Contacts are then at nodes. At
+    zero speed an equilibrium is that of a journal about to turn."""
     petal_friction: Annotated[
         float,
         Quantity(

@@ -39,6 +39,7 @@ def refuse_unsolvable(case: Case) -> None:
         *_method_problems(case),
         *_second_problems(case),
         *_history_problems(case),
+        *_rubbing_problems(case),
     ]
     if problems:
         raise refusal(DefinitionError, problems)
@@ -120,6 +121,23 @@ def _history_problems(case: Case) -> Iterator[Problem]:
         lacks = "one temperature (no [heat]), and bearings that share the load of a rotor evenly"
     text = f'a pack that keeps the friction of its assembly needs {lacks}; allowed here: "relaxed"'
     yield Problem("surface.friction_history", text, "assembled", '"relaxed"')
+
+
+def _rubbing_problems(case: Case) -> Iterator[Problem]:
+    """Yield why the rubbing of the journal cannot pull at what it touches."""
+    if not case.rubbing_pulls:
+        return
+    bends_only = case.petal_theory is PetalTheory.INEXTENSIBLE and case.model.kind is ModelKind.THREE_D
+    if case.model.method is Method.CLASSIC:
+        lacks = 'model.method = "newton"'
+    elif case.petals is not None and bends_only:
+        lacks = 'petals that stretch in 3-D (petals.theory = "shell")'
+    elif case.backing is not None:
+        lacks = "petals on a rigid bushing (no [backing])"
+    else:
+        return
+    text = f'a journal whose rubbing pulls at what it touches needs {lacks}; allowed here: "torque"'
+    yield Problem("surface.journal_rubbing", text, "force", '"torque"')
 
 
 def _method_problems(case: Case) -> Iterator[Problem]:

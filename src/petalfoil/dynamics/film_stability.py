@@ -30,7 +30,9 @@ def leading_eigenvalue(solution: Solution) -> complex:
     linearized = problem.linearize(solution.x)
     steady = linearized.matrix(np.zeros(len(problem.weight)))
     contacts = solution.contacts
-    constraints = constrain(problem.G, solution.active) if contacts is None else contacts.constraints
+    constraints = (
+        constrain(problem.G, solution.active, acting=problem.acting) if contacts is None else contacts.constraints
+    )
     wall = constraints.group[problem.layout.unknowns[DEFLECTION]]
     first = int(wall.max(initial=-1)) + 1
     solver = current_run().probe_solver

@@ -64,7 +64,8 @@ class LeadingMode:
         start = leading_eigenvalue(solution)
         if not np.isfinite(start):
             raise ConvergenceError("no growth rate to differentiate: the shaft does not turn")
-        constraints = constrain(solution.problem.G, solution.active)
+        problem = solution.problem
+        constraints = constrain(problem.G, solution.active, acting=problem.acting)
         J, M = matrices(solution, constraints)
         shift = start + OFF * abs(start) * (1.0 + 1.0j if start.imag else 1.0)
         solver = current_run().probe_solver

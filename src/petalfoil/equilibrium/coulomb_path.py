@@ -80,7 +80,7 @@ def slide_exactly(
     known = KnownState(before.active, before.friction.direction, gaps, before.lam, before.friction.force, still)
     doubt = beside(before.active, lines) | (base[2] < CLOSED)
     for _ in range(ROUNDS):
-        columns = UnitResponses.of(tangent, pack.G, np.flatnonzero(doubt), rubbing)
+        columns = UnitResponses.of(tangent, (pack.G, pack.acting), np.flatnonzero(doubt), rubbing)
         found = columns.solved(base, slip, known)
         if found is None:
             return None
@@ -96,7 +96,7 @@ def tangent_at(
     pack: ContactProblem, active: Mask, linearized: Linearized, solver: LinearSolver
 ) -> BorderedTangent | None:
     """The factorised pack with `active` gaps closed; None if these do not determine it."""
-    constraints = constrain(pack.G, active)
+    constraints = constrain(pack.G, active, acting=pack.acting)
     if not constraints.determinate:
         return None
     matrix = linearized.matrix(np.zeros(len(active)))
@@ -123,6 +123,6 @@ def reached(
     force[columns.rubbing] = found.friction
     after = FrictionState(slip, force, friction.coefficient * friction.normal(lam))
     linearized = pack.linearize(x)
-    left = linearized.residual + against_slip(friction, force, len(x)) - pack.G.T @ lam
+    left = linearized.residual + against_slip(friction, force, len(x)) - pack.acting.T @ lam
     residual = float(np.max(np.abs(left) / linearized.row_scale, initial=0.0))
     return FrictionResult(x, lam, active, residual, after, energy_lost(friction, before.friction, after))

@@ -36,10 +36,10 @@ def assembled(friction: Friction, problem: CoupledProblem) -> FrictionResult | N
     without friction.
     """
     clearance = problem.layout.case.bearing.clearance / problem.layout.scales.length if friction.exact else 0.0
-    found = at_rest(problem, clearance)
+    found = at_rest(problem, clearance, still=True)
     if found is None:
         return None
-    pack = unloaded(problem, clearance)
+    pack = unloaded(problem, clearance, still=True)
     contacts, _ = solve_contacts(pack, (found.x, found.active), current_run().pack_solver)
     if contacts is None:
         return None
@@ -48,7 +48,7 @@ def assembled(friction: Friction, problem: CoupledProblem) -> FrictionResult | N
     if not friction.exact:
         return start
     steps = math.ceil(problem.layout.case.bearing.clearance / LONGEST_INSERTION)
-    slid = led(friction, start, lambda share: unloaded(problem, (1.0 - share) * clearance), steps)
+    slid = led(friction, start, lambda share: unloaded(problem, (1.0 - share) * clearance, still=True), steps)
     return None if slid is None else replace(slid, lost=0.0)  # energy is counted from the assembled pack on
 
 
@@ -60,7 +60,7 @@ def moved(
     start, way = begin.displacement, problem.displacement - begin.displacement
     longest = LONGEST_MOVE / problem.layout.scales.length if friction.exact else np.inf
     steps = max(1, math.ceil(float(np.linalg.norm(way)) / longest - 1e-9))
-    return led(friction, state, lambda share: unloaded(problem.at(displacement=start + share * way)), steps)
+    return led(friction, state, lambda share: unloaded(problem.at(displacement=start + share * way), still=True), steps)
 
 
 def led(

@@ -179,7 +179,7 @@ class LineContacts:
     @cached_property
     def contacts(self) -> TravellingContacts:
         """Contacts of the linear response: its tangent is the exact derivative of this state."""
-        return travelling_contacts(self.problem.G, self.problem.layout.wall.contacts.by_e, self)
+        return travelling_contacts((self.problem.G, self.problem.G), self.problem.layout.wall.contacts.by_e, self)
 
     @cached_property
     def motion(self) -> SmallMotion:

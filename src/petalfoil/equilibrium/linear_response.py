@@ -127,7 +127,9 @@ class SmallMotion:
         """How the journal's position enters: its rows read film, contacts and their travel."""
         rows = -self.contacts.forcing.T
         rows[:, self.problem.positive] += self.problem.border.row_derivative
-        return Border(self.contacts.gap_by_e, rows, slice(0, rows.shape[1]))
+        problem, nodes = self.problem, self.contacts.constraints
+        rubbing = None if nodes.acting is None else problem.border.by_reactions[:, self.contacts.held]
+        return Border(self.contacts.gap_by_e, rows, slice(0, rows.shape[1]), rubbing)
 
     @property
     def elimination_key(self) -> Hashable | None:
@@ -139,19 +141,27 @@ class SmallMotion:
 
         For frequencies above zero.
 
-        `N` makes the unknowns follow the journal where it touches; the reactions' force on it is `-N^T` times the rows.
+        `N` makes the unknowns follow the journal where it touches; the reactions' force on it is `-N^T` times the rows,
+        or `pull^T` times them where it rubs.
         """
         constraints, J, S = self.contacts.constraints, self.whirling, self.stored
         N = np.column_stack([constraints.close(column) for column in self.contacts.gap_by_e.T])
+        pull = -N if constraints.acting is None else self._pull
         steady, stored = J @ N + self.steady_forcing, S @ N + self.stored_forcing
         rows = self.border.row_derivative
         return MovedSystem(
             solve=constraints.factor(J, solver, self.elimination_key).solve,
             S=constraints.reduce(S),
-            forcing=(constraints.gather(steady), constraints.gather(stored)),
-            force=(constraints.gather(rows.T - J.T @ N), constraints.gather(-(S.T @ N))),
-            direct=(rows @ N - N.T @ steady - self.contacts.gradient, -N.T @ stored),
+            forcing=(constraints.balanced(steady), constraints.balanced(stored)),
+            force=(constraints.gather(rows.T + J.T @ pull), constraints.gather(S.T @ pull)),
+            direct=(rows @ N + pull.T @ steady - self.contacts.gradient, pull.T @ stored),
         )
+
+    @property
+    def _pull(self) -> Array:
+        """Force of the reactions on the journal by the rows, (n, n_position)."""
+        constraints = self.contacts.constraints
+        return np.column_stack([constraints.reactions_adjoint(row) for row in self.border.by_reactions])
 
     def respond(self, nu: float, solver: LinearSolver) -> LinearResponse:
         """The response at whirl ratio `nu`; one factorisation."""
@@ -195,7 +205,7 @@ class LinearResponse:
     def moved(self, forces: Values) -> Values:
         """Change of the unknowns by forces on them, the journal held in place; (n, k) each."""
         constraints, factor = self.tangent.tangent.constraints, self.tangent.tangent.factor
-        pushes = np.column_stack([constraints.gather(force) for force in forces.T])
+        pushes = np.column_stack([constraints.balanced(force) for force in forces.T])
         moved = factor.solve(pushes.astype(self.units.dtype))
         return np.column_stack([constraints.spread(column) for column in moved.T])
 

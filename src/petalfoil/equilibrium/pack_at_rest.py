@@ -33,9 +33,12 @@ REST_GOALS = (1e-6, 1e-9, 1e-12, 1e-15)
 carry: of hinged petals that overlap by a third of a cell, reactions and gaps are told apart there only."""
 
 
-def unloaded(problem: CoupledProblem, withdrawn: float = 0.0) -> FoilPackProblem:
-    """The pack without film pressure, round a journal that is `withdrawn` reference lengths thinner than its own."""
-    return FoilPackProblem(problem, np.zeros(problem.layout.n_wall), withdrawn)
+def unloaded(problem: CoupledProblem, withdrawn: float = 0.0, *, still: bool = False) -> FoilPackProblem:
+    """The pack without film pressure, round a journal that is `withdrawn` reference lengths thinner than its own.
+
+    The journal is about to turn, or it is `still`: that makes a difference where it drags petals along.
+    """
+    return FoilPackProblem(problem, np.zeros(problem.layout.n_wall), withdrawn, still)
 
 
 def free_start(pack: FoilPackProblem) -> PrimalDualPoint:
@@ -63,9 +66,9 @@ def assembled(problem: CoupledProblem, barrier: float) -> PrimalDualPoint:
     return replace(point, x=problem.layout.ambient(point.x))
 
 
-def at_rest(problem: CoupledProblem, withdrawn: float = 0.0) -> ActiveContacts | None:
+def at_rest(problem: CoupledProblem, withdrawn: float = 0.0, *, still: bool = False) -> ActiveContacts | None:
     """Deflections and active contacts of the assembled pack; None if not found."""
-    pack = unloaded(problem, withdrawn)
+    pack = unloaded(problem, withdrawn, still=still)
     start = free_start(pack)
     for goal in REST_GOALS:
         watch = current_run().watch("pack", settled(goal))

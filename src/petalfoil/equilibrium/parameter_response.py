@@ -70,7 +70,7 @@ class Equations:
         linearized = problem.linearize(x, low_order=solution.state.low_order)
         load = np.zeros(problem.layout.n_position) if self.load is None else self.load
         return EquationValues(
-            linearized.residual - problem.G.T @ lam,
+            linearized.residual - problem.acting.T @ lam,
             problem.gaps(x),
             problem.journal_force(x, lam) + load,
             problem.displacement,
@@ -216,7 +216,7 @@ class HeldEquilibrium:
             The contacts do not determine the state, so that it has no derivative.
         """
         problem, state = solution.problem, solution.state
-        constraints = constrain(problem.G, held, problem.layout.wall.contacts.journal)
+        constraints = constrain(problem.G, held, problem.layout.wall.contacts.journal, problem.acting)
         linearized = problem.linearize(state.x, low_order=state.low_order)
         matrix = linearized.matrix(np.zeros(len(held)))
         try:
@@ -259,8 +259,7 @@ class HeldEquilibrium:
             return StateWeights(*tangent.adjoint(by_x, by_lam), none)
         moved = by_x @ tangent.units + by_lam @ tangent.reaction_units + by_state.force
         s = np.asarray(np.linalg.solve(tangent.gradient.T, moved), dtype=np.float64)
-        by_reactions = border.gap_derivative.T if border.reaction_derivative is None else border.reaction_derivative
-        by_x, by_lam = by_x.copy(), by_lam - s @ by_reactions
+        by_x, by_lam = by_x.copy(), by_lam - s @ border.by_reactions
         by_x[border.columns] -= s @ border.row_derivative
         return StateWeights(*tangent.adjoint(by_x, by_lam), -s)
 
@@ -270,7 +269,9 @@ class HeldEquilibrium:
         lam = np.zeros(len(self.held))
         lam[gap] = 1.0
         none = np.zeros_like(lam)
-        rates = EquationValues(-(problem.G.T @ lam), none, problem.contact_force(lam), np.zeros(problem.border.size))
+        rates = EquationValues(
+            -(problem.acting.T @ lam), none, problem.contact_force(lam), np.zeros(problem.border.size)
+        )
         rate = self._chains_free(rates)
         return replace(rate, lam=rate.lam + lam)
 

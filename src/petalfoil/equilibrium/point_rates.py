@@ -74,13 +74,13 @@ class PointEquilibrium:
             The contacts do not determine the state.
         """
         problem, state, active = solution.problem, solution.state, solution.active
-        if not constrain(problem.G, active).determinate:
-            return None
+        if problem.acting is not problem.G or not constrain(problem.G, active).determinate:
+            return None  # (V5) is that of reactions along the gaps alone
         linearized = problem.linearize(state.x, low_order=state.low_order)
         points = placed_points(solution, linearized)
         if not len(points.travel_stiffness):
             return None
-        travelling = travelling_contacts(problem.G, problem.layout.wall.contacts.by_e, points)
+        travelling = travelling_contacts((problem.G, problem.G), problem.layout.wall.contacts.by_e, points)
         matrix = linearized.matrix(np.zeros(len(active)))
         whole = sp.csc_array(matrix + travelling.tangent)
         try:

@@ -54,6 +54,11 @@ class PetalsInMedium:
         return self.base.G
 
     @property
+    def acting(self) -> SparseRows:
+        """Forces of unit reactions."""
+        return self.base.acting
+
+    @property
     def weight(self) -> Array:
         """Weights of the gaps."""
         return self.base.weight

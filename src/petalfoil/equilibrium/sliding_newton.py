@@ -21,15 +21,14 @@ from petalfoil.solvers.contact_equations import ContactEquations, ContactState, 
 from petalfoil.solvers.contact_space import KnownState, RubbingContacts, Unit, UnitResponses
 from petalfoil.solvers.coulomb import ContactForces
 from petalfoil.solvers.sparse_lu import SingularMatrixError
-from petalfoil.solvers.tangent import BorderedTangent, Tangent
-from petalfoil.sparsity import SparseRows
+from petalfoil.solvers.tangent import BorderedTangent, GapRows, Tangent
 from petalfoil.system.friction import FrictionState, against_slip, slips
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
-Rubs = tuple[SparseRows, RubbingContacts]
-"""Derivative of all gaps, and those that rub."""
+Rubs = tuple[GapRows, RubbingContacts]
+"""Derivative of all gaps and forces of unit reactions, and the gaps that rub."""
 
 CORRECTIONS = 24
 """Most corrections; two or three are typical."""
@@ -176,7 +175,7 @@ class SlidingNewton:
     def tangent_at(self, at: Iterate) -> SlidingTangent | None:
         """The factorised equations with the contacts of an iterate; None if they have no inverse."""
         problem, solver = self.equations.at(at.b), current_run().film_solver
-        constraints = constrain(problem.G, at.closed, self.equations.stops)
+        constraints = constrain(problem.G, at.closed, self.equations.stops, problem.acting)
         if not constraints.determinate:
             return None
         linearized = problem.linearize(at.x)
@@ -186,7 +185,7 @@ class SlidingNewton:
         except SingularMatrixError:
             return None
         plain = BorderedTangent.at(Tangent(matrix, constraints, factor), self.equations.border, linearized)
-        rubs = problem.G, rubbing_of(self.friction, len(at.x))
+        rubs = (problem.G, problem.acting), rubbing_of(self.friction, len(at.x))
         contacts = np.flatnonzero(self.in_question(at))
         try:
             return SlidingTangent.about(plain, self.equations.border_stiffness, contacts, rubs)
@@ -230,7 +229,7 @@ class SlidingNewton:
         """An iterate with its residual, and its slips and friction forces."""
         problem, friction = self.equations.at(at.b), self.friction
         linearized = problem.linearize(at.x)
-        left = linearized.residual + against_slip(friction, at.force, len(at.x)) - problem.G.T @ at.lam
+        left = linearized.residual + against_slip(friction, at.force, len(at.x)) - problem.acting.T @ at.lam
         residual = float(np.max(np.abs(left) / linearized.row_scale, initial=0.0))
         gaps, constraints = problem.gaps(at.x), sliding.constraints
         state = ContactState(at.x, at.b, at.lam, at.closed, residual, constraints, linearized, gaps)

@@ -207,7 +207,7 @@ def total_residual(problem: CoupledProblem, state: RefinedState, linearized: Lin
     exactly when both are non-negative and one of them vanishes.
     """
     linearized = linearized or problem.linearize(state.x, low_order=state.low_order)
-    rows = scaled_residual(linearized, problem.G.T @ state.lam)
+    rows = scaled_residual(linearized, problem.acting.T @ state.lam)
     mismatch = np.minimum(problem.gaps(state.x), state.lam / problem.weight)
     return max(rows, float(np.max(np.abs(mismatch), initial=0.0)))
 

@@ -26,6 +26,8 @@ from petalfoil.equilibrium.solution import Solution
 from petalfoil.physics.contact_points import IsolatedContacts
 from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.point_constraints import PointConstraints, constrain_points
+from petalfoil.solvers.tangent import GapRows
+from petalfoil.sparsity import SparseRows
 from petalfoil.system.coupled import Linearization
 
 Array = NDArray[np.float64]
@@ -67,6 +69,8 @@ class TravellingContacts:
         `n'_e` of the points [1/rad].
     travel_stiffness : (j,) array
         `lam / p''` [rad^2].
+    held : (m,) bool array
+        Contacts at nodes among all gaps.
     """
 
     constraints: PointConstraints
@@ -74,24 +78,28 @@ class TravellingContacts:
     slope_by_x: sp.csr_array
     slope_by_e: Array
     travel_stiffness: Array
+    held: NDArray[np.bool_]
 
     @classmethod
     def of(cls, solution: Solution, linearized: Linearization) -> TravellingContacts:
         """Those of an equilibrium; where there are points, one factorisation tells where they are (K8)."""
         problem, active = solution.problem, solution.active
+        if problem.acting is not problem.G:  # (E12) is that of reactions along the gaps alone
+            return cls.at_nodes(solution)
         if not constrain(problem.G, active).determinate:  # bottomed out
             return cls.at_nodes(solution)
         points = placed_points(solution, linearized)
         at_points = float(solution.lam[active & ~points.at_nodes].sum() / max(solution.lam.sum(), 1e-300))
         count = len(points.travel_stiffness)
         current_run().note("contact points", points=count, nodes=int(points.at_nodes.sum()), carried=at_points)
-        return travelling_contacts(problem.G, problem.layout.wall.contacts.by_e, points)
+        return travelling_contacts((problem.G, problem.G), problem.layout.wall.contacts.by_e, points)
 
     @classmethod
     def at_nodes(cls, solution: Solution) -> TravellingContacts:
         """Those of an equilibrium, all at their nodes."""
-        contacts = solution.problem.layout.wall.contacts
-        return travelling_contacts(solution.problem.G, contacts.by_e, IsolatedContacts((), solution.active))
+        problem, contacts = solution.problem, solution.problem.layout.wall.contacts
+        rows = problem.G, problem.acting
+        return travelling_contacts(rows, contacts.by_e, IsolatedContacts((), solution.active))
 
     @cached_property
     def tangent(self) -> sp.csc_array:
@@ -117,23 +125,25 @@ def placed_points(solution: Solution, linearized: Linearization) -> IsolatedCont
     return points.placed(turning_compliance(problem.G, matrix, points, problem.elimination_key))
 
 
-def travelling_contacts(G: sp.csr_array, by_e: Array, points: PlacedPoints) -> TravellingContacts:
-    """Contacts at nodes and points of gaps whose derivatives are `G` (m, n) and `by_e` (m, d)."""
+def travelling_contacts(gaps: GapRows, by_e: Array, points: PlacedPoints) -> TravellingContacts:
+    """Contacts at nodes and points of gaps, whose derivative and unit reactions are `gaps`; `by_e` is (m, d)."""
+    G, acting = gaps
     return TravellingContacts(
-        constraints_of(G, points),
+        constraints_of(G, points, acting),
         np.vstack([by_e[points.at_nodes], points.value @ by_e]),
         sp.csr_array(points.slope @ G),
         points.slope @ by_e,
         points.travel_stiffness,
+        points.at_nodes,
     )
 
 
-def constraints_of(G: sp.csr_array, points: PlacedPoints) -> PointConstraints:
+def constraints_of(G: SparseRows, points: PlacedPoints, acting: SparseRows | None = None) -> PointConstraints:
     """Gaps at nodes and points kept closed."""
-    return constrain_points(constrain(G, points.at_nodes), sp.csr_array(points.value @ G))
+    return constrain_points(constrain(G, points.at_nodes, acting=acting), sp.csr_array(points.value @ G))
 
 
-def turning_compliance(G: sp.csr_array, matrix: sp.csc_array, points: IsolatedContacts, key: Hashable | None) -> Array:
+def turning_compliance(G: SparseRows, matrix: sp.csc_array, points: IsolatedContacts, key: Hashable | None) -> Array:
     """Turn of the gap at each point by a unit moment on its whole contact line, points pinned, (k,).
 
     `matrix` (n, n) is the tangent, `key` that of its elimination orders. One factorisation, a solve for each line.

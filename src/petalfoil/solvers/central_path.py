@@ -121,7 +121,7 @@ class PathPoint:
         if not np.all(np.abs(values) < FARTHEST) or np.min(self.x[self.problem.positive], initial=1.0) <= 0.0:
             return np.inf
         apart = float(np.max(np.abs(self.open_by), initial=0.0))
-        found = max(scaled_residual(self.linearized, self.problem.G.T @ self.lam), apart)
+        found = max(scaled_residual(self.linearized, self.problem.acting.T @ self.lam), apart)
         return found if np.isfinite(found) else np.inf
 
     @cached_property
@@ -136,17 +136,17 @@ class PathPoint:
 
         With `ds = -(s / root) dz`, `d lam = w (lam / w root) dz` and `ds = G dx - open_by`.
         """
-        G, theta = self.problem.G, self.lam / self.s
-        imbalance = self.linearized.residual - G.T @ self.lam
+        G, H, theta = self.problem.G, self.problem.acting, self.lam / self.s
+        imbalance = self.linearized.residual - H.T @ self.lam
         dx = self.factor.solve(
-            -imbalance + self.linearized.slack_derivative(self.open_by) + G.T @ (theta * self.open_by)
+            -imbalance + self.linearized.slack_derivative(self.open_by) + H.T @ (theta * self.open_by)
         )
         return Change(dx, (self.open_by - G @ dx) * self._root / self.s, 0.0)
 
     def tangent(self) -> Change:
         """Change along the path by `ln mu`: at fixed `z`, slacks and reactions over weight grow by `mu / root`."""
-        G, grown = self.problem.G, self.barrier / self.s
-        dx = self.factor.solve(G.T @ (self.problem.weight * grown))
+        G, H, grown = self.problem.G, self.problem.acting, self.barrier / self.s
+        dx = self.factor.solve(H.T @ (self.problem.weight * grown))
         return Change(dx, grown - (G @ dx) * self._root / self.s, 1.0)
 
     def moved(self, change: Change) -> PathPoint:

@@ -3,12 +3,19 @@
 An active contact holds one unknown at a value, or keeps the difference of two constant. Unknowns that are connected in
 this way move as one group, and a group that is connected to a held unknown does not move. Active contacts thus make the
 linear system smaller, without multipliers. Their reactions follow afterwards from the equations of the group.
+
+Reactions of contacts that rub act along rows `H` other than those of the gaps, `G` (D6). They leave the equations by an
+oblique projection: what the free unknowns read of `F - H^T lam = 0` is
+
+    Z^T (F - (H - G)^T lam) = 0 ,    lam = (G H^T)^-1 G F                                                      (T5)
+
+with the motions `Z` that keep the gaps closed.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -41,6 +48,8 @@ class ContactConstraints:
         Free unknowns.
     stops : (j,) int array
         Active gaps that close a chain of held ones. They are not held: what moves the chain as a whole opens them.
+    acting : (k, n) sparse or None
+        Rows `H` along which their reactions act; None where these are those of the gaps.
     """
 
     held: Mask
@@ -48,6 +57,7 @@ class ContactConstraints:
     group: Index
     n_free: int
     stops: Index
+    acting: SparseRows | None = field(default=None, kw_only=True)
 
     @cached_property
     def determinate(self) -> bool:
@@ -63,17 +73,46 @@ class ContactConstraints:
         out: Array = -(self.G.T @ self._normal.solve(gaps)) if len(gaps) else np.zeros(len(self.group))
         return out
 
+    @cached_property
+    def _across(self) -> spla.SuperLU:
+        """Factors of `G H^T`."""
+        return self._normal if self.acting is None else spla.splu(sp.csc_array(self.G @ self.acting.T))
+
+    @cached_property
+    def motions(self) -> sp.csr_array:
+        """`Z`: changes of all unknowns by the free ones, (n, n_free)."""
+        inside = np.flatnonzero(self.group >= 0)
+        ones, shape = np.ones(len(inside)), (len(self.group), self.n_free)
+        return sp.coo_array((ones, (inside, self.group[inside])), shape=shape).tocsr()
+
+    @cached_property
+    def _dragged(self) -> sp.csr_array | None:
+        """What reactions leave in the equations of the free unknowns by all equations (T5), (n_free, n); None if none.
+
+        Only rows whose reactions act on more than their gaps need a solve.
+        """
+        if self.acting is None:
+            return None
+        more = sp.csr_array(self.acting - self.G)
+        rubbing = np.flatnonzero(np.diff(more.indptr))
+        if not len(rubbing):
+            return None
+        units = np.zeros((self.G.shape[0], len(rubbing)))
+        units[rubbing, np.arange(len(rubbing))] = 1.0
+        reactions = sp.csr_array(self._across.solve(units, "T").T) @ sp.csr_array(self.G)
+        return sp.csr_array((sp.csr_array(self.motions.T) @ sp.csr_array(more[rubbing].T)) @ reactions)
+
     def reactions(self, residual: NDArray[Any]) -> NDArray[Any]:
-        """Reactions `lam` (k,) with `G^T lam = residual` on the eliminated equations (T2)."""
+        """Reactions `lam` (k,) with `H^T lam = residual` on the eliminated equations (T2)."""
         if not self.G.shape[0]:
             return np.zeros(0)
-        return apply_to_parts(self._normal.solve, self.G @ residual)
+        return apply_to_parts(self._across.solve, self.G @ residual)
 
     def reactions_adjoint(self, by_reactions: Array) -> Array:
         """Derivative by the residual (n,) of what has the derivative `by_reactions` (k,) by `reactions`."""
-        return (
-            np.asarray(self.G.T @ self._normal.solve(by_reactions)) if len(by_reactions) else np.zeros(len(self.group))
-        )
+        if not len(by_reactions):
+            return np.zeros(len(self.group))
+        return np.asarray(self.G.T @ self._across.solve(by_reactions, "N" if self.acting is None else "T"))
 
     def close_adjoint(self, by_change: Array) -> Array:
         """Derivative by the gaps (k,) of what has the derivative `by_change` (n,) by the change `close`."""
@@ -88,6 +127,16 @@ class ContactConstraints:
         """Move every unknown with its group; shape (n,)."""
         return np.append(free, 0.0)[self.group]
 
+    def balanced(self, full: NDArray[Any]) -> NDArray[Any]:
+        """What all equations (n,) leave of those of the free unknowns without their reactions (T5), (n_free,)."""
+        gathered = self.gather(full)
+        return gathered if self._dragged is None else gathered - self._dragged @ full
+
+    def balanced_adjoint(self, free: NDArray[Any]) -> NDArray[Any]:
+        """Derivative by all equations (n,) of what has the derivative `free` (n_free,) by `balanced`."""
+        spread = self.spread(free)
+        return spread if self._dragged is None else spread - self._dragged.T @ free
+
     def largest(self, scale: Array) -> Array:
         """Largest of `scale` (n,) among the unknowns that each moves with, (n,): their equations share what is left."""
         inside = self.group >= 0
@@ -96,9 +145,11 @@ class ContactConstraints:
         return np.where(inside, np.append(of_group, 0.0)[self.group], scale)
 
     def reduce(self, matrix: sp.csc_array) -> sp.csc_array:
-        """The matrix over the free unknowns: rows and columns of a group added up."""
+        """The matrix over the free unknowns: rows and columns of a group added up, without reactions (T5)."""
         if not self.G.shape[0]:
             return matrix
+        if self._dragged is not None:
+            return sp.csc_array((sp.csr_array(self.motions.T) - self._dragged) @ (matrix @ self.motions))
         coo = matrix.tocoo()
         rows, cols = self.group[coo.row], self.group[coo.col]
         inside = (rows >= 0) & (cols >= 0)
@@ -128,8 +179,10 @@ def apply_to_parts(linear: Callable[[Array], Array], value: NDArray[Any]) -> NDA
     return linear(value)
 
 
-def constrain(G: sp.csr_array, active: Mask, stops: slice | None = None) -> ContactConstraints:
-    """Hold the gaps `active` (m,) closed.
+def constrain(
+    G: SparseRows, active: Mask, stops: slice | None = None, acting: SparseRows | None = None
+) -> ContactConstraints:
+    """Hold the gaps `active` (m,) closed, whose reactions act along the rows `acting` (m, n), by default those of `G`.
 
     Where active gaps repeat each other, one of them becomes a stop if `stops` says where stops are looked for first;
     without it all are held, and the constraints are not determinate.
@@ -145,7 +198,8 @@ def constrain(G: sp.csr_array, active: Mask, stops: slice | None = None) -> Cont
     count, label = sp.csgraph.connected_components(graph, directed=False)
     number = np.arange(count)
     number = np.where(number == label[ground], -1, number - (number > label[ground]))
-    return ContactConstraints(held, rows, number[label[:n]], count - 1, np.flatnonzero(active & ~held))
+    along = None if acting is None or acting is G else SparseRows(acting[held])
+    return ContactConstraints(held, rows, number[label[:n]], count - 1, np.flatnonzero(active & ~held), acting=along)
 
 
 def determining(G: sp.csr_array, active: Mask, last: slice) -> Mask:

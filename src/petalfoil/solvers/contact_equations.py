@@ -236,8 +236,9 @@ def evaluate(
     lam, active = np.zeros(len(gaps)), held.copy()
     if pushes is not None:
         lam[stops], active[stops] = pushes, pushes > 0.0
-    lam[held] = constraints.reactions(linearized.residual - problem.G.T @ lam if len(stops) else linearized.residual)
-    left = np.abs(linearized.residual - problem.G.T @ lam)
+    push = problem.acting.T
+    lam[held] = constraints.reactions(linearized.residual - push @ lam if len(stops) else linearized.residual)
+    left = np.abs(linearized.residual - push @ lam)
     residual = float(np.max(left / constraints.largest(linearized.row_scale), initial=0.0))
     return ContactState(x, at[1], lam, active, residual, constraints, linearized, gaps)
 

@@ -191,7 +191,8 @@ def steps_with(
 def corrected(equations: ContactEquations, state: ContactState, tangent: BorderedTangent) -> Correction:
     """Newton's correction of unknowns and bordered unknowns.
 
-    Stops resist the bordered unknowns alone, whatever the others do: a small complementarity problem.
+    Stops resist the bordered unknowns, whatever the others do: a small complementarity problem. The other unknowns move
+    by their pushes only where they rub.
     """
     residual = state.linearized.residual
     if not equations.border.size:
@@ -200,12 +201,22 @@ def corrected(equations: ContactEquations, state: ContactState, tangent: Bordere
     stops, pushes = tangent.constraints.stops, np.zeros(0)
     if len(stops):
         arms = tangent.border.gap_derivative[stops] + equations.problem.G[stops] @ tangent.units
-        give = np.linalg.solve(stiffness, arms.T)
+        dragged, pulls = (None, arms.T) if tangent.constraints.acting is None else stop_pushes(equations, tangent)
+        give = np.linalg.solve(stiffness, pulls)
         found = solve_lcp(arms @ give, state.gaps[stops] + arms @ db, np.zeros(len(arms), dtype=bool))
         if found is None:
             raise ContactFailure(ContactOutcome.OVERDETERMINED)
         db, pushes = db + give @ found, found
+        settled = settled if dragged is None else settled + dragged @ found
     return Correction(settled + tangent.units @ db, db, pushes)
+
+
+def stop_pushes(equations: ContactEquations, tangent: BorderedTangent) -> tuple[Array, Array]:
+    """Change of the unknowns (n, j) and force on the bordered unknowns (d, j) by a unit push of each stop that rubs."""
+    stops, border = tangent.constraints.stops, tangent.border
+    pushed = [tangent.respond(-row) for row in equations.problem.acting[stops].toarray()]
+    forces = border.by_reactions[:, stops] + np.column_stack([border.rows(*one) for one in pushed])
+    return np.column_stack([change for change, _ in pushed]), forces
 
 
 def border_change(
@@ -239,11 +250,16 @@ def factorise(
 
 def fitting(equations: ContactEquations, tangent: BorderedTangent | None, start: Start) -> BorderedTangent | None:
     """The tangent, if it serves the contacts of `start`, as it is or after an exchange of a few."""
-    if tangent is None or tangent.serves(start[2]):
-        return tangent
-    return tangent.exchanged(equations.problem.G, start[2])
+    if tangent is None:
+        return None
+    G, acting = equations.problem.G, equations.problem.acting
+    if (tangent.constraints.acting is None) is not (acting is G):  # a shaft at rest and one that turns
+        return None
+    return tangent if tangent.serves(start[2]) else tangent.exchanged((G, acting), start[2])
 
 
 def constraints_of(equations: ContactEquations, start: Start, tangent: BorderedTangent | None) -> ContactConstraints:
     """The contacts of `start` as constraints; those of a tangent that fits them."""
-    return constrain(equations.problem.G, start[2], equations.stops) if tangent is None else tangent.constraints
+    if tangent is not None:
+        return tangent.constraints
+    return constrain(equations.problem.G, start[2], equations.stops, equations.problem.acting)

@@ -59,27 +59,28 @@ def search(
     (x, active)
         The next iterate and its active contacts.
     """
-    plain = state.linearized.matrix(np.zeros(len(doubt)))
+    bare = state.linearized.matrix(np.zeros(len(doubt)))
     most = max(ALWAYS_FEW, SOLVES // max(1, int(problem.G.shape[1])))  # a search costs as much as a few factorisations
-    wide = neighbours(problem, doubt, plain)
+    wide = neighbours(problem, doubt, bare)
     doubt = doubt if np.count_nonzero(wide) > most else wide
     kept = state.active & ~doubt
-    constraints = constrain(problem.G, kept)
+    constraints = constrain(problem.G, kept, acting=problem.acting)
     if np.count_nonzero(doubt) > most or not constraints.determinate:
         return None
     stiffness = np.zeros(len(doubt))
-    stiffness[state.active & doubt] = float(np.median(np.abs(plain.diagonal())))
+    stiffness[state.active & doubt] = float(np.median(np.abs(bare.diagonal())))
     try:
         factor = constraints.factor(state.linearized.matrix(stiffness), solver, problem.elimination_key)
     except SingularMatrixError:
         return None
-    base = factor.solve(-constraints.gather(state.linearized.residual))
+    base, plain = factor.solve(-constraints.balanced(state.linearized.residual)), problem.acting is problem.G
     for _ in range(ROUNDS):
         doubts = np.flatnonzero(doubt)
         if len(doubts) > most:
             return None
         rows = reduced_rows(problem.G, doubts, constraints)
-        reduced = ReducedContacts(rows, factor.solve(rows.T.toarray()), base, stiffness[doubts])
+        pushes = rows.T.toarray() if plain else balanced_columns(problem.acting, doubts, constraints)
+        reduced = ReducedContacts(rows, factor.solve(pushes), base, stiffness[doubts])
         found = reduced.solved(state.gaps[doubts], state.active[doubts])
         if found is None:
             return None
@@ -100,6 +101,11 @@ def reduced_rows(G: sp.csr_array, rows: NDArray[np.intp], constraints: ContactCo
     inside = group >= 0
     shape = (len(rows), constraints.n_free)
     return sp.coo_array((coo.data[inside], (coo.row[inside], group[inside])), shape=shape).tocsr()
+
+
+def balanced_columns(acting: sp.csr_array, rows: NDArray[np.intp], constraints: ContactConstraints) -> Array:
+    """Forces of unit reactions on the equations of the free unknowns, (n_free, k)."""
+    return np.column_stack([constraints.balanced(row) for row in acting[rows].toarray()])
 
 
 @dataclass(frozen=True)
@@ -126,7 +132,7 @@ class ReducedContacts:
     def solved(self, gaps: Array, active: Mask) -> tuple[Array, Mask] | None:
         """Step of the free unknowns, and which of the gaps push, from `gaps` (k,) of which `active` were closed.
 
-        With `S = G J^-1 G^T` and the stiffness `k` held in the factor, the gaps change by `q = S (lam + k q) + q0`.
+        With `S = G J^-1 H^T` and the stiffness `k` held in the factor, the gaps change by `q = S (lam + k q) + q0`.
         """
         S, q0 = self.rows @ self.responses, self.rows @ self.base
         flexible = np.eye(len(gaps)) - S * self.stiffness[None, :]

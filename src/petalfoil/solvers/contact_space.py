@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.solvers.coulomb import ContactForces, ContactSpace, KnownForces, States, contact_forces
-from petalfoil.solvers.tangent import BorderedTangent
+from petalfoil.solvers.tangent import BorderedTangent, GapRows
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -98,14 +98,15 @@ class UnitResponses:
     def of(
         cls,
         tangent: BorderedTangent,
-        G: sp.csr_array,
+        gap_rows: GapRows,
         contacts: Index,
         rubbing: RubbingContacts,
         answered: Callable[[Unit], Unit] = lambda unit: unit,
     ) -> UnitResponses:
         """A solve for each; `answered` adds what bordered unknowns do in answer to a unit."""
-        held, at = tangent.constraints.held, rubbing.at(contacts)
+        (G, acting), held, at = gap_rows, tangent.constraints.held, rubbing.at(contacts)
         rows, slips, none = sp.csr_array(G[contacts]), sp.csr_array(rubbing.slip[at]), np.zeros(G.shape[1])
+        pushes = sp.csr_array(acting[contacts])
         units = []
         for place, gap in enumerate(contacts):
             if held[gap]:
@@ -113,7 +114,7 @@ class UnitResponses:
                 opening[gap] = -1.0
                 units.append(tangent.respond(none, opening))
             else:
-                change, reactions = tangent.respond(-rows[[place]].toarray()[0])
+                change, reactions = tangent.respond(-pushes[[place]].toarray()[0])
                 reactions[gap] = 1.0  # the unit itself, which bordered unknowns feel too
                 units.append((change, reactions))
         units += [tangent.respond(slips[[place]].toarray()[0]) for place in range(len(at))]

@@ -1,7 +1,7 @@
 """Primal-dual interior point for equations with one-sided gaps.
 
 Slacks `s = g(x) > 0` and reactions `lam > 0` keep `lam s = mu w` on the central path (P1), `mu -> 0`. Both are
-eliminated, so that gaps enter the matrix as `G^T diag(lam / s) G` and one pattern serves every step; the equations read
+eliminated, so that gaps enter the matrix as `H^T diag(lam / s) G` and one pattern serves every step; the equations read
 their gaps as slacks, which are positive by construction. Far from the answer the barrier falls by fixed shares; near it
 steps are Mehrotra's (1992, doi:10.1137/0802028): one factorisation, a predictor and a corrector.
 
@@ -110,7 +110,7 @@ def interior_point(
     for _ in range(options.max_steps + 1):
         shift = point.s - problem.gaps(point.x)
         linearized = problem.linearize(point.x, shift)
-        residual = scaled_residual(linearized, problem.G.T @ point.lam)
+        residual = scaled_residual(linearized, problem.acting.T @ point.lam)
         widest = float(np.max(np.abs(shift), initial=0.0))
         if watch(point, InteriorStep(point.barrier(problem.weight), residual, widest, history.length, history.rate)):
             return point, True
@@ -222,11 +222,11 @@ class NewtonSystem:
     rate: float
 
     def direction(self, product: Array) -> Direction:
-        """Direction that aims at a change `product` (m,) of `lam s`, at `F = G^T lam` and at `s = g` (P2)."""
-        G, (x, s, lam) = self.problem.G, (self.point.x, self.point.s, self.point.lam)
+        """Direction that aims at a change `product` (m,) of `lam s`, at `F = H^T lam` and at `s = g` (P2)."""
+        G, H, (x, s, lam) = self.problem.G, self.problem.acting, (self.point.x, self.point.s, self.point.lam)
         open_by = s - self.problem.gaps(x)
-        imbalance = self.linearized.residual - G.T @ lam
-        rhs = -imbalance + self.linearized.slack_derivative(open_by, self.rate) + G.T @ ((product + lam * open_by) / s)
+        imbalance = self.linearized.residual - H.T @ lam
+        rhs = -imbalance + self.linearized.slack_derivative(open_by, self.rate) + H.T @ ((product + lam * open_by) / s)
         dx = self.factor.solve(rhs)
         ds = G @ dx - open_by
         return Direction(dx, ds, (product - lam * ds) / s)

@@ -38,6 +38,11 @@ class PointConstraints(ContactConstraints):
 
     basis: SparseRows
 
+    @property
+    def motions(self) -> SparseRows:
+        """`Z`: that of both."""
+        return self.basis
+
     def gather(self, full: NDArray[Any]) -> NDArray[Any]:
         """Equations of the free unknowns; shape (n_free,)."""
         return np.asarray(self.basis.T @ full)
@@ -47,12 +52,13 @@ class PointConstraints(ContactConstraints):
         return np.asarray(self.basis @ free)
 
     def reduce(self, matrix: sp.csc_array) -> sp.csc_array:
-        """The matrix over the free unknowns."""
-        return sp.csc_array(self.basis.T @ matrix @ self.basis)
+        """The matrix over the free unknowns, without reactions (T5)."""
+        own: sp.csr_array = self.basis.T
+        return sp.csc_array((own if self._dragged is None else own - self._dragged) @ matrix @ self.basis)
 
 
 def constrain_points(nodes: ContactConstraints, points: sp.csr_array) -> PointConstraints:
-    """Node contacts and the rows `points` (k, n) together."""
+    """Node contacts and the rows `points` (k, n) together; reactions of points act along their rows alone."""
     n, inside = len(nodes.group), nodes.group >= 0
     one = np.ones(int(inside.sum()))
     moved = SparseRows((one, (np.flatnonzero(inside), nodes.group[inside])), shape=(n, nodes.n_free))
@@ -60,7 +66,8 @@ def constrain_points(nodes: ContactConstraints, points: sp.csr_array) -> PointCo
     rows = SparseRows(sp.vstack([nodes.G, points], format="csr"))
     group = np.where(inside, strongest[nodes.group], -1)
     every, none = np.ones(rows.shape[0], dtype=bool), np.zeros(0, dtype=np.intp)
-    return PointConstraints(every, rows, group, rest.shape[1], none, SparseRows(moved @ rest))
+    acting = None if nodes.acting is None else SparseRows(sp.vstack([nodes.acting, points], format="csr"))
+    return PointConstraints(every, rows, group, rest.shape[1], none, SparseRows(moved @ rest), acting=acting)
 
 
 def eliminated(rows: sp.csr_array) -> tuple[sp.csr_array, Index]:

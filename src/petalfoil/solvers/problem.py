@@ -1,4 +1,7 @@
-"""What the solvers ask of a problem with one-sided gaps: `F(x) = G^T lam`, `0 <= g(x)` complementary to `lam >= 0`."""
+"""What the solvers ask of a problem with one-sided gaps: `F(x) = H^T lam`, `0 <= g(x)` complementary to `lam >= 0`.
+
+`G` is the derivative of the gaps, `H` has the forces of unit reactions. Without a journal that rubs `H` is `G`.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +36,7 @@ class Linearized(Protocol):
         """Magnitude of each row that its residual is compared with, (n,)."""
 
     def matrix(self, barrier_weight: Array, rate: float = 0.0) -> sp.csc_array:
-        """`dF/dx + G^T diag(barrier_weight) G` plus `rate` times the derivative of what F's rows store, (n, n)."""
+        """`dF/dx + H^T diag(barrier_weight) G` plus `rate` times the derivative of what F's rows store, (n, n)."""
 
     def slack_derivative(self, change: Array, rate: float = 0.0) -> Array:
         """Derivative of F, and `rate` times that of what it stores, by the slacks that it reads, times `change`; (n,).
@@ -48,6 +51,10 @@ class ContactProblem(Protocol):
     @property
     def G(self) -> SparseRows:
         """Derivative of the gaps, (m, n)."""
+
+    @property
+    def acting(self) -> SparseRows:
+        """`H`, forces on the equations by unit reactions, (m, n): `G` itself where these act along the gaps alone."""
 
     @property
     def weight(self) -> Array:
@@ -100,10 +107,14 @@ class Border:
         """Number of bordered unknowns, `d`."""
         return int(self.gap_derivative.shape[1])
 
+    @property
+    def by_reactions(self) -> Array:
+        """What the rows of `b` read of the reactions, (d, m)."""
+        return self.gap_derivative.T if self.reaction_derivative is None else self.reaction_derivative
+
     def rows(self, change: NDArray[Any], reactions: NDArray[Any]) -> NDArray[Any]:
         """`R dx + A^T dlam`, (d,), from changes of the unknowns (n,) and of all reactions (m,)."""
-        by_reactions = self.gap_derivative.T if self.reaction_derivative is None else self.reaction_derivative
-        out: NDArray[Any] = self.row_derivative @ change[self.columns] + by_reactions @ reactions
+        out: NDArray[Any] = self.row_derivative @ change[self.columns] + self.by_reactions @ reactions
         return out
 
 
@@ -134,7 +145,7 @@ class PrimalDualPoint:
 
 
 def scaled_residual(linearized: Linearized, reaction: Array) -> float:
-    """Largest residual of `F - G^T lam` over its row scale; `reaction` is `G^T lam`."""
+    """Largest residual of `F - H^T lam` over its row scale; `reaction` is `H^T lam`."""
     return float(np.max(np.abs(linearized.residual - reaction) / linearized.row_scale, initial=0.0))
 
 

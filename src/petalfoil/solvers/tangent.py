@@ -19,12 +19,15 @@ from numpy.typing import NDArray
 from petalfoil.solvers.constraints import ContactConstraints, constrain
 from petalfoil.solvers.problem import Border, Linearized
 from petalfoil.solvers.sparse_lu import Factor
+from petalfoil.sparsity import SparseRows
 
 Array = NDArray[np.float64]
 Values = NDArray[Any]
 """Real, or complex at a frequency."""
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
+GapRows = tuple[SparseRows, SparseRows]
+"""Derivative of the gaps, and forces of unit reactions, (m, n) each."""
 
 MOST_EXCHANGED = 16
 """Gaps that may change before a factorisation is cheaper: each asks for a solve, a fortieth of one."""
@@ -35,7 +38,7 @@ WORST_CONDITION = 1e12
 
 @dataclass(frozen=True)
 class Tangent:
-    """`M dx = -residual + G^T dlam` with the change of the active gaps given.
+    """`M dx = -residual + H^T dlam` with the change of the active gaps given.
 
     Attributes
     ----------
@@ -53,7 +56,7 @@ class Tangent:
 
     def step(self, residual: Values) -> Values:
         """Change of the unknowns (n,) against `residual` (n,), active gaps held (T1)."""
-        return self.constraints.spread(self.factor.solve(-self.constraints.gather(residual)))
+        return self.constraints.spread(self.factor.solve(-self.constraints.balanced(residual)))
 
     def respond(self, residual: Values, gap_change: Array | None = None) -> tuple[Values, Values]:
         """Change of the unknowns (n,) and of the held reactions (k,) against `residual`.
@@ -75,7 +78,7 @@ class Tangent:
         constraints = self.constraints
         pushed = constraints.reactions_adjoint(by_reactions)
         by_unknowns = by_change + self.matrix.T @ pushed
-        a = constraints.spread(self.factor.solve_transposed(constraints.gather(by_unknowns)))
+        a = constraints.balanced_adjoint(self.factor.solve_transposed(constraints.gather(by_unknowns)))
         return pushed - a, constraints.close_adjoint(by_unknowns - self.matrix.T @ a)
 
 
@@ -108,17 +111,17 @@ class Exchange:
     lu: tuple[Array, Array]
 
     @classmethod
-    def between(cls, tangent: Tangent, G: sp.csr_array, active: Mask) -> Exchange | None:
+    def between(cls, tangent: Tangent, gaps: GapRows, active: Mask) -> Exchange | None:
         """Open and close gaps of `tangent` until `active` are held; None if these do not determine the unknowns."""
-        constraints = tangent.constraints
+        constraints, (G, acting) = tangent.constraints, gaps
         opened, added = np.flatnonzero(~active[constraints.held]), np.flatnonzero(active & ~constraints.held)
-        rows, none = sp.csr_array(G[added]), np.zeros(G.shape[1])
+        rows, pushes, none = sp.csr_array(G[added]), sp.csr_array(acting[added]), np.zeros(G.shape[1])
         columns = []
         for place in opened:
             unit_opening = np.zeros(constraints.G.shape[0])
             unit_opening[place] = -1.0
             columns.append(tangent.respond(none, unit_opening))
-        columns += [tangent.respond(-rows[[row]].toarray()[0]) for row in range(len(added))]
+        columns += [tangent.respond(-pushes[[row]].toarray()[0]) for row in range(len(added))]
         changes, reactions = (np.column_stack(part) for part in zip(*columns, strict=True))
         conditions = np.vstack([reactions[opened], rows @ changes])
         if not np.all(np.isfinite(conditions)) or np.linalg.cond(conditions) > WORST_CONDITION:
@@ -235,17 +238,17 @@ class BorderedTangent:
         held[self.constraints.stops] = active[self.constraints.stops]
         return bool(np.array_equal(held, active))
 
-    def exchanged(self, G: sp.csr_array, active: Mask) -> BorderedTangent | None:
+    def exchanged(self, gaps: GapRows, active: Mask) -> BorderedTangent | None:
         """The same factor for other active contacts; None where too many differ or they need a factor of their own."""
         own = self.tangent.constraints
         if len(self.constraints.stops) or np.count_nonzero(active != own.held) > MOST_EXCHANGED:
             return None
-        constraints = constrain(G, active)
+        constraints = constrain(gaps[0], active, acting=gaps[1])
         if not constraints.determinate:
             return None
         if np.array_equal(active, own.held):
             return BorderedTangent.of(self.tangent, self.border, self.forcing, constraints)
-        exchange = Exchange.between(self.tangent, G, active)
+        exchange = Exchange.between(self.tangent, gaps, active)
         if exchange is None:
             return None
         return BorderedTangent.of(self.tangent, self.border, self.forcing, constraints, exchange)

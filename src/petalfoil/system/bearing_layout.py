@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.case import Case, HotGas
+from petalfoil.case import Case, HotGas, JournalRubbing
 from petalfoil.physics.forces import film_force_rows, node_area
 from petalfoil.physics.mass_balance import FilmBalance
 from petalfoil.solvers.problem import Border
@@ -153,6 +153,35 @@ class BearingLayout:
         return SparseRows(sp.hstack([by_w, sp.csr_array((by_w.shape[0], self.n - self.n_wall))], format="csr"))
 
     @cached_property
+    def rubbing(self) -> SparseRows | None:
+        """`mu_f D`: what else unit reactions on a journal that turns do to the wall (D6), (m, n_wall) [1].
+
+        None where its rubbing is torque alone.
+        """
+        surface, contacts = self.case.surface, self.wall.contacts
+        if surface.journal_rubbing is JournalRubbing.TORQUE or not surface.friction_coefficient:
+            return None
+        none = sp.csr_array(contacts.G.shape)
+        dragged = none if self.wall.dragged is None else self.wall.dragged
+        return SparseRows(surface.friction_coefficient * dragged)
+
+    @cached_property
+    def acting(self) -> SparseRows:
+        """`H`: forces of unit reactions on all unknowns where the journal turns (D6), (m, n) [1]."""
+        if self.rubbing is None:
+            return self.G
+        return SparseRows(self.G + sp.hstack([self.rubbing, sp.csr_array((len(self.weight), self.n - self.n_wall))]))
+
+    @cached_property
+    def rubbing_products(self) -> tuple[Index, Index, Index, Array] | None:
+        """Entries of `(H - G)^T diag G`: rows, columns, gap, coefficient; a gap on the journal is of one deflection."""
+        if self.rubbing is None:
+            return None
+        more, G = self.rubbing.tocoo(), self.wall.contacts.G
+        gap, first = more.row.astype(np.intp), G.indptr[more.row]
+        return more.col.astype(np.intp), G.indices[first].astype(np.intp), gap, more.data * G.data[first]
+
+    @cached_property
     def weight(self) -> Array:
         """Area of each gap's node over a typical one, (m,) [1]."""
         return self.wall.contacts.area / self.wall.node_area
@@ -207,8 +236,15 @@ class BearingLayout:
                 BlockEntries(PRESSURE, PRESSURE, held_P.rows, held_P.cols),
                 BlockEntries(PRESSURE, DEFLECTION, held_H.rows[under], self.storage_column[under]),
                 *(entries for field in self.fields for entries in field.entries),
+                *self.rubbing_entries,
             ],
         )
+
+    @property
+    def rubbing_entries(self) -> list[BlockEntries]:
+        """Places of `(H - G)^T diag G` among the deflections."""
+        products = self.rubbing_products
+        return [] if products is None else [BlockEntries(DEFLECTION, DEFLECTION, products[0], products[1])]
 
     @cached_property
     def constant_entries(self) -> list[Array]:
@@ -224,12 +260,26 @@ class BearingLayout:
         return self._border(self.wall.contacts.by_e)
 
     @cached_property
+    def rubbed_border(self) -> Border:
+        """The same where the journal turns and what it touches holds it back (D7)."""
+        return self._rubbed(self.border)
+
+    @cached_property
     def moment_border(self) -> Border:
         """The same of the slopes of the journal's axis over 1 m: moments about the bearing's centre (J7) [m].
 
         The rows of half a length would be half of a moment that is zero: it has none.
         """
-        return self._border(tilt_columns(self.wall, 1.0))
+        return self._rubbed(self._border(tilt_columns(self.wall, 1.0)))
+
+    def _rubbed(self, border: Border) -> Border:
+        """A border with `-mu_f t` beside the normals `n` in the forces of unit reactions: pairs `(x, y)` turn (D7)."""
+        if self.rubbing is None:
+            return border
+        normal = border.gap_derivative.T
+        along = np.zeros_like(normal)
+        along[0::2], along[1::2] = -normal[1::2], normal[0::2]
+        return replace(border, reaction_derivative=normal + self.case.surface.friction_coefficient * along)
 
     def _border(self, by_e: Array) -> Border:
         mesh = self.wall.film

@@ -1,6 +1,6 @@
 """Film and wall at one speed and journal position.
 
-wall   K w - A (P - 1) - G^T lam = 0               (C1)
+wall   K w - A (P - 1) - H^T lam = 0               (C1), H = G but for a journal that rubs (D6)
 film   net outflow of each cell  = 0               (C2), h from the gaps
 gaps   0 <= g(w)  complementary to  lam >= 0       (C3)
 """
@@ -81,6 +81,22 @@ class CoupledProblem:
         return self.layout.G
 
     @property
+    def acting(self) -> SparseRows:
+        """Forces of unit reactions (D6), (m, n): a journal that turns drags along what it touches, if it is to."""
+        return self.layout.acting if self.turns else self.layout.G
+
+    @property
+    def turns(self) -> bool:
+        """Whether dry friction of the journal has its full force: in equilibria at zero speed, too, it is about to."""
+        return True
+
+    @property
+    def wall_acting(self) -> SparseRows:
+        """The same on the deflections, (m, n_wall)."""
+        own = self.acting
+        return self.layout.wall.contacts.G if own is self.layout.G else SparseRows(own[:, : self.layout.n_wall])
+
+    @property
     def weight(self) -> Array:
         """Weights of the gaps."""
         return self.layout.weight
@@ -124,7 +140,7 @@ class CoupledProblem:
     @property
     def border(self) -> Border:
         """How the journal's position enters."""
-        return self.layout.border
+        return self.layout.rubbed_border if self.turns else self.layout.border
 
     def film_force(self, x: Array) -> Array:
         """Force of the film on the journal over the unit of force, (n_position,) [1]."""
@@ -137,7 +153,7 @@ class CoupledProblem:
 
     def contact_force(self, lam: Array) -> Array:
         """Force of solid contact on the journal over the unit of force, (n_position,) [1]."""
-        force: Array = self.border.gap_derivative.T @ lam
+        force: Array = self.border.by_reactions @ lam
         return force
 
     def journal_moment(self, x: Array, lam: Array) -> Array:
@@ -149,7 +165,7 @@ class CoupledProblem:
             Half of the length is solved.
         """
         border = self.layout.moment_border
-        moment: Array = border.row_derivative @ (x[self.positive] - 1.0) + border.gap_derivative.T @ lam
+        moment: Array = border.row_derivative @ (x[self.positive] - 1.0) + border.by_reactions @ lam
         return moment
 
     def admits(self, x: Array) -> bool:
@@ -178,6 +194,11 @@ class Linearization:
     x: Array
     film: FilmState
     low_order: Array | None = None
+
+    @property
+    def turns(self) -> bool:
+        """Whether dry friction of the journal has its full force."""
+        return True
 
     @cached_property
     def _fields(self) -> list[FieldRows]:
@@ -210,7 +231,7 @@ class Linearization:
         return np.concatenate([wall, self.film.row_scale, *(rows.row_scale for rows in self._fields)])
 
     def matrix(self, barrier_weight: Array, rate: float = 0.0) -> sp.csc_array:
-        """Tangent plus `G^T diag(barrier_weight) G`, plus `rate` times the derivative of the stored mass; (n, n)."""
+        """Tangent plus `H^T diag(barrier_weight) G`, plus `rate` times the derivative of the stored mass; (n, n)."""
         by_P, by_H = self.film.tangent
         held_P, held_H = self._storage
         _, _, gap, factor = self.layout.gap_products
@@ -218,6 +239,9 @@ class Linearization:
         fields = [values for rows in self._fields for values in rows.values]
         contact = barrier_weight[gap] * factor
         values = [*self.layout.constant_entries, *film, contact, rate * held_P, rate * held_H, *fields]
+        if (rubbing := self.layout.rubbing_products) is not None:
+            _, _, gap, factor = rubbing
+            values.append(barrier_weight[gap] * factor * float(self.turns))
         return self.layout.pattern.assemble(values)
 
     @property

@@ -30,11 +30,14 @@ class FoilPackProblem:
         Nodal forces of the frozen film over the unit of force [1]; zero for a shaft at rest.
     withdrawn : float
         What the journal's radius is short of its own, over the reference length: while it is inserted [1].
+    still : bool
+        The journal does not turn and drags nothing along, as while it is inserted; otherwise it is about to.
     """
 
     coupled: CoupledProblem
     load: Array
     withdrawn: float = 0.0
+    still: bool = False
 
     @property
     def layout(self) -> BearingLayout:
@@ -45,6 +48,11 @@ class FoilPackProblem:
     def G(self) -> SparseRows:
         """Derivative of the gaps by the deflections, (m, n_wall)."""
         return self.layout.wall.contacts.G
+
+    @property
+    def acting(self) -> SparseRows:
+        """Forces of unit reactions (D6), (m, n_wall)."""
+        return self.G if self.still else self.coupled.wall_acting
 
     @property
     def weight(self) -> Array:
@@ -63,9 +71,9 @@ class FoilPackProblem:
 
     @cached_property
     def pattern(self) -> BlockPattern:
-        """Sparsity of `K + G^T diag G`."""
-        unknowns = Unknowns({DEFLECTION: self.layout.n_wall})
-        return BlockPattern(unknowns, [self.layout.stiffness_entries, self.layout.contact_entries])
+        """Sparsity of `K + H^T diag G`."""
+        unknowns, own = Unknowns({DEFLECTION: self.layout.n_wall}), self.layout
+        return BlockPattern(unknowns, [own.stiffness_entries, own.contact_entries, *own.rubbing_entries])
 
     def gaps(self, x: Array) -> Array:
         """Gaps over the reference length, (m,) [1]."""
@@ -101,10 +109,14 @@ class FoilPackLinearization:
         return wall_scale(self.problem.layout, self.x)
 
     def matrix(self, barrier_weight: Array, rate: float = 0.0) -> sp.csc_array:
-        """`K + G^T diag(barrier_weight) G`; nothing is stored, so `rate` adds nothing."""
+        """`K + H^T diag(barrier_weight) G`; nothing is stored, so `rate` adds nothing."""
         _, _, gap, factor = self.problem.layout.gap_products
         stiffness, _ = self.problem.layout.constant_entries
-        return self.problem.pattern.assemble([stiffness, barrier_weight[gap] * factor])
+        values = [stiffness, barrier_weight[gap] * factor]
+        if (rubbing := self.problem.layout.rubbing_products) is not None:
+            _, _, gap, factor = rubbing
+            values.append(barrier_weight[gap] * factor * float(not self.problem.still))
+        return self.problem.pattern.assemble(values)
 
     def slack_derivative(self, change: Array, rate: float = 0.0) -> Array:
         """The residual does not depend on the gaps."""

@@ -1,6 +1,6 @@
 """Friction between petals in the units of the problem, and a contact problem with friction.
 
-F(x) + B^T T = G^T lam,  gaps as without friction       (C1) with (D2)
+F(x) + B^T T = H^T lam,  gaps as without friction       (C1) with (D2)
 
 The reactions that limit friction are those of a correction before; the solver goes on until they agree.
 """
@@ -20,6 +20,7 @@ from petalfoil.case import Case, PetalTheory
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.solvers.problem import ContactProblem, Linearized
+from petalfoil.sparsity import SparseRows
 from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.point_layout import PointLayout
 from petalfoil.walls.pack_slip import slip_compliance, slip_rows
@@ -153,9 +154,14 @@ class FrictionProblem:
     step: FrictionStep
 
     @property
-    def G(self) -> sp.csr_array:
+    def G(self) -> SparseRows:
         """Derivative of the gaps, (m, n)."""
         return self.base.G
+
+    @property
+    def acting(self) -> SparseRows:
+        """Forces of unit reactions, (m, n)."""
+        return self.base.acting
 
     @property
     def weight(self) -> Array:

@@ -189,7 +189,7 @@ class HeatRows:
             np.hstack([free.gap_derivative, by_T]),
             np.vstack([of_force, rows]),
             slice(0, n),
-            np.vstack([free.gap_derivative.T, reactions]),
+            np.vstack([free.by_reactions, reactions]),
             np.hstack([np.zeros((n, free.size)), forcing]),
         )
 

@@ -4,7 +4,7 @@
     journal            F_film(P) + by_e^T lam + load = 0                 (C5)
 
 The reactions' force on the journal is the transpose of what its displacement does to the gaps, so that with
-`G_z = [G, by_e]` the same `G_z^T lam` serves all rows.
+`G_z = [G, by_e]` the same `G_z^T lam` serves all rows. A journal that rubs adds to it as to `G` (D6), (D7).
 """
 
 from __future__ import annotations
@@ -77,6 +77,15 @@ class LoadedProblem:
         by_e = sp.csr_array(self.coupled.border.gap_derivative)
         return SparseRows(sp.hstack([self.coupled.G, by_e], format="csr"))
 
+    @cached_property
+    def acting(self) -> SparseRows:
+        """Forces of unit reactions on deflections, pressures and position, (m, n + n_position)."""
+        coupled = self.coupled
+        if coupled.acting is coupled.G:
+            return self.G
+        on_journal = sp.csr_array(coupled.border.by_reactions.T)
+        return SparseRows(sp.hstack([coupled.acting, on_journal], format="csr"))
+
     @property
     def weight(self) -> Array:
         """Weights of the gaps."""
@@ -129,17 +138,17 @@ class LoadedLinearization:
         return np.concatenate([self.coupled.row_scale, np.full(len(load), load_scale(load))])
 
     def matrix(self, barrier_weight: Array, rate: float = 0.0) -> sp.csc_array:
-        """Tangent plus `G_z^T diag(barrier_weight) G_z`, (n + n_position, n + n_position)."""
+        """Tangent plus `H_z^T diag(barrier_weight) G_z`, (n + n_position, n + n_position)."""
         problem, border = self.problem, self.problem.coupled.border
         by_e = border.gap_derivative
-        stiff = barrier_weight[:, None] * by_e
+        stiff, pull = barrier_weight[:, None] * by_e, barrier_weight[:, None] * border.by_reactions.T
         forcing = np.column_stack([self.coupled.slack_derivative(column, rate) for column in by_e.T])
-        rows = (problem.coupled.G.T @ stiff).T
-        columns = forcing + rows.T
+        rows = (problem.coupled.G.T @ pull).T
+        columns = forcing + problem.coupled.acting.T @ stiff
         rows[:, border.columns] -= border.row_derivative
         blocks = [
             [self.coupled.matrix(barrier_weight, rate), sp.csc_array(columns)],
-            [sp.csc_array(rows), sp.csc_array(by_e.T @ stiff)],
+            [sp.csc_array(rows), sp.csc_array(border.by_reactions @ stiff)],
         ]
         return sp.csc_array(sp.block_array(blocks, format="csc"))
 

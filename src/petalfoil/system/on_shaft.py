@@ -92,6 +92,16 @@ class ShaftStep:
         return self.layout.G
 
     @property
+    def turns(self) -> bool:
+        """In time a shaft at rest drags nothing along."""
+        return self.bearing_number > 0.0
+
+    @property
+    def acting(self) -> SparseRows:
+        """Forces of unit reactions (D6)."""
+        return self.layout.acting if self.turns else self.layout.G
+
+    @property
     def weight(self) -> Array:
         """Weights of the gaps."""
         return self.layout.weight
@@ -120,7 +130,7 @@ class ShaftStep:
     @property
     def border(self) -> Border:
         """How the shaft's position enters."""
-        return self.layout.border
+        return self.layout.rubbed_border if self.turns else self.layout.border
 
     def gaps(self, x: Array) -> Array:
         """Gaps over the reference length, (m,) [1]."""

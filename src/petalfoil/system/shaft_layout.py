@@ -89,7 +89,18 @@ class ShaftLayout:
     @cached_property
     def G(self) -> SparseRows:
         """Derivative of the gaps by the unknowns."""
-        held = [part.G.tocoo() for part in self.parts]
+        return self._gap_rows([part.G for part in self.parts])
+
+    @cached_property
+    def acting(self) -> SparseRows:
+        """Forces of unit reactions where the shaft turns (D6)."""
+        if all(part.rubbing is None for part in self.parts):
+            return self.G
+        return self._gap_rows([part.acting for part in self.parts])
+
+    def _gap_rows(self, own: list[SparseRows]) -> SparseRows:
+        """Rows of the gaps of each bearing among all."""
+        held = [rows.tocoo() for rows in own]
         rows = np.concatenate([gaps[one.row] for gaps, one in zip(self.gap_numbers, held, strict=True)])
         cols = np.concatenate([own[one.col] for own, one in zip(self.numbers, held, strict=True)])
         values, shape = np.concatenate([one.data for one in held]), (sum(map(len, self.gap_numbers)), self.unknowns.n)
@@ -103,7 +114,20 @@ class ShaftLayout:
     @cached_property
     def border(self) -> Border:
         """How the shaft's position enters."""
-        borders = [part.border for part in self.parts]
+        return self._joined_border([part.border for part in self.parts])
+
+    @cached_property
+    def rubbed_border(self) -> Border:
+        """The same where the shaft turns (D7)."""
+        if all(part.rubbing is None for part in self.parts):
+            return self.border
+        borders = [part.rubbed_border for part in self.parts]
+        by_reactions = np.zeros((self.arms[0].shape[1], len(self.weight)))
+        for numbers, one, arm in zip(self.gap_numbers, borders, self.arms, strict=True):
+            by_reactions[:, numbers] = arm.T @ one.by_reactions
+        return replace(self._joined_border(borders), reaction_derivative=by_reactions)
+
+    def _joined_border(self, borders: list[Border]) -> Border:
         by_q = [one.gap_derivative @ arm for one, arm in zip(borders, self.arms, strict=True)]
         force = [arm.T @ one.row_derivative for one, arm in zip(borders, self.arms, strict=True)]
         gaps = np.zeros((len(self.weight), by_q[0].shape[1]))

@@ -56,7 +56,7 @@ class StepProblem(CoupledProblem):
         if self.layout.loss is None:
             return -rows.residual
         still = CoupledProblem(self.layout, self.bearing_number, self.displacement)
-        wall = still.linearize(x).residual - self.G.T @ lam
+        wall = still.linearize(x).residual - self.acting.T @ lam
         return np.concatenate([-rows.residual, -wall[self.layout.unknowns[DEFLECTION]]])
 
     def each(self, x: Array, lam: Array) -> list[tuple[StepProblem, Array, Array]]:
@@ -66,6 +66,11 @@ class StepProblem(CoupledProblem):
     def stored_of_each(self, stored: Array) -> list[Array]:
         """What each bearing stores: this one all of it."""
         return [stored]
+
+    @property
+    def turns(self) -> bool:
+        """In time a journal at rest drags nothing along."""
+        return self.bearing_number > 0.0
 
     @property
     def journal(self) -> slice:
@@ -113,6 +118,11 @@ class StepLinearization(Linearization):
     rate: float = 0.0
     start: Array = field(default_factory=lambda: np.zeros(0))
 
+    @property
+    def turns(self) -> bool:
+        """Whether the journal turns."""
+        return self.film.Lam > 0.0
+
     @cached_property
     def residual(self) -> Array:
         """(C1) without reactions, then (O2); (n,) [1]."""
@@ -123,7 +133,7 @@ class StepLinearization(Linearization):
         return super().residual + self.rate * at_rows(self.layout, stored - self.start)
 
     def matrix(self, barrier_weight: Array, rate: float = 0.0) -> sp.csc_array:
-        """Tangent plus `G^T diag(barrier_weight) G`, (n, n)."""
+        """Tangent plus `H^T diag(barrier_weight) G`, (n, n)."""
         loss, whole = self.layout.loss, super().matrix(barrier_weight, self.rate + rate)
         return whole if loss is None else sp.csc_array(whole + (self.rate + rate) * self.layout.among_all(loss))
 

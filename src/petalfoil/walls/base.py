@@ -51,6 +51,9 @@ class Wall:
     slip, reaction_share : (k, n), (k, m) sparse
         Slip where surfaces slide on each other, from the deflections, and the share of each gap's reaction that
         presses there (D1) [1].
+    dragged : (m, n) sparse or None
+        Motion of the surface under the journal along that of the journal, from the deflections, on its gaps (D6) [1];
+        None where it cannot move that way.
     loss : (n, n) sparse or None
         Nodal forces that are a quarter of a cycle ahead of the deflections, whatever the frequency: structural loss
         factor times stiffness (B5) [N/m]; None of a wall that loses no energy.
@@ -68,6 +71,7 @@ class Wall:
     support: sp.csr_array
     slip: sp.csr_array
     reaction_share: sp.csr_array
+    dragged: sp.csr_array | None = None
     loss: sp.csr_array | None = None
 
     @property

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import ClassVar, TypeVar
 
 import numpy as np
@@ -26,7 +27,7 @@ from petalfoil.walls.bump_foil import foundation_stiffness
 from petalfoil.walls.elasticity import Elasticity
 from petalfoil.walls.element_pack import ElementPack, element_pack
 from petalfoil.walls.kind import Capability, Fields, Scalars, WallKind
-from petalfoil.walls.sliding import membrane_force, over_whole_length, sliding
+from petalfoil.walls.sliding import dragged_faces, membrane_force, over_whole_length, sliding
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -93,7 +94,7 @@ def petal_faces(case: Case) -> Faces:
 
 def stretches(case: Case) -> bool:
     """Whether petals stretch: in 3-D by their theory; in 2-D nothing but friction can stretch them."""
-    alone = case.model.kind is ModelKind.TWO_D and not case.surface.petal_friction > 0.0
+    alone = case.model.kind is ModelKind.TWO_D and not (case.surface.petal_friction > 0.0 or case.drags_petals)
     return case.petal_theory is PetalTheory.SHELL and case.model.method is Method.NEWTON and not alone
 
 
@@ -166,7 +167,11 @@ class PetalWall(WallKind):
             reaction_share=reaction_share,
         )
         if stretches(case):
-            return sliding(wall, mesh, stretching_petals(case, shells), petal_faces(case))
+            wall = sliding(wall, mesh, stretching_petals(case, shells), petal_faces(case))
+        if case.drags_petals:
+            wall = replace(wall, dragged=dragged_faces(wall, mesh, petal_faces(case)))
+        if stretches(case):
+            return wall
         return wall if case.backing is None else on_springs(wall, mesh, case.backing, springs_from(case))
 
     def elements(self, case: Case, wall: Wall) -> ElementPack | None:

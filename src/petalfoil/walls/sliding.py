@@ -112,6 +112,42 @@ def slip_at_gaps(mesh: PackMesh, faces: Faces) -> sp.csr_array:
     return sp.csr_array(sp.vstack([on_bushing, outer[above.ravel()] + inner[below.ravel()]], format="csr"))
 
 
+def dragged_faces(wall: Wall, mesh: PackMesh, faces: Faces) -> sp.csr_array:
+    """Motion of the petals' inner faces along the shaft's surface, on all gaps (D6), (m, n); zero off the journal.
+
+    Petals that do not slide by themselves move along themselves as they bend, `V = -(1 / R_p) int W ds`.
+    """
+    n_free = mesh.count * (mesh.n_node - 1) * mesh.n_z
+    petal = np.repeat(np.arange(mesh.count), mesh.n_node * mesh.n_z)
+    nodes = np.arange(len(petal)).reshape(mesh.shape)
+    free = np.concatenate([row[1:].ravel() for row in nodes])  # roots do not move
+    turned = sp.kron(sp.diags_array(faces.arm), sp.kron(node_slopes(mesh.phi), sp.eye_array(mesh.n_z)), format="csr")
+    share = sp.diags_array(1.0 - (faces.half_thickness / faces.bend_radius)[petal])
+    at = nodes[:, mesh.exposed].ravel()
+    if faces.slides:
+        own = sp.hstack([turned[at][:, free], share.tocsr()[at][:, free]])
+    else:
+        bent = sp.diags_array(-faces.metric_radius / faces.bend_radius)
+        along = share @ sp.kron(bent, sp.kron(sums_from_root(mesh.phi), sp.eye_array(mesh.n_z)), format="csr")
+        own = (turned + along)[at][:, free]
+    moving = sp.diags_array((np.diff(wall.contacts.G.indptr)[wall.contacts.journal] > 0).astype(np.float64))
+    held = sp.coo_array(moving @ own)
+    if held.shape[1] > wall.n_unknown or held.shape[1] < n_free:
+        raise ValueError("a wall without the displacements of its petals")
+    rows = held.row + wall.contacts.journal.start
+    return sp.coo_array((held.data, (rows, held.col)), shape=(len(wall.contacts.rest), wall.n_unknown)).tocsr()
+
+
+def sums_from_root(phi: Array) -> sp.csr_array:
+    """Integral from the first of the nodes `phi` (n,) by the trapezoidal rule, (n, n) [rad]."""
+    step = 0.5 * np.diff(phi)
+    each = np.zeros((len(phi), len(phi)))
+    for k, width in enumerate(step):
+        each[k + 1 :, k] += width
+        each[k + 1 :, k + 1] += width
+    return sp.csr_array(each)
+
+
 def node_slopes(phi: Array) -> sp.csr_array:
     """Derivative at the nodes `phi` (n,): the mean of that in the cells beside them, shape (n, n)."""
     n = len(phi)

@@ -45,6 +45,11 @@ class Spring:
         return SparseRows([[-1.0]])
 
     @property
+    def acting(self) -> SparseRows:
+        """Its reaction acts along it."""
+        return self.G
+
+    @property
     def weight(self) -> Array:
         """One gap."""
         return np.ones(1)

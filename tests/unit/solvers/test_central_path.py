@@ -32,6 +32,10 @@ class SofteningSpring:
         return SparseRows([[1.0]])
 
     @property
+    def acting(self) -> SparseRows:
+        return self.G
+
+    @property
     def weight(self) -> Array:
         return np.ones(1)
 

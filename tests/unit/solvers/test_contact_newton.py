@@ -24,6 +24,7 @@ from petalfoil.solvers.contact_newton import ActiveContacts, contact_newton, cor
 from petalfoil.solvers.problem import POSITIVE_FRACTION, Border, ContactProblem, Linearized
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.solvers.tangent import BorderedTangent, Tangent
+from petalfoil.sparsity import SparseRows
 from tests.unit.solvers.problems import CELLS, OBSTACLE, Spring, string, string_answer
 from tests.verification.shell_helpers import ElasticProblem, rows_of
 
@@ -165,9 +166,14 @@ class Level:
     b: float
 
     @property
-    def G(self) -> sp.csr_array:
+    def G(self) -> SparseRows:
         """As before."""
         return self.base.G
+
+    @property
+    def acting(self) -> SparseRows:
+        """As before."""
+        return self.base.acting
 
     @property
     def weight(self) -> Array:
@@ -341,7 +347,7 @@ def test_exchanged_contacts_are_as_good_as_a_factorisation(change: str) -> None:
     residual, by_level = np.sin(np.arange(CELLS - 1.0)), np.ones(CELLS - 1)
     border, line = Border(by_level[:, None], np.zeros((1, 0)), slice(0, 0)), problem.linearize(np.zeros(CELLS - 1))
     both = [tangent(problem, border, line, one) for one in (active, other)]
-    exchanged = both[0].exchanged(problem.G, other)
+    exchanged = both[0].exchanged((problem.G, problem.acting), other)
     assert exchanged is not None
     assert not both[0].serves(other)
     assert exchanged.serves(other)
@@ -355,8 +361,8 @@ def test_too_many_exchanged_contacts_ask_for_a_factorisation() -> None:
     problem, none = string(), OPEN
     border = Border(np.ones((CELLS - 1, 1)), np.zeros((1, 0)), slice(0, 0))
     known = tangent(problem, border, problem.linearize(np.zeros(CELLS - 1)), none)
-    assert known.exchanged(problem.G, np.arange(CELLS - 1) < 17) is None
-    assert known.exchanged(problem.G, np.arange(CELLS - 1) < 3) is not None
+    assert known.exchanged((problem.G, problem.acting), np.arange(CELLS - 1) < 17) is None
+    assert known.exchanged((problem.G, problem.acting), np.arange(CELLS - 1) < 3) is not None
 
 
 def tangent(problem: ElasticProblem, border: Border, line: Linearized, active: Mask) -> BorderedTangent:
