@@ -202,3 +202,14 @@ def test_what_cannot_be_dragged_is_refused_in_words(changes: dict[str, object], 
 def test_a_pack_with_friction_is_not_pressed_by_a_journal_that_turns() -> None:
     with pytest.raises(UsageError, match="round a journal that does not turn"):
         static(rubbed(surface__petal_friction=0.1), "0 um : 100 um : 2")
+
+
+def test_a_shaft_that_hardly_turns_rolls_up_a_dry_bore_to_the_angle_of_friction() -> None:
+    """`arctan mu` against the rotation, to the spacing of the nodes."""
+    dry = {"surface.journal_rubbing": "force", "surface.friction_coefficient": MU, "operation.speed": 1.0}
+    bearing = case("plain_journal", **{"model.kind": "2d", "model.cells_per_pitch": 120, **dry})
+    held = balance(bearing, load=(0.0, -50.0))
+    assert float(held.contact_fraction) > 0.95
+    angle = np.degrees(np.arctan2(-float(held.eccentricity_x), -float(held.eccentricity_y)))
+    assert angle == pytest.approx(np.degrees(np.arctan(MU)), abs=360.0 / 120.0)
+    assert abs(angle) > 10.0

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -13,15 +15,17 @@ from numpy.typing import NDArray
 from petalfoil.analysis.coefficients import coefficients
 from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
-from petalfoil.analysis.stability import stability
+from petalfoil.analysis.stability import AT_AMPLITUDE, stability, whirl_parts
 from petalfoil.case import Case, Rotor
-from petalfoil.dynamics.critical_mass import whirl_impedance
+from petalfoil.dynamics.critical_mass import Whirl, whirl_impedance
 from petalfoil.dynamics.natural_modes import Mode, natural_modes, tilt_of
 from petalfoil.dynamics.reduced_impedance import Impedance
-from petalfoil.dynamics.rubbing_modes import RubbingRotor
+from petalfoil.dynamics.rotor_motion import Inertia
+from petalfoil.dynamics.rubbing_modes import NeutralWhirls, RubbingRotor
 from petalfoil.dynamics.rubbing_whirl import RubbingWhirl, half_axis
 from petalfoil.equilibrium.run_context import running
 from petalfoil.errors import UsageError
+from petalfoil.results.parts import RunOutcome
 from tests.cases import case
 
 MASS, LOAD, RUBS = 2.0, 20.0, 2e-6
@@ -164,3 +168,32 @@ def test_an_amplitude_without_friction_is_refused() -> None:
         stability.record(case("paper_n8"), load=(0.0, -LOAD), amplitude=1e-6)
     with pytest.raises(UsageError, match="amplitude"):
         stability.records(bearing(), loads=[LOAD], amplitude=1e-6)
+
+
+# ------------------------------------------------------------------------------------------ searches that go astray
+
+
+def test_a_search_for_a_neutral_whirl_that_goes_astray_ends() -> None:
+    """Stiffnesses that nearly cancel in the guess lead far beyond what numbers hold at first, and back to the whirl."""
+    apart = np.diag([1.0, -1.0 + 1e-8])
+    whirl = SimpleNamespace(at=lambda s: s, resistance=lambda _, v: apart @ v)
+    inertia = SimpleNamespace(mass=np.eye(2), gyroscopic=np.zeros((2, 2)))
+    search = NeutralWhirls(cast(RubbingWhirl, whirl), cast(Inertia, inertia), 1000.0)
+    found = search.near(0.5, np.array([1.0, 1.0], dtype=complex))
+    assert found is not None
+    assert found.mass == pytest.approx(1.0 / 500.0**2)
+
+
+@pytest.mark.parametrize(
+    ("ended", "told"),
+    [(AT_AMPLITUDE, "no whirl was found that goes on at the amplitude"), ("", "stable for any rotor mass")],
+)
+def test_a_search_that_finds_no_whirl_at_an_amplitude_excludes_none(ended: str, told: str) -> None:
+    """Only small motions, of which all whirls are known, may be called stable for any mass."""
+    rotor, _ = rotor_and_impedance()
+    with running():
+        found = operating_point(rotor.case, (0.0, -LOAD))
+    outcome = whirl_parts(rotor.case, found, Whirl(math.inf, math.nan), ended)[-1]
+    assert isinstance(outcome, RunOutcome)
+    assert told in outcome.status
+    assert ("stable" in outcome.status) == (not ended)

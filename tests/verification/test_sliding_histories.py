@@ -28,6 +28,7 @@ from petalfoil.walls.sliding import membrane_force, stretching
 from tests.cases import case
 from tests.verification.shell_helpers import UNIT, ElasticProblem, strip_shell, uniform_grid, uniform_load
 from tests.verification.sliding_helpers import HalfArch
+from tests.verification.test_orbit import equal_steps
 
 Array = NDArray[np.float64]
 
@@ -232,3 +233,24 @@ def test_a_step_costs_one_factorisation_on_every_grid() -> None:
         assert moved.answer is not None
         steps = [event for event in moved.run.history if "share" in str(event)]
         assert moved.run.pack_solver.counter.factorizations == len(steps) <= 4
+
+
+DRAGGING = {"surface.journal_rubbing": "force", "operation.speed": 300.0, "operation.eccentricity": (0.0, -240e-6)}
+RUBS = {"petals": ({"surface.petal_friction": 0.1}, 1.0), "journal": (DRAGGING, 0.25)}
+"""What rubs, and how long it is followed [units of time]."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rubs", RUBS)
+def test_energy_closes_to_second_order_with_friction(rubs: str) -> None:
+    """Of a rotor released on petals: steps halved thrice. Events that fall into other steps spread the slopes."""
+    (changes, end), errors = RUBS[rubs], []
+    bearing = case("orbit_n8", **{"model.cells_per_pitch": 8, **changes})
+    for halved in range(4):
+        with running():
+            trace = equal_steps(bearing, 0.1 * end / 2.0**halved, end).trace
+        over = trace.histories()[1]
+        assert over["petal_friction_work"][-1] > 0.0 if rubs == "petals" else trace.column("rubbing_torque")[-1] > 0.1
+        errors.append(trace.audits(over).energy_balance_error)
+    slopes = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+    assert np.all(np.abs(slopes - 2.0) < 0.3)
