@@ -46,6 +46,11 @@ MALFORMED = {
     "missing section": ('[gas]\nviscosity = "18.5 uPa*s"\nambient_pressure = "1 bar"\n', "", ["gas"]),
     "unknown section": ("[gas]", "[gass]", ["gass", "gas"]),
     "unit of something else": ('length = "50 mm"', 'length = "50 Pa"', ["bearing.length"]),
+    "key twice": ("count = 8", "count = 8\ncount = 9", ["stands twice in its table"]),
+    "no closing quote": ('length = "50 mm"', 'length = "50 mm', ["no closing quote"]),
+    "no quotes": ('length = "50 mm"', "length = 50 mm", ["with the quotes"]),
+    "one component": ('["0 um", "-100 um"]', '"-100 um"', ['such as ["-100 um", "-100 um"]']),
+    "against the rotation": ('speed = "8000 rad/s"', 'speed = "-60000 rpm"', ["seen from its other end"]),
     "unknown unit": ('length = "50 mm"', 'length = "50 mmm"', ["bearing.length", "mmm"]),
     "not a number": ('length = "50 mm"', 'length = "long"', ["bearing.length"]),
     "not finite": ('length = "50 mm"', "length = nan", ["bearing.length"]),
@@ -109,3 +114,13 @@ def test_a_case_that_is_not_there(tmp_path: Path) -> None:
 
 def test_a_folder_is_no_case(tmp_path: Path) -> None:
     refused(CliRunner().invoke(app, ["solve", str(tmp_path)], prog_name="petalfoil"))
+
+
+def test_a_picture_is_no_case(tmp_path: Path) -> None:
+    assert "it is no text but a picture" in refused(run(tmp_path, b"\x89PNG\r\n\x1a\n\0\0", "check"))
+
+
+def test_a_command_that_is_not_there() -> None:
+    result = CliRunner().invoke(app, ["solv"])
+    assert result.exit_code == 2
+    assert "Did you mean 'solve'?" in result.output

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from petalfoil.cli.new import StartingWall, starting_case
 from tests.docs.console import alike, blocks, missing, shown
 from tests.docs.texts import DOCS, ROOT
 
@@ -23,8 +24,10 @@ def test_pages_show_what_commands_print() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("block", WITH_OUTPUT)
-def test_the_command_prints_what_stands_there(block: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(ROOT)
+def test_the_command_prints_what_stands_there(block: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Commands about `case.toml` are about the one that `petalfoil new` writes."""
+    (tmp_path / "case.toml").write_text(starting_case(StartingWall.PETALS), encoding="utf-8")
+    monkeypatch.chdir(tmp_path if " case.toml" in shown(block)[0] else ROOT)
     assert missing(block) == []
 
 

@@ -118,7 +118,7 @@ OTHER = case("plain_journal", **{"bearing.length": 0.06}, **ROTOR)
         (PLAIN, {"speeds": [1.0, 2.0]}, UsageError, r"1.0 is not a pair \(time, speed\)"),
         (PLAIN, {"speeds": 5.0}, UsageError, r"5.0 is not a pair \(time, speed\)"),
         (PLAIN, {"speeds": [(0.0, 0.0)], "revolutions": 1.0}, UsageError, "never turns 1 times"),
-        (PLAIN, {"restart": "no such file.nc"}, StoreError, "no result file"),
+        (PLAIN, {"restart": "no such file.nc"}, StoreError, "there is no such file"),
     ],
 )
 def test_what_cannot_be_is_refused(

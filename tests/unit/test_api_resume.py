@@ -119,7 +119,7 @@ def test_results_that_are_no_points_are_refused(tmp_path: Path) -> None:
         petalfoil.static(PETALS, resume=part)
     with pytest.raises(UsageError, match="no series of points"):
         petalfoil.coefficients(PETALS, resume=part)
-    with pytest.raises(StoreError, match="no result file"):
+    with pytest.raises(StoreError, match="there is no such file"):
         petalfoil.curve(PETALS, "0 um", resume=tmp_path / "none.nc")
     with pytest.raises(UsageError, match=r"resume: .* is neither a result"):
         petalfoil.curve(PETALS, "0 um", resume=5)

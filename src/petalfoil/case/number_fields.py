@@ -74,11 +74,14 @@ class Quantity(Range):
         What it is, in words.
     symbol : str
         Letter of the equations.
+    beyond : str
+        What to do for a value outside the range, where it is not plain.
     """
 
     unit: str
     meaning: str
     symbol: str = ""
+    beyond: str = ""
 
     @property
     def allowed(self) -> str:
@@ -94,7 +97,8 @@ class Quantity(Range):
             raise refuse(UNIT_PROBLEM, str(error), error.allowed) from None
         if not self.holds(number):
             bare = f" (a bare number is read in {self.unit})" if is_bare(value) and self.unit != "1" else ""
-            text = f"{shown(value)}{bare} is outside its range; allowed: {self.bounds(self.unit)}"
+            do = f"; {self.beyond}" if self.beyond else ""
+            text = f"{shown(value)}{bare} is outside its range; allowed: {self.bounds(self.unit)}{do}"
             raise refuse(VALUE_PROBLEM, text, self.bounds(self.unit))
         return number
 
@@ -253,7 +257,8 @@ def as_pair(value: object) -> object:
     allowed = "two quantities, [x, y]"
     entries = as_sequence(value)
     if entries is None or len(entries) != 2:
-        raise refuse(VALUE_PROBLEM, f"{shown(value)} is not {allowed}", allowed)
+        both = f', such as ["{value}", "{value}"]' if isinstance(value, str) and "," not in value else ""
+        raise refuse(VALUE_PROBLEM, f"{shown(value)} is not {allowed}{both}", allowed)
     return tuple(entries)
 
 

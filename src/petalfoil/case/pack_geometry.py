@@ -186,7 +186,7 @@ def pack_problems(bearing: Bearing, petals: Petals, surface: Surface, operation:
         yield Problem(
             "petals.thickness",
             f"a petal of {_m(petals.total_thickness)} is thicker than the bushing's radius, "
-            f"{_m(bearing.bushing_radius)}",
+            f"{_m(bearing.bushing_radius)}; a number without a unit is in metres: write '0.1 mm'",
             petals.thickness,
             f"less than {bearing.bushing_radius:g} m",
         )

@@ -20,6 +20,9 @@ from petalfoil.units.writing import format_quantity
 MAX_MACH = 0.7
 """Mach number of the journal's surface above which the gas heats by tens of kelvins and its inertia matters."""
 
+LOWEST_SPEED, HIGHEST_SPEED = 2.0 * math.pi / 60.0 * 100.0, 2.0 * math.pi / 60.0 * 1e6
+"""Speeds between which gas bearings run, 100 and a million rpm [rad/s]; slower ones are passed in a run-up."""
+
 HEAT_CAPACITY_RATIO = 1.4
 """Of air and other gases of two atoms; 1.67 of noble gases makes the Mach number 9 % smaller."""
 
@@ -60,7 +63,7 @@ class Usual:
 
     def warning(self, value: float) -> Iterator[str]:
         """Yield a warning where `value` [`unit`] is unusual."""
-        if self.low <= value <= self.high:
+        if self.low <= value <= self.high or value == 0.0:  # zero is meant: a shaft at rest, no contraction
             return
         given, low, high = (format_quantity(number, self.unit) for number in (value, self.low, self.high))
         yield f"{self.key}: {given} is outside {low} to {high}, {self.why}; {self.ask}"
@@ -69,19 +72,27 @@ class Usual:
 USUAL = (
     Usual(
         "petals.youngs_modulus", 1e9, 1e12, "Pa", "where metals and polymers lie",
-        "if it was typed in MPa or psi, write the unit, as in '200 GPa'",
+        "check the unit: steel has '200 GPa', and a bare number is in Pa",
+    ),
+    Usual(
+        "petals.poisson_ratio", 0.1, 0.48, "1", "where metals and polymers lie",
+        "metals have 0.27 to 0.36",
+    ),
+    Usual(
+        "operation.speed", LOWEST_SPEED, HIGHEST_SPEED, "rad/s", "where gas bearings run",
+        "check the unit: a bare number is in rad/s, and '60.000 rpm' is sixty revolutions per minute",
     ),
     Usual(
         "gas.viscosity", 5e-6, 1e-4, "Pa*s", "where gases lie",
-        "if it was typed in mPa s or cP, write the unit, as in '18.5 uPa*s'; liquids are not modelled",
+        "check the unit: air has '18.5 uPa*s', and a bare number is in Pa*s; liquids are not modelled",
     ),
     Usual(
         "gas.ambient_pressure", 1e3, 1e7, "Pa", "where gas bearings run",
-        "if it was typed in bar or psi, write the unit, as in '1 bar'; it is the absolute pressure",
+        "check the unit: the atmosphere has '1 bar', and a bare number is in Pa; it is the absolute pressure",
     ),
     Usual(
         "gas.temperature", 100.0, 1500.0, "K", "where gas bearings run",
-        "if it was typed in degrees Celsius, write the unit, as in '20 degC'",
+        "check the unit: air in a laboratory has '20 degC', and a bare number is in K",
     ),
     Usual(
         "gas.gas_constant", 20.0, 5000.0, "J/(kg*K)", "where gases lie",

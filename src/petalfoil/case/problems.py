@@ -45,7 +45,9 @@ def joined(problems: Sequence[Problem]) -> str:
 def definition_error(error: ValidationError, root: type[BaseModel], section: str = "") -> DefinitionError:
     """Translate pydantic's report on `root`, whose own dotted path is `section`."""
     details = error.errors(include_url=False)
-    problems = [_problem(detail, root, section) for detail in details]
+    meant = {key for detail in details for key in _meant(detail, root)}
+    told = [detail for detail in details if not (detail["type"] == "missing" and dotted(detail["loc"]) in meant)]
+    problems = [_problem(detail, root, section) for detail in told]
     kind = UnitError if all(detail["type"] == UNIT_PROBLEM for detail in details) else DefinitionError
     return refusal(kind, problems)
 
@@ -98,6 +100,16 @@ def _unknown_key(key: str, location: Location, root: type[BaseModel], given: obj
     parent = dotted(location[:-1])
     hint = nearest_key(str(location[-1]), parent, _paths(root))
     return Problem(key, f"is not a known key; known here: {known}.{hint}", given, known)
+
+
+def _meant(detail: ErrorDetails, root: type[BaseModel]) -> list[str]:
+    """Paths that an unknown key may have been meant for: where one of them is missing, that is one mistake, not two."""
+    if detail["type"] != "extra_forbidden":
+        return []
+    parent = dotted(detail["loc"][:-1])
+    hint = nearest_key(str(detail["loc"][-1]), parent, _paths(root))
+    names = re.findall(r"Did you mean '([^']*)'", hint)
+    return [*names, *(f"{parent}.{name}" for name in names)]
 
 
 def _unknown_word(key: str, detail: ErrorDetails) -> Problem:

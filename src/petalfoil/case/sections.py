@@ -111,7 +111,16 @@ class Operation(Definition):
     section: ClassVar[str] = "operation"
 
     speed: Annotated[
-        float, Quantity(unit="rad/s", meaning="angular speed", symbol="omega", at_least=0.0, at_most=MAX_SPEED)
+        float,
+        Quantity(
+            unit="rad/s",
+            meaning="angular speed",
+            symbol="omega",
+            at_least=0.0,
+            at_most=MAX_SPEED,
+            beyond="petals point in the direction of rotation, so that a bearing that turns the other way is this one "
+            "seen from its other end: x with the other sign",
+        ),
     ]
     eccentricity: Annotated[tuple[_Displacement, _Displacement], BeforeValidator(as_pair)] = (0.0, 0.0)
     """Components `[x, y]`."""

@@ -16,7 +16,19 @@ from petalfoil.errors import DefinitionError
 MAX_BYTES = 2**20
 """Size of the largest file that is read; a case has some kilobytes, a measured shape of 10 000 rows has 300."""
 
+_CURES = {
+    "Cannot overwrite a value": "the key of this line stands twice in its table: leave one",
+    "Cannot declare": "the table stands twice: put its keys under one heading",
+    "Illegal character '\\n'": "a text of this line has no closing quote",
+    "Unterminated string": "a text has no closing quote",
+    "Invalid value": "a value is missing, or a text has no quotes: write quantities as '25 um', with the quotes",
+    "Expected newline or end of document after a statement": "quantities are texts: write '25 um', with the quotes",
+}
+"""Signs in errors of the TOML parser, and what to do about them."""
+
 _AS_UTF_8 = "save it as UTF-8 (in an editor: save as, encoding UTF-8; or: iconv -f LATIN1 -t UTF-8 old > new)"
+
+_NO_TEXT = "it is no text but a picture, a result or a program; a case is a text file in TOML"
 
 
 def read_file(path: str | os.PathLike[str]) -> str:
@@ -26,7 +38,8 @@ def read_file(path: str | os.PathLike[str]) -> str:
     except FileNotFoundError:
         raise DefinitionError("there is no such file") from None
     except UnicodeDecodeError as error:
-        raise DefinitionError(f"is not a text in UTF-8 ({_first_wrong(error)}): {_AS_UTF_8}") from None
+        cure = _NO_TEXT if b"\0" in error.object else _AS_UTF_8
+        raise DefinitionError(f"is not a text in UTF-8 ({_first_wrong(error)}): {cure}") from None
     except (OSError, ValueError) as error:  # a ValueError is a path with a null character
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise DefinitionError(f"cannot be read: {reason}") from None
@@ -58,7 +71,12 @@ def parse(text: str) -> dict[str, Any]:
     except RecursionError:
         raise DefinitionError("is not valid TOML: it is nested too deeply") from None
     except ValueError as error:  # TOMLDecodeError, and integers of thousands of digits
-        raise DefinitionError(f"is not valid TOML: {error}") from None
+        raise DefinitionError(f"is not valid TOML: {error}{_cure(str(error))}") from None
+
+
+def _cure(error: str) -> str:
+    """What is usually behind an error of the TOML parser; nothing where that is not known."""
+    return next((f"; {cure}" for sign, cure in _CURES.items() if sign in error), "")
 
 
 def write(tables: Mapping[str, Any]) -> str:

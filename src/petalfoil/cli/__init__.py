@@ -15,6 +15,7 @@ In the order a call runs through them:
 - ``study_commands``    the commands of studies, with the options of the analysis that they ask
 - ``study_outputs`` a study on standard output
 - ``study_folder`` ``petalfoil study``: a stored study shown, gone on with, exported
+- ``new``        a case to begin with
 - ``report``     what a design review asks about a bearing, on one page
 - ``reproduce``  the paper's figures and claims: a page and data
 - ``studio``     the page on which a bearing is changed and answers

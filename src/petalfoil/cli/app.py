@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -11,10 +13,12 @@ from petalfoil import __version__
 from petalfoil.analysis import known_verbs
 from petalfoil.cli.docs import docs
 from petalfoil.cli.failures import handled
+from petalfoil.cli.new import new
 from petalfoil.cli.report import report
 from petalfoil.cli.reproduce import reproduce
 from petalfoil.cli.streams import accept_any_text, be_verbose, emit
 from petalfoil.cli.studio import studio
+from petalfoil.text import for_terminal
 
 if TYPE_CHECKING:
     Context = Any
@@ -37,6 +41,12 @@ def is_sampled(name: str, words: list[str]) -> bool:
     return name == "sensitivity" and any(word.partition("=")[0] == "--samples" for word in words)
 
 
+def meant_by(word: str, commands: Sequence[str]) -> str:
+    """Ask whether a command with a similar name was meant; nothing where there is none."""
+    matches = get_close_matches(word.lower(), commands, n=1)
+    return f" Did you mean '{matches[0]}'?" if matches else ""
+
+
 class Verbs(TyperGroup):
     """The analyses, read from their declarations, and the commands that are none.
 
@@ -57,6 +67,8 @@ class Verbs(TyperGroup):
 
     def resolve_command(self, ctx: Context, args: list[str]) -> Any:
         """The command that is called, with all its options."""
+        if args and args[0] not in self.list_commands(ctx):
+            ctx.fail(f"No such command '{for_terminal(args[0])}'.{meant_by(args[0], self.list_commands(ctx))}")
         name, command, rest = super().resolve_command(ctx, args)
         if name in STUDIES or is_sampled(str(name), rest):
             from petalfoil.cli.study_commands import study_command
@@ -80,6 +92,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,  # `failures` speaks to the user, not a decorated traceback
     rich_markup_mode="rich",
 )
+app.command()(new)
 app.command()(report)
 app.command()(reproduce)
 app.command()(studio)

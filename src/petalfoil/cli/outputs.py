@@ -163,10 +163,10 @@ class Outputs:
 
 def check_file(path: Path, option: str, suffixes: tuple[str, ...]) -> None:
     """Make sure that a file of one of these suffixes can be written."""
+    if path.is_dir():
+        raise UsageError(f"{option}: {path} is a folder; name a file in it, such as {path / f'result{suffixes[0]}'}")
     if path.suffix.lower() not in suffixes:
         raise UsageError(f"{option}: {path} has the suffix '{path.suffix}'; known: {', '.join(suffixes)}")
-    if path.is_dir():
-        raise UsageError(f"{option}: {path} is a folder, not a file")
     if not path.parent.is_dir():
         raise UsageError(f"{option}: {path} cannot be written, there is no folder {path.parent}")
     try:

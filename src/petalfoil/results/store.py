@@ -73,12 +73,17 @@ def load(path: str | Path) -> xr.Dataset:
     """
     source = Path(path)
     if not source.is_file():
-        raise StoreError(f"no result file {source}")
+        raise StoreError(
+            f"{source} is a folder; expected a file" if source.is_dir() else f"{source}: there is no such file"
+        )
     sealed = _seal_of(source)
     try:
         ds = xr.load_dataset(source, engine="netcdf4")
     except _UNREADABLE as error:
-        raise StoreError(f"{source} is not a readable NetCDF file: {error}") from error
+        raise StoreError(
+            f"{source} is not a result of petalfoil, or is damaged: it cannot be read as NetCDF-4 ({error}); results "
+            "are written by --out"
+        ) from error
     missing = [mark for mark in _MARKS if mark not in ds.attrs]
     if missing:
         raise StoreError(f"{source} was not written by petalfoil: it has no attribute {missing[0]!r}")

@@ -15,6 +15,13 @@ from petalfoil.results.atomic import replacing
 from petalfoil.studies.question import Question
 
 FILE = "study.toml"
+
+
+def no_study(folder: Path) -> str:
+    """Why a folder holds no study."""
+    return f"{folder} is no folder of a study: {f'it has no {FILE}' if folder.exists() else 'there is no such folder'}"
+
+
 NEIGHBOURS = "neighbours"
 """Setting of a study whose cases begin at the solutions of similar ones."""
 
@@ -75,7 +82,7 @@ class Study:
             The folder holds none, or a damaged one.
         """
         if not (folder / FILE).is_file():
-            raise StoreError(f"{folder} is no folder of a study: it has no {FILE}")
+            raise StoreError(no_study(folder))
         try:
             tables = toml.parse(toml.read_file(folder / FILE))
             return cls(

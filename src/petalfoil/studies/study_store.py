@@ -23,7 +23,7 @@ from pathlib import Path
 
 from petalfoil.errors import StoreError, UsageError
 from petalfoil.studies.question import CaseOutcome
-from petalfoil.studies.study_definition import FILE, Study
+from petalfoil.studies.study_definition import FILE, Study, no_study
 
 INDEX, FIELDS, LOCK = "index.sqlite", "fields", ".lock"
 DATA, TABLE, FIGURES, PAGE = "study.nc", "table.csv", "figures", "index.html"
@@ -134,6 +134,9 @@ def begun(folder: Path, study: Study, *, anew: bool = False) -> Iterator[Store]:
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StoreError(f"{folder} cannot be made: {error.strerror}") from error
+    try:
         with locked(folder):
             _made_ready(folder, study, anew=anew)
             with opened(folder) as store:
@@ -146,7 +149,7 @@ def begun(folder: Path, study: Study, *, anew: bool = False) -> Iterator[Store]:
 def opened(folder: Path) -> Iterator[Store]:
     """Open the folder of a study."""
     if not (folder / FILE).is_file():
-        raise StoreError(f"{folder} is no folder of a study: it has no {FILE}")
+        raise StoreError(no_study(folder))
     store = Store(folder)
     try:
         yield store

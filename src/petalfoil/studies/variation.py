@@ -194,7 +194,10 @@ def _scatter(parameter: Parameter, kind: str, width: str) -> Scatter:
     if width.endswith("%"):
         size = abs(parameter.value) * parse_quantity(width.removesuffix("%"), "1") / 100.0
     else:
-        size = parse_quantity(width, parameter.unit)
+        try:
+            size = parse_quantity(width, parameter.unit)
+        except UnitError as error:
+            raise UnitError(f"{parameter.path}: {error}; behind the width only 'each' may stand") from error
     if not size > 0.0:
         text = f"{parameter.path}: a scatter of {shown(width)} is too small; allowed: greater than 0"
         raise DefinitionError(text, key=parameter.path, given=width, allowed="greater than 0")

@@ -48,6 +48,9 @@ _ALSO_WRITTEN = {
 _GAUGE = {"barg", "psig"}
 """Pressures above the ambient one: another zero, which no factor converts."""
 
+_ABSOLUTE = {"abs", "absolute"}
+"""Words behind a pressure that say what it is anyway."""
+
 _COMMON = (
     *("m", "mm", "um", "nm", "in", "thou", "microinch", "deg", "rad", "s", "ms", "rpm", "krpm", "rps", "Hz", "kHz"),
     *("Pa", "kPa", "MPa", "GPa", "bar", "mbar", "atm", "psi", "ksi", "Msi", "N", "kN", "lbf", "kgf", "kg", "g", "lb"),
@@ -203,6 +206,8 @@ def _named(name: str) -> Any:
 
     if name in _GAUGE:
         raise UnitTextError(f"is a gauge pressure ({name}): write the absolute one")
+    if name in _ABSOLUTE:
+        raise UnitTextError(f"says {name!r}: pressures are absolute, leave the word out")
     try:
         return _registry().Unit(_ALSO_WRITTEN.get(name, name))
     except (pint.PintError, ValueError):

@@ -18,6 +18,7 @@ MAX_POINTS = 10_000  # more points than this in one range is a typing mistake
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3}(?![0-9]))?")
 
 _DECIMAL_COMMA = re.compile(r"[+-]?[0-9]+,[0-9]")
+_THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}(,[0-9]{3})+(?![0-9])")
 
 # What each SI unit measures, with an example to follow.
 _MEASURES = {
@@ -138,12 +139,20 @@ def _read_text(text: str, unit: str, whirl: bool) -> float:
     if len(plain) > MAX_TEXT:
         raise UnitTextError("is too long for a quantity")
     if _DECIMAL_COMMA.match(plain):
-        raise UnitTextError(f"has a decimal comma: write a decimal point, '{plain.replace(',', '.', 1)}'")
+        raise UnitTextError(_with_comma(plain))
     number = _NUMBER.match(plain)
     if number is None:
         raise UnitTextError("does not begin with a number")
     rest = plain[number.end() :].strip()
     return convert(Fraction(number.group()), rest, unit, whirl=whirl) if rest else float(number.group())
+
+
+def _with_comma(plain: str) -> str:
+    """What is wrong with a number that has a comma: it marks decimals or, before three digits, thousands."""
+    point = plain.replace(",", ".", 1)
+    if _THOUSANDS.match(plain):
+        return f"has a comma: write '{plain.replace(',', '')}' if it marks thousands, '{point}' if it marks decimals"
+    return f"has a decimal comma: write a decimal point, '{point}'"
 
 
 def _plain(text: str) -> str:
@@ -155,10 +164,10 @@ def _split(text: str, unit: str) -> list[str]:
     parts = text.split(",")
     for before, after in pairwise(parts):
         if _DECIMAL_COMMA.match(f"{before},{after}".strip()) and not is_bare(after):
-            (_, example), number = _measure(unit), f"{before}.{after}".strip()
+            _, example = _measure(unit)
             raise UsageError(
-                f"{shown(text)} may have a decimal comma: write a decimal point, '{number}', "
-                f"or in a list a unit with each quantity, such as '{example}, {example}'"
+                f"{shown(text)} {_with_comma(f'{before},{after}'.strip())}; "
+                f"or in a list write a unit with each quantity, such as '{example}, {example}'"
             )
     return parts
 

@@ -16,7 +16,7 @@ from tests.cases import case
 from tests.unit.case.test_plausibility import bumps, measured, rows_of
 
 PETALS, PLAIN = "paper_n8", "plain_journal"
-STILL = {"operation.speed": "10 rpm", "operation.eccentricity": (0, 0), "surface.contact_film_thickness": "0.1 um"}
+STILL = {"operation.speed": "110 rpm", "operation.eccentricity": (0, 0), "surface.contact_film_thickness": "0.1 um"}
 Told = list[str]
 
 
@@ -49,7 +49,7 @@ def cold_metal(temperature: str, gas: str = "20 degC") -> Told:
 
 def named_gas(name: str, pressure: str, **scalars: float) -> Told:
     """Warnings of a plain bearing in a named gas, for an answer."""
-    slow = {"operation.speed": "100 rpm"}
+    slow = {"operation.speed": "110 rpm"}
     return warnings_of(case(PLAIN, gas={"name": name, "ambient_pressure": pressure}, **slow), scalars)
 
 

@@ -40,6 +40,8 @@ INPUTS: dict[str, tuple[str, str, Any, Any]] = {
     "a flame": (PLAIN, "gas.temperature", 1501, 1499),
     "a heavy gas": (PLAIN, "gas.gas_constant", 19.9, 20.1),
     "a fast surface": (PETALS, "operation.speed", 0.701 * SOUND / 25e-3, 0.699 * SOUND / 25e-3),
+    "a metal that hardly contracts": (PETALS, "petals.poisson_ratio", "0.29 %", 0.29),
+    "thousands with a point": (PETALS, "operation.speed", "60.000 rpm", "60000 rpm"),
     "a speed typed in rpm": (PETALS, "operation.speed", 60000, "60000 rpm"),
     "a tight bushing": (PLAIN, "bearing.bushing_radius", "25.0024 mm", "25.0026 mm"),
     "a wide bushing": (PLAIN, "bearing.bushing_radius", "28.8 mm", "28.7 mm"),
@@ -52,7 +54,7 @@ INPUTS: dict[str, tuple[str, str, Any, Any]] = {
 @pytest.mark.parametrize("name", INPUTS)
 def test_an_unusual_input_is_warned_of(name: str) -> None:
     example, key, unusual, usual = INPUTS[name]
-    slow = {"operation.speed": "10 rpm", "operation.eccentricity": (0, 0), "surface.contact_film_thickness": "0.1 um"}
+    slow = {"operation.speed": "110 rpm", "operation.eccentricity": (0, 0), "surface.contact_film_thickness": "0.1 um"}
     only(warnings_of(case(example, **{**slow, key: unusual}), {}), key)
     assert warnings_of(case(example, **{**slow, key: usual}), {}) == []
 

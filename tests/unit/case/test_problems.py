@@ -55,3 +55,11 @@ def test_words_of_drawings_lead_to_keys(key: str, value: object, told: str) -> N
     with pytest.raises(DefinitionError) as caught:
         Case(**put(tables(), key, value))
     assert told in dict(caught.value.problems)[key]
+
+
+def test_a_misspelt_key_that_is_needed_is_one_mistake() -> None:
+    text = (EXAMPLES / "paper_n8.toml").read_text()
+    with pytest.raises(DefinitionError) as error:
+        Case.from_toml(text.replace("\nthickness =", "\nthicknes ="))
+    assert [key for key, _ in error.value.problems] == ["petals.thicknes"]
+    assert "Did you mean 'thickness'?" in str(error.value)

@@ -246,7 +246,7 @@ def _turns(path: Path) -> str:
         (("--initial", "1 um"), "--initial: '1 um' is not a pair"),
         (("--initial", "30 um, 0 um"), "touches the bushing"),
         (("--tolerance", "nought"), "--tolerance: 'nought' does not begin with a number"),
-        (("--restart", "nothing.nc"), "no result file nothing.nc"),
+        (("--restart", "nothing.nc"), "nothing.nc: there is no such file"),
         (("--restart", "here.nc", "--initial", "0 um, 0 um"), "--initial says nothing beside --restart"),
         (("--restart", "here.nc", "--out", "here.nc"), "--out: here.nc is what --restart reads"),
         (("--animate", "orbit.mp4"), "--animate: orbit.mp4 has the suffix '.mp4'; known: .html, .gif"),

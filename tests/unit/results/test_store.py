@@ -85,9 +85,9 @@ def test_a_folder_that_is_not_there_is_a_store_error(tmp_path: Path) -> None:
 
 
 def test_absent_files_and_folders_are_store_errors(tmp_path: Path) -> None:
-    with pytest.raises(StoreError, match="no result file"):
+    with pytest.raises(StoreError, match="there is no such file"):
         load(tmp_path / "absent.nc")
-    with pytest.raises(StoreError, match="no result file"):
+    with pytest.raises(StoreError, match="is a folder; expected a file"):
         load(tmp_path)
 
 

@@ -181,7 +181,7 @@ def test_a_pair() -> None:
 def test_a_decimal_comma_is_no_list(text: str) -> None:
     """`0,1 mm` would be the pair of 0 m and 1 mm, ten times as far as was meant."""
     for parse in (parse_pair, parse_range):
-        with pytest.raises(UsageError, match="may have a decimal comma: write a decimal point, '"):
+        with pytest.raises(UsageError, match="has a decimal comma: write a decimal point, '"):
             parse(text, "m")
 
 
@@ -253,3 +253,16 @@ def test_long_values_are_cut_in_messages() -> None:
     for _ in range(100_000):
         nested = [nested]
     assert shown(nested) == "a value of type list"
+
+
+@pytest.mark.parametrize("text", ["60,000 rpm", "1,234,567 Pa"])
+def test_a_comma_before_three_digits_may_mark_thousands(text: str) -> None:
+    """60.000 rpm, the decimal reading alone, would be sixty revolutions per minute."""
+    unit = "rad/s" if "rpm" in text else "Pa"
+    with pytest.raises(UnitError, match=f"write '{text.replace(',', '')}' if it marks thousands"):
+        parse_quantity(text, unit)
+
+
+def test_pressures_are_absolute_without_a_word() -> None:
+    with pytest.raises(UnitError, match="pressures are absolute"):
+        parse_quantity("1 bar abs", "Pa")
