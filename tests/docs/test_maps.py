@@ -26,6 +26,12 @@ def files(folder: Path) -> set[str]:
     return inside - {"__init__"}
 
 
+def test_the_map_of_the_verification_names_each_of_its_tests() -> None:
+    folder = SOURCE.parents[1] / "tests" / "verification"
+    named = set(re.findall(r"^\| `(test_\w+)\.py`", (folder / "README.md").read_text(encoding="utf-8"), re.MULTILINE))
+    assert named ^ {path.stem for path in folder.glob("test_*.py")} == set()
+
+
 @pytest.mark.parametrize("name", FOLDERS)
 def test_a_map_names_the_files_of_its_folder(name: str) -> None:
     folder = SOURCE / name

@@ -72,8 +72,8 @@ What they share:
 `restart.py`           a motion that goes on from a result
 `trace.py`             what a motion leaves behind
 `steps_ahead.py`       what a motion costs, told before it begins
-`grid_study.py`        nested grids
-`error_bars.py`        the error bars of any answer, from them
+`grid_study.py`        nested grids; error bars of arrays such as stiffness
+`error_bars.py`        the error bars of any answer, from nested grids
 `accuracy.py`          whether they are below an accuracy, and the next finer grid
 `richardson.py`        values on a sequence of grids: limit, order, error bar
 `classic_method.py`    the paper's own method

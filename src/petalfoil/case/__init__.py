@@ -26,8 +26,8 @@ In the order data flows:
 - `definitions`: `Case`, which puts all of it together.
 - `keys`: every key with unit, range, default and meaning, and what a case says to it.
 - `parameters`: numbers of a case that may vary, by dotted path.
-- `implausible_answers`: warnings of what is implausible about an answer.
-- `plausibility`: the same of a case, and of a case with its answer.
+- `implausible_answers`: warnings about an answer: stress, contact, bottomed-out pack, wide error bars.
+- `plausibility`: warnings about a case: units, surface speed (Mach number), turbulence, materials, measured shapes.
 
 All numbers are floats in SI units; texts such as ``"25 um"`` are read when a definition is made.
 """

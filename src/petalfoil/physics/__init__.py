@@ -1,7 +1,7 @@
 """The equations. Each residual stands next to its derivative; nothing here solves.
 
 =====================  ========================================================================================
-`reynolds.py`          Reynolds' equation (51)-(57): mass flux through the faces of control volumes
+`reynolds.py`          Reynolds' equation (F1)-(F3), the paper's (51)-(57): fluxes through faces of control volumes
 `mass_balance.py`      mass balance of the control volumes of the film, and its sparse derivative
 `gas_inventory.py`     the gas inventory of a 2-D film without ambient boundary (F6)
 `shell.py`             bending of a petal (33)-(39): stiffness matrix, curvatures, stress

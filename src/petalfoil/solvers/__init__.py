@@ -9,8 +9,8 @@
 `tangent.py`              the factorised tangent, with a few bordered unknowns
 `interior_point.py`       primal-dual interior point: cold starts, on any grid
 `central_path.py`         its central path, followed through folds by arc length
-`contact_equations.py`    what Newton's method on active contacts solves; its variants
-`contact_newton.py`       Newton's method on active contacts: where one closes or is released
+`contact_equations.py`    what Newton's method on active contacts solves; when a contact closes or is released
+`contact_newton.py`       Newton's method on active contacts: its loop
 `contact_search.py`       the active contacts of the linearised equations, found at once
 `lcp.py`                  small dense complementarity problems
 `coulomb.py`              contact with Coulomb friction as a small dense problem

@@ -244,7 +244,7 @@ def evaluate(
 
 
 def revise(problem: ContactProblem, state: ContactState) -> Mask:
-    """Keep active what pushes, close what has gone negative."""
+    """Active contacts from here on: those that push stay, those that pull are released, gaps below zero close."""
     below: Mask = state.gaps < -RESIDUAL_TOLERANCE
     if not state.active.any():
         return below
