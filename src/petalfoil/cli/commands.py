@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,7 +17,7 @@ from petalfoil.analysis.progress_bar import bar
 from petalfoil.case import Case
 from petalfoil.cli.exports import chosen, export_options
 from petalfoil.cli.failures import handled
-from petalfoil.cli.keeping import Autosave, follow
+from petalfoil.cli.keeping import Autosave, earlier_set_aside, follow
 from petalfoil.cli.outputs import Outputs
 from petalfoil.cli.streams import be_verbose
 from petalfoil.errors import UsageError
@@ -85,10 +86,12 @@ def call(analysis: Analysis, given: dict[str, Any]) -> None:
         values = analysis.read({name: given[name] for name in known_as}, known_as)
         values = _fit_exports(analysis, given, values, known_as)
         case = Case.load(path)
-        with bar(analysis.verb) as report:
-            run = analysis.start(case, values, report, None if resume is None else RESUME.named("--resume", resume))
-            answer, stopped = follow(analysis, run, Autosave(out), report)
-        outputs.deliver(answer, stopped=stopped)
+        with ExitStack() as ending:
+            with bar(analysis.verb) as report:
+                run = analysis.start(case, values, report, None if resume is None else RESUME.named("--resume", resume))
+                ending.enter_context(earlier_set_aside(out, resume))
+                answer, stopped = follow(analysis, run, Autosave(out), report)
+            outputs.deliver(answer, stopped=stopped)
 
 
 def argument_options(analysis: Analysis) -> list[inspect.Parameter]:

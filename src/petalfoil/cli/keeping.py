@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -72,6 +73,35 @@ def _keep(analysis: Analysis, run: Run, autosave: Autosave) -> None:
         say(f"Warning: {error}")
     else:
         say(f"stopped: {finished} and kept in {autosave.path}")
+
+
+@contextmanager
+def earlier_set_aside(path: Path | None, read: Path | None) -> Iterator[None]:
+    """Keep the file of an earlier run from being taken for that of this run, whatever ends it.
+
+    Until this run has written its own file the earlier one is beside it under another name, and stays there if none is
+    written. A file that the run goes on from stays where it is.
+
+    Parameters
+    ----------
+    path : Path or None
+        File that the run writes.
+    read : Path or None
+        File that the run goes on from.
+    """
+    if path is None or not path.is_file() or (read is not None and read.resolve() == path.resolve()):
+        yield
+        return
+    target = path.resolve()  # a link stays a link
+    aside = target.with_name(f"{target.stem}.earlier{target.suffix}")
+    target.replace(aside)
+    try:
+        yield
+    finally:
+        if target.exists():
+            aside.unlink(missing_ok=True)
+        else:
+            say(f"{path} was not written; that of an earlier run is now {aside.name}")
 
 
 class Autosave:
