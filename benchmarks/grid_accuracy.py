@@ -56,6 +56,7 @@ def results(count: int, e: int, kind: str, grid: Grid) -> dict[str, float]:
     case = Case.load(EXAMPLES / f"paper_n{count}.toml").replace(
         **{
             "model.kind": kind,
+            "petals.theory": "inextensible",
             "model.cells_per_pitch": grid[0],
             "model.axial_cells": grid[1],
             "operation.eccentricity": ["0 um", f"-{e} um"],

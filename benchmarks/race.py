@@ -92,7 +92,7 @@ class Race:
             "model.cells_per_pitch": round((self.nodes - 1) / overlap),
         }
         if self.stations:
-            changes |= {"model.kind": "3d", "model.axial_cells": self.stations - 1}
+            changes |= {"model.kind": "3d", "model.axial_cells": self.stations - 1, "petals.theory": "inextensible"}
         return case.replace(**changes)
 
 

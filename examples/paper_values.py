@@ -63,8 +63,9 @@ class Task:
 
     @property
     def case(self) -> Case:
-        """The pack, in 3-D on equal stations, which are nested on the coarsest grid too."""
-        changes = {"model.kind": self.kind} | ({"model.axial_density": "uniform"} if self.kind == "3d" else {})
+        """The pack, whose petals bend only; in 3-D on equal stations, which are nested on the coarsest grid too."""
+        changes = {"model.kind": self.kind, "petals.theory": "inextensible"}
+        changes |= {"model.axial_density": "uniform"} if self.kind == "3d" else {}
         return Case.load(HERE / f"paper_n{self.count}.toml").replace(**changes)
 
 

@@ -9,12 +9,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from petalfoil.case import Case, ModelKind
+from petalfoil.case import Case, ModelKind, PetalTheory
 from petalfoil.errors import DefinitionError
 from petalfoil.units.writing import format_quantity
 
 BYTES_WITH_PETALS = 900.0
 """`c` of film and petals [bytes]: measured 430 to 660 over 4 000 to 160 000 unknowns, to 780 with adapted stations."""
+
+BYTES_WITH_STRETCHING = 1200.0
+"""`c` of film and petals that stretch [bytes]: measured 590 to 1160 over 50 000 to 75 000 unknowns."""
 
 BYTES_OF_FILM = 350.0
 """`c` of a film alone [bytes]: measured 220 to 330, over 2 000 to 130 000 unknowns."""
@@ -39,6 +42,8 @@ class GridSize:
         Cells over the whole length; 0 in a 2-D model.
     symmetric : bool
         Half the length is gridded.
+    stretches : bool
+        Petals also have displacements along themselves and along the shaft.
     """
 
     petals: int
@@ -46,18 +51,22 @@ class GridSize:
     cells: int
     axial: int
     symmetric: bool
+    stretches: bool = False
 
     @property
     def unknowns(self) -> int:
-        """Number of pressures and deflections."""
-        gridded = self.axial // 2 if self.symmetric else self.axial
-        along = self.petals * (math.ceil(self.overlap * self.cells) + self.cells) if self.petals else self.cells
-        return along * (gridded + 1)
+        """Number of pressures and displacements of petals."""
+        stations = 1 + (self.axial // 2 if self.symmetric else self.axial)
+        if not self.petals:
+            return self.cells * stations
+        along, each = math.ceil(self.overlap * self.cells), 3 * stations - 1 if self.stretches else stations
+        return self.petals * (along * each + self.cells * stations)
 
     @property
     def memory(self) -> float:
         """Estimate of the memory that solving takes at its peak, beside Python itself [bytes]."""
-        factor = BYTES_WITH_PETALS if self.petals else BYTES_OF_FILM
+        with_petals = BYTES_WITH_STRETCHING if self.stretches else BYTES_WITH_PETALS
+        factor = with_petals if self.petals else BYTES_OF_FILM
         return factor * self.unknowns * math.log2(self.unknowns)
 
     @property
@@ -76,7 +85,8 @@ def grid_of(case: Case) -> GridSize:
     """The grid of a case."""
     pack, axial = case.pack, 0 if case.model.kind is ModelKind.TWO_D else case.axial_cells
     count, overlap = (0, 0.0) if pack is None else (pack.count, pack.overlap)
-    return GridSize(count, overlap, case.cells_per_pitch, axial, case.symmetric)
+    stretches = case.petal_theory is PetalTheory.SHELL and axial > 0
+    return GridSize(count, overlap, case.cells_per_pitch, axial, case.symmetric, stretches)
 
 
 def check_memory(case: Case, bearings: int = 1) -> None:

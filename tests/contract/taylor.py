@@ -81,6 +81,11 @@ BENDING = {
 """A top foil that bends over springs."""
 
 
+def theory_of(name: str) -> dict[str, object]:
+    """Petals that stretch where the name says so."""
+    return {"petals.theory": "shell" if "stretching" in name else "inextensible"}
+
+
 def bearing(name: str) -> Case:
     """One of `BEARINGS` on a coarse grid."""
     example, kind, edges, symmetry = BEARINGS[name]
@@ -91,7 +96,7 @@ def bearing(name: str) -> Case:
         "model.cells_per_pitch": 6 if "petals" in name else 16,
         "model.axial_cells": 4,
         **(BENDING if name.startswith("bending") else {}),
-        **({"petals.theory": "shell"} if "stretching" in name else {}),
+        **(theory_of(name) if "petals" in name and kind == "3d" else {}),
         **(RUBBED if name.startswith("rubbed") else {}),
         **(THIN if name.startswith("slipping") else {}),
         **(TILTED if name.startswith("tilted") else {}),

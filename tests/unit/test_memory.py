@@ -44,11 +44,11 @@ def test_the_grid_that_is_told_fits_and_one_a_little_finer_does_not(monkeypatch:
     monkeypatch.setattr(memory, "available_memory", lambda: 2.0 * GB)
     with pytest.raises(DefinitionError) as caught:
         check_memory(case("paper_n8", **HUGE))
-    assert caught.value.allowed == "up to cells_per_pitch = 278, axial_cells = 34"
-    fits = {"model.kind": "3d", "model.cells_per_pitch": 278, "model.axial_cells": 34}
+    assert caught.value.allowed == "up to cells_per_pitch = 158, axial_cells = 18"
+    fits = {"model.kind": "3d", "model.cells_per_pitch": 158, "model.axial_cells": 18}
     check_memory(case("paper_n8", **fits))
     with pytest.raises(DefinitionError):
-        check_memory(case("paper_n8", **{**fits, "model.cells_per_pitch": 302}))
+        check_memory(case("paper_n8", **{**fits, "model.cells_per_pitch": 172}))
 
 
 def test_a_2d_grid_names_no_axial_cells(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -171,10 +171,10 @@ def test_what_has_no_path_is_refused() -> None:
     assembled = {"surface.friction_history": "assembled"}
     with pytest.raises(DefinitionError, match=r"surface\.friction_history: .* needs surface\.petal_friction above 0"):
         case("rig", **assembled)
-    with pytest.raises(DefinitionError, match=r"surface\.friction_history: .*\(2-D, petals\.theory"):
-        case("paper_n8_spatial", **{"surface.petal_friction": 0.1, **assembled})
-    with pytest.raises(DefinitionError, match=r"surface\.friction_history: .*\(2-D, petals\.theory"):
-        case("paper_n8_spatial", **{"petals.theory": "shell", "surface.petal_friction": 0.1, **assembled})
+    with pytest.raises(DefinitionError, match=r"surface\.friction_history: .*slide along themselves \(petals\.theory"):
+        case("paper_n8", **{"petals.theory": "inextensible", "surface.petal_friction": 0.1, **assembled})
+    with pytest.raises(DefinitionError, match=r"surface\.friction_history: .*slide along themselves \(petals\.theory"):
+        case("backed_petals", **{"surface.petal_friction": 0.1, **assembled})
     with pytest.raises(UsageError, match="derivatives are those of a pack without friction forces"):
         sensitivity(rig(**assembled), "gas.viscosity", ask="balance", load=(0.0, -LOAD))
     with pytest.raises(UsageError, match="largest load is that of a pack without friction forces"):

@@ -247,6 +247,10 @@ def test_where_petals_do_not_slide_is_said() -> None:
     assert case("paper_n8_spatial", **{"surface.petal_friction": 0.3}).petal_theory is PetalTheory.INEXTENSIBLE
     assert case("paper_n8", **{"surface.petal_friction": 0.3}).petal_theory is PetalTheory.SHELL
     assert case("paper_n8").petal_theory is PetalTheory.INEXTENSIBLE
+    in_3d = {"model.kind": "3d"}
+    assert case("paper_n8", **in_3d).petal_theory is PetalTheory.SHELL
+    assert case("paper_n8", **in_3d, **{"model.method": "classic"}).petal_theory is PetalTheory.INEXTENSIBLE
+    assert case("backed_petals", **in_3d).petal_theory is PetalTheory.INEXTENSIBLE
 
 
 @pytest.mark.slow

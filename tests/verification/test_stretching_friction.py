@@ -9,13 +9,16 @@ from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
 from petalfoil.analysis.coefficients import coefficients
+from petalfoil.analysis.runup import runup
 from petalfoil.analysis.static import static
-from petalfoil.case import Case
+from petalfoil.case import Case, warnings_of
 from petalfoil.equilibrium.friction_history import assembled, moved
+from petalfoil.equilibrium.friction_under_load import PATH, LoadedPath
 from petalfoil.equilibrium.run_context import running
 from petalfoil.mesh.pack import PackMesh
-from petalfoil.system.build import build_problem
+from petalfoil.system.build import build_problem, build_tilting
 from petalfoil.system.friction import friction_of
+from petalfoil.system.loaded import load_of
 from petalfoil.walls.petals import build_mesh, petal_faces
 from petalfoil.walls.sliding import node_slopes
 from tests.cases import case
@@ -42,16 +45,16 @@ def test_without_lateral_contraction_friction_is_that_of_2d() -> None:
 
 
 def slip_along_shaft(mesh: PackMesh, half_thickness: float, displacement: Array) -> Array:
-    """Slip along the shaft at all gaps on the bushing and between petals, from `U` and `W_z`; half the length."""
+    """Slip along the shaft at all gaps on the bushing and between petals, from `U` and `W_z`."""
     n, m = mesh.n_node, mesh.n_z
     W, V, U = np.split(displacement, np.array([1, 2]) * mesh.count * (n - 1) * m)
     assert len(V) == len(W)
     W = np.concatenate([np.zeros((mesh.count, 1, m)), W.reshape(mesh.count, n - 1, m)], axis=1)
     turn = W @ sp.csr_array(node_slopes(mesh.axial.z)).toarray().T
-    turn[..., -1] = 0.0  # plane of symmetry
     cells = U.reshape(mesh.count, n - 1, m - 1)
-    around = np.pad(cells, ((0, 0), (0, 0), (1, 0)), mode="edge")
-    around = np.concatenate([around, -cells[..., -1:]], axis=-1)
+    around = np.pad(cells, ((0, 0), (0, 0), (1, 1)), mode="edge")
+    if mesh.axial.half:  # plane of symmetry
+        turn[..., -1], around[..., -1] = 0.0, -cells[..., -1]
     at_stations = 0.5 * (around[..., 1:] + around[..., :-1])
     ends = np.concatenate([-at_stations[:, :1], at_stations, at_stations[:, -1:]], axis=1)
     along = 0.5 * (ends[:, 1:] + ends[:, :-1])
@@ -60,26 +63,39 @@ def slip_along_shaft(mesh: PackMesh, half_thickness: float, displacement: Array)
     return np.concatenate([outer[:, mesh.on_bushing].ravel(), between.ravel()])
 
 
+def slips_of_motion(of: Case, motion: tuple[float, ...]) -> tuple[float, float]:
+    """Slip along petals and along the shaft, both weighted with the reactions, as the journal moves from the centre."""
+    with running():
+        centred = (build_problem if len(motion) == 2 else build_tilting)(of)
+        layout, friction = centred.layout, friction_of(of, centred.layout)
+        assert friction is not None
+        start = assembled(friction, centred)
+        assert start is not None
+        there = centred.at(displacement=np.array(motion) / layout.scales.length)
+        end = moved(friction, (centred, start), there)
+        assert end is not None
+    mesh, change = build_mesh(of), (end.x - start.x)[: layout.wall.n_unknown]
+    across = slip_along_shaft(mesh, float(petal_faces(of).half_thickness[0]), change)
+    pressed = np.minimum(start.lam, end.lam)[layout.wall.contacts.bushing.start :]
+    return float(pressed @ np.abs(layout.wall.slip @ change)), float(pressed @ np.abs(across))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("mu", [0.02, 0.3])
 def test_petals_hardly_slip_along_the_shaft(mu: float) -> None:
     """Moved by 20 um: weighted with the reactions, below a thousandth of the slip along the petals."""
     of = rubbing(**{"surface.petal_friction": mu, "operation.eccentricity": (0.0, 0.0)})
-    with running():
-        centred = build_problem(of)
-        layout, friction = centred.layout, friction_of(of, centred.layout)
-        assert friction is not None
-        start = assembled(friction, centred)
-        assert start is not None
-        there = centred.at(displacement=np.array([0.0, -2e-5]) / layout.scales.length)
-        end = moved(friction, (centred, start), there)
-        assert end is not None
-    mesh, change = build_mesh(of), end.x - start.x
-    along = layout.wall.slip @ change
-    across = slip_along_shaft(mesh, float(petal_faces(of).half_thickness[0]), change)
-    pressed = np.minimum(start.lam, end.lam)[layout.wall.contacts.bushing.start :]
-    assert pressed @ np.abs(across) < 1e-3 * (pressed @ np.abs(along))
-    assert pressed @ np.abs(across) > 0.0
+    along, across = slips_of_motion(of, (0.0, -2e-5))
+    assert 0.0 < across < 1e-3 * along
+
+
+@pytest.mark.slow
+def test_petals_under_a_journal_that_tilts_slip_along_the_shaft_too() -> None:
+    """By 20 um at its ends: as far as along themselves. A warning says that this slip does not rub."""
+    of = rubbing(**{"operation.eccentricity": (0.0, 0.0), "operation.moment": (0.0, 0.0)})
+    along, across = slips_of_motion(of, (0.0, 0.0, 2e-5, 0.0))
+    assert 1.2 * along < across < 1.6 * along
+    assert any("slip along the shaft about as far" in told for told in warnings_of(of, {}))
 
 
 @pytest.mark.slow
@@ -91,3 +107,44 @@ def test_contacts_that_stick_are_arches() -> None:
     far = coefficients(rubbing(), load=load, amplitude="500 um").stiffness.values[0]
     assert stuck[0, 0] > 5.0 * free[0, 0]
     assert abs(far[0, 0] / free[0, 0] - 1.0) < 0.5
+
+
+def loaded_at_rest(of: Case, load: float) -> tuple[Array, float]:
+    """Displacement of the journal [m] set down at rest on the assembled pack, and the energy lost to friction [J]."""
+    with running():
+        problem = build_problem(of.replace(**{"operation.eccentricity": (0.0, 0.0)}))
+        friction, scales = friction_of(of, problem.layout), problem.layout.scales
+        assert friction is not None
+        found = LoadedPath(friction, load_of(of, (0.0, -load), problem.layout)).set_down(problem)
+    assert found is not None
+    assert found.friction is not None
+    return found.position * scales.length, found.friction.lost * scales.force * scales.length
+
+
+@pytest.mark.slow
+def test_a_journal_set_down_without_lateral_contraction_goes_the_way_of_2d() -> None:
+    """Assembled and loaded at rest, where no film flows: along the shaft all is alike."""
+    changes = {"petals.poisson_ratio": 0.0, "model.axial_cells": 2}
+    whole, plane = (loaded_at_rest(rubbing(**changes, **{"model.kind": kind}), 5.0) for kind in ("3d", "2d"))
+    assert_allclose(whole[0], plane[0], rtol=0.0, atol=1e-12)
+    assert whole[1] == pytest.approx(plane[1], rel=1e-6)
+    assert plane[0][1] < -2e-5
+
+
+@pytest.mark.slow
+def test_a_run_up_and_down_has_hysteresis() -> None:
+    """The rig: every point balances, friction takes energy on the way, and the way down is another."""
+    rig = case("rig", **{"model.kind": "3d", "model.cells_per_pitch": 8, "model.axial_cells": 2})
+    rig = rig.replace(**{"petals.theory": "shell", "surface.petal_friction": 0.1})
+    records = list(runup.records(rig, load=(0.0, -55.6), to=1000.0, points=3))
+    assert [record.scalars["leg"] for record in records] == ["up"] * 3 + ["down"] * 2
+    assert all(record.converged and record.scalars["friction_path"] == PATH for record in records)
+    for record in records:
+        assert float(record.scalars["residual"]) <= 1e-8
+        assert float(record.scalars["force_residual"]) <= 1e-9
+    lost, y = (
+        np.array([float(record.scalars[name]) for record in records])
+        for name in ("petal_friction_work", "eccentricity_y")
+    )
+    assert np.all(np.diff(lost) > 0.0)
+    assert np.all(np.abs(y[:2] - y[:2:-1]) > 1e-8)

@@ -46,6 +46,7 @@ def assert_same(one: xr.Dataset, other: xr.Dataset) -> None:
 
 
 SMALL_3D = {"model.kind": "3d", "model.cells_per_pitch": 6, "model.axial_cells": 4}
+"""Petals stretch, as by default in 3-D."""
 
 
 @pytest.mark.parametrize(

@@ -278,7 +278,7 @@ def _is_sequence(value: object) -> TypeGuard[Sequence[Any]]:
 # ---------------------------------------------------------------------------------------------- shared arguments
 
 TURNING_ONLY = (
-    "In 2-D petals slide along themselves; in 3-D, unless petals.theory is shell, surface.petal_friction counts the "
+    "Petals slide along themselves, unless petals.theory is inextensible: surface.petal_friction then counts the "
     "turning of their faces only, about a sixtieth of the slip in the paper's bearing."
 )
 """What users of friction between petals are told where petals do not slide along themselves."""

@@ -53,12 +53,18 @@ Amplitude = Annotated[
     float | None,
     NumberWithUnit(
         unit="m",
-        help='Amplitude of the whirl at which petals with friction rub: "1 um"; by default they stick. In 2-D they '
-        "slide along themselves, in 3-D only their faces turn unless petals.theory is shell.",
+        help='Amplitude of the whirl at which petals with friction rub: "1 um"; by default they stick. They slide '
+        "along themselves; where petals.theory is inextensible only their faces turn.",
         above=0.0,
     ),
 ]
-WithTilt = Annotated[bool, Flag(help="Also those of the slopes of the journal's axis: 4 by 4, the whole length.")]
+WithTilt = Annotated[
+    bool,
+    Flag(
+        help="Also those of the slopes of the journal's axis: 4 by 4, the whole length. Friction between petals acts "
+        "on their slip along themselves: that along the shaft, as far when the journal tilts, does not rub."
+    ),
+]
 MATRICES = {"stiffness": ("K", "N/m"), "damping": ("C", "N s/m")}
 
 

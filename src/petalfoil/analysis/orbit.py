@@ -148,7 +148,7 @@ def orbit(  # noqa: PLR0913 - the options of the verb
     Mass and unbalance stand in the case's section rotor. With --out the file
     is rewritten as the motion grows; Ctrl-C keeps what is done, and --restart
     goes on from it. Friction between petals (surface.petal_friction) has no
-    force at the start; in 3-D, unless petals.theory is shell, it counts the
+    force at the start; where petals.theory is inextensible it counts the
     turning of their faces only, about a sixtieth of the slip in the paper's
     bearing. With a heat network
     (table heat) temperatures stay those of the balance where the motion begins,

@@ -160,12 +160,16 @@ class Case(Definition):
 
     @property
     def petal_theory(self) -> PetalTheory:
-        """Whether petals slide along themselves and stretch, the default filled in."""
+        """Whether petals slide along themselves and stretch, the default filled in.
+
+        By default they do wherever that changes anything and is modelled: in 3-D, and in 2-D with friction.
+        """
         if self.petals is not None and self.petals.theory is not None:
             return self.petals.theory
         rubs = self.surface.petal_friction > 0.0 or self.drags_petals
-        slides = rubs and self.model.kind is ModelKind.TWO_D and self.backing is None
-        return PetalTheory.SHELL if slides else PetalTheory.INEXTENSIBLE
+        matters = self.model.kind is ModelKind.THREE_D or rubs
+        is_modelled = self.backing is None and self.model.method is Method.NEWTON
+        return PetalTheory.SHELL if matters and is_modelled else PetalTheory.INEXTENSIBLE
 
     @property
     def rubbing_pulls(self) -> bool:
@@ -181,13 +185,7 @@ class Case(Definition):
     def follows_friction(self) -> bool:
         """Whether equilibria can keep the friction forces of the path that the pack has gone (M6)."""
         slides = self.surface.petal_friction > 0.0 and self.petal_theory is PetalTheory.SHELL
-        return (
-            slides
-            and self.model.kind is ModelKind.TWO_D
-            and self.petals is not None
-            and self.heat is None
-            and self.shares_evenly
-        )
+        return slides and self.petals is not None and self.heat is None and self.shares_evenly
 
     @property
     def growth(self) -> Growth:

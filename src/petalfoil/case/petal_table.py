@@ -145,8 +145,8 @@ class Petals(LookedUp, WallTable):
     mount: Mount
     """Root free to turn, or clamped."""
     theory: PetalTheory | None = None
-    """`shell` in 2-D where petals have friction, unless given: they then slide along themselves and stretch. Without
-    friction both are the same in 2-D. In 3-D the default is `inextensible`, as in the paper."""
+    """`shell`, unless given, in 3-D and in 2-D where petals have friction: they slide along themselves and stretch.
+    Without friction both are the same in 2-D. On backing springs and by the paper's method petals bend only."""
     # before the numbers that a material gives
     material: str | None = None
     """Metal whose modulus, Poisson's ratio and yield strength are looked up, such as `inconel x-750`."""

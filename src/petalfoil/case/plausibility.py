@@ -15,6 +15,7 @@ from petalfoil.case.definitions import Case
 from petalfoil.case.implausible_answers import Scalars, number, of_answer
 from petalfoil.case.measured_shape import row_errors
 from petalfoil.case.petal_table import PetalTheory
+from petalfoil.case.sections import ModelKind
 from petalfoil.units.writing import format_quantity
 
 MAX_MACH = 0.7
@@ -142,12 +143,7 @@ def _of_inputs(case: Case, scalars: Scalars) -> Iterator[str]:
     if not list(_unusual(case)):  # a density that is wrong would be told twice
         yield from _turbulence(case, scalars)
     yield from _unbalance(case)
-    if case.surface.petal_friction > 0.0 and case.petal_theory is PetalTheory.INEXTENSIBLE:
-        yield (
-            'surface.petal_friction: with petals.theory = "inextensible" it counts the turning of the faces only, '
-            "about a sixtieth of the slip in the paper's bearing: the damping it gives is no prediction; "
-            'petals.theory = "shell" counts the whole slip along the petals'
-        )
+    yield from _petal_theory(case)
     if case.rotor is not None and case.rotor.inertia_is_estimated:
         whole = case.rotor.with_inertias(case.bearing.journal_radius)
         yield (
@@ -157,6 +153,28 @@ def _of_inputs(case: Case, scalars: Scalars) -> Iterator[str]:
         )
     yield from _measured_shape(case)
     yield from _metal(case)
+
+
+def _petal_theory(case: Case) -> Iterator[str]:
+    rubs, is_3d = case.surface.petal_friction > 0.0, case.model.kind is ModelKind.THREE_D
+    if rubs and case.petal_theory is PetalTheory.INEXTENSIBLE:
+        yield (
+            'surface.petal_friction: with petals.theory = "inextensible" it counts the turning of the faces only, '
+            "about a sixtieth of the slip in the paper's bearing: the damping it gives is no prediction; "
+            'petals.theory = "shell" counts the whole slip along the petals'
+        )
+    if is_3d and case.backing is not None and case.petals is not None and case.petals.theory is None:
+        yield (
+            "backing: petals of a 3-D model on backing springs bend without stretching, which makes the minimum film "
+            "of the paper's bearings 20 to 40 % too thin; without [backing] they stretch; petals.theory = "
+            '"inextensible" says that this is meant'
+        )
+    tilts = case.operation.tilt is not None or case.operation.moment is not None or case.bearings > 1
+    if rubs and case.petal_theory is PetalTheory.SHELL and is_3d and tilts:
+        yield (
+            "surface.petal_friction: it acts on the slip along the petals; a journal that tilts makes them slip along "
+            "the shaft about as far, which does not rub here: friction losses and damping of tilting are too small"
+        )
 
 
 def _unusual(case: Case) -> Iterator[str]:

@@ -115,8 +115,8 @@ def _history_problems(case: Case) -> Iterator[Problem]:
         return
     if not case.surface.petal_friction > 0.0:
         lacks = "surface.petal_friction above 0"
-    elif case.petal_theory is not PetalTheory.SHELL or case.model.kind is ModelKind.THREE_D:
-        lacks = 'petals that slide along themselves (2-D, petals.theory = "shell")'
+    elif case.petal_theory is not PetalTheory.SHELL:
+        lacks = 'petals that slide along themselves (petals.theory = "shell")'
     else:
         lacks = "one temperature (no [heat]), and bearings that share the load of a rotor evenly"
     text = f'a pack that keeps the friction of its assembly needs {lacks}; allowed here: "relaxed"'
@@ -130,10 +130,10 @@ def _rubbing_problems(case: Case) -> Iterator[Problem]:
     bends_only = case.petal_theory is PetalTheory.INEXTENSIBLE and case.model.kind is ModelKind.THREE_D
     if case.model.method is Method.CLASSIC:
         lacks = 'model.method = "newton"'
-    elif case.petals is not None and bends_only:
-        lacks = 'petals that stretch in 3-D (petals.theory = "shell")'
     elif case.backing is not None:
         lacks = "petals on a rigid bushing (no [backing])"
+    elif case.petals is not None and bends_only:
+        lacks = 'petals that stretch in 3-D (petals.theory = "shell")'
     else:
         return
     text = f'a journal whose rubbing pulls at what it touches needs {lacks}; allowed here: "torque"'

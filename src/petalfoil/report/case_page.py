@@ -204,8 +204,7 @@ def _limits(request: Request) -> Iterator[str]:
     if wall_kind(case).can(Capability.RUBBING):
         yield (
             "Petals are thin elastic shells without mass. Sliding along each other dissipates nothing beyond what "
-            "surface.petal_friction and petals.theory say: damping by dry friction counts the whole slip in 2-D only, "
-            "and no measurement has confirmed it."
+            "surface.petal_friction and petals.theory say, and no measurement has confirmed damping by dry friction."
         )
         yield "Petals are as the case describes them; the scatter of manufacture is not in these numbers."
     yield "Surfaces are smooth down to the contact film thickness; journal rubbing contributes torque only."

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from petalfoil.analysis.curve import curve
-from petalfoil.report.paper_cases import paper_case
+from petalfoil.report.paper_cases import IN_3D, paper_case
 from petalfoil.results import Record
 from petalfoil.results.dataset import curve_dataset
 
@@ -156,7 +156,7 @@ def family_3d(
 ) -> CharacteristicFamily:
     """The characteristics of the 3-D model."""
     grid = {
-        "model.kind": "3d",
+        **IN_3D,
         "model.cells_per_pitch": scope.cells_3d,
         "model.axial_cells": scope.axial_cells_3d,
     }

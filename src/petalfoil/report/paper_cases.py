@@ -13,6 +13,10 @@ CITATION = (
 DOI = "10.3390/math11132901"
 
 
+IN_3D = {"model.kind": "3d", "petals.theory": "inextensible"}
+"""The paper's bearings in 3-D: its petals bend only."""
+
+
 def paper_case(count: int, **changes: object) -> Case:
     """The 2-D bearing of the paper with `count` petals and a centred journal; unstated inputs as in `UNSTATED`."""
     case = Case.model_validate(

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from petalfoil.analysis.solve import solve
 from petalfoil.errors import ConvergenceError
 from petalfoil.report.load_characteristics import Progress, Scope
-from petalfoil.report.paper_cases import paper_case
+from petalfoil.report.paper_cases import IN_3D, paper_case
 from petalfoil.walls.petals import petals_of
 
 COUNT, AT = 8, 200e-6
@@ -60,7 +60,7 @@ def on(nodes: tuple[int, int]) -> GridLoad:
     cells = (max(FEWEST_CELLS, round((nodes[0] - 1) / overlap)), max(nodes[1] - 1, 1))
     changes: dict[str, object] = {"model.cells_per_pitch": cells[0]}
     if nodes[1] > 1:
-        changes |= {"model.kind": "3d", "model.axial_cells": cells[1]}
+        changes |= {**IN_3D, "model.axial_cells": cells[1]}
     try:
         record = solve.record(case.replace(**changes), eccentricity=(0.0, -AT))
     except ConvergenceError as failure:
