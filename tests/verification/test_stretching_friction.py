@@ -1,6 +1,8 @@
-"""Friction between petals that stretch in 3-D: on the slip along petals; that along the shaft is small."""
+"""Friction between petals that stretch in 3-D: along petals; in small motions along the shaft too."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,16 +11,22 @@ from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
 from petalfoil.analysis.coefficients import coefficients
+from petalfoil.analysis.impedance import elastic_and_sliding
+from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.runup import runup
 from petalfoil.analysis.static import static
+from petalfoil.analysis.tilted_journal import free_to_tilt, whole_length
 from petalfoil.case import Case, warnings_of
+from petalfoil.dynamics.harmonic_balance import FrictionCycle
 from petalfoil.equilibrium.friction_history import assembled, moved
 from petalfoil.equilibrium.friction_under_load import PATH, LoadedPath
 from petalfoil.equilibrium.run_context import running
 from petalfoil.mesh.pack import PackMesh
+from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.build import build_problem, build_tilting
-from petalfoil.system.friction import friction_of
+from petalfoil.system.friction import friction_of, friction_tangent, slips
 from petalfoil.system.loaded import load_of
+from petalfoil.walls import build_wall
 from petalfoil.walls.petals import build_mesh, petal_faces
 from petalfoil.walls.sliding import node_slopes
 from tests.cases import case
@@ -148,3 +156,67 @@ def test_a_run_up_and_down_has_hysteresis() -> None:
     )
     assert np.all(np.diff(lost) > 0.0)
     assert np.all(np.abs(y[:2] - y[:2:-1]) > 1e-8)
+
+
+# ------------------------------------------------------------------------------------------ both directions of slip
+
+
+@pytest.mark.parametrize("symmetry", [True, False])
+def test_the_wall_knows_the_slip_along_the_shaft(symmetry: bool) -> None:
+    of = rubbing(**{"model.symmetry": symmetry})
+    wall, mesh = build_wall(of), build_mesh(of)
+    displacement = np.random.default_rng(3).standard_normal(wall.n_unknown)
+    assert wall.axial_slip is not None
+    expected = slip_along_shaft(mesh, float(petal_faces(of).half_thickness[0]), displacement)
+    assert_allclose(
+        wall.axial_slip @ displacement, expected, rtol=0.0, atol=1e-14 * np.max(np.abs(displacement)) * 10.0
+    )
+
+
+def tilting_cycle(amplitude: float) -> tuple[FrictionCycle, Array]:
+    """A cycle of a journal that tilts to and fro, and its slips over the tilt, along petals, then along the shaft."""
+    of = rubbing(**{"model.cells_per_pitch": 8})
+    with running():
+        answer = free_to_tilt(of, operating_point(whole_length(of), None).answer)
+        motion, sliding = elastic_and_sliding(of, answer)
+        assert sliding is not None
+        assert sliding.friction.directions == 2
+        response = motion.frictionless.respond(0.7, LinearSolver())
+        cycle = FrictionCycle(sliding, response, amplitude / answer.problem.layout.scales.length)
+        slip = cycle.settled(slips(sliding.friction, response.units[:, 2]), cycle.compliance())
+    return cycle, slip
+
+
+@pytest.mark.slow
+def test_a_journal_that_tilts_rubs_along_the_shaft_too() -> None:
+    """The cycle solves the whole linear system, and takes the area of its loops beside the work of the film."""
+    cycle, slip = tilting_cycle(20e-6)
+    law, a = cycle.sliding.friction, cycle.amplitude
+    stiffness, _ = cycle.sliding.equivalent(slip, a)
+    assert np.any(stiffness.imag > 0.0)
+    motion, n = cycle.response.motion, len(cycle.response.units)
+    whole = replace(motion, sticking=friction_tangent(law, stiffness, n)).respond(0.7, LinearSolver())
+    assert_allclose(slips(law, whole.units[:, 2]), slip, rtol=0.0, atol=1e-9 * np.max(np.abs(slip)))
+    assert_allclose(cycle.force_gradient()[2, 2], whole.force_gradient[2, 2], rtol=1e-9)
+    along, across = np.abs(slip.reshape(2, -1))
+    limit, k = (part.reshape(2, -1)[0] for part in (cycle.sliding.limit, law.stiffness))
+    size = np.hypot(along, across) * a
+    loops = np.sum(4.0 * limit * np.maximum(size - limit / k, 0.0))
+    work = np.pi * a**2 * np.sum(stiffness.imag * np.abs(slip) ** 2)
+    assert work == pytest.approx(loops, rel=1e-9)
+    assert limit @ across > 0.3 * (limit @ along)
+
+
+@pytest.mark.slow
+def test_newtons_step_is_the_derivative_of_slips_in_both_directions() -> None:
+    """Along it the residual falls as one minus the length, but for squares of the length."""
+    cycle, slip = tilting_cycle(20e-6)
+    compliance, begin = cycle.compliance(), 1.05 * slip
+    free = slip + compliance @ (cycle.sliding.equivalent(slip, cycle.amplitude)[0] * slip)
+    left = cycle.left(begin, free, compliance)
+    step = cycle.newton(begin, left, compliance)
+    lengths = 2.0 ** -np.arange(8, 14)
+    remainder = [
+        np.linalg.norm(cycle.left(begin + t * step, free, compliance) - (1.0 - t) * left) for t in lengths.tolist()
+    ]
+    assert_allclose(np.log2(np.divide(remainder[:-1], remainder[1:])), 2.0, rtol=0.0, atol=0.05)

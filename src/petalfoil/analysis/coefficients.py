@@ -60,10 +60,7 @@ Amplitude = Annotated[
 ]
 WithTilt = Annotated[
     bool,
-    Flag(
-        help="Also those of the slopes of the journal's axis: 4 by 4, the whole length. Friction between petals acts "
-        "on their slip along themselves: that along the shaft, as far when the journal tilts, does not rub."
-    ),
+    Flag(help="Also those of the slopes of the journal's axis: 4 by 4, the whole length."),
 ]
 MATRICES = {"stiffness": ("K", "N/m"), "damping": ("C", "N s/m")}
 

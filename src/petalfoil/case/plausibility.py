@@ -172,8 +172,8 @@ def _petal_theory(case: Case) -> Iterator[str]:
     tilts = case.operation.tilt is not None or case.operation.moment is not None or case.bearings > 1
     if rubs and case.petal_theory is PetalTheory.SHELL and is_3d and tilts:
         yield (
-            "surface.petal_friction: it acts on the slip along the petals; a journal that tilts makes them slip along "
-            "the shaft about as far, which does not rub here: friction losses and damping of tilting are too small"
+            "surface.petal_friction: static, runup, orbit and paths under a load rub along the petals only; a journal "
+            "that tilts makes them slip along the shaft about as far: losses of tilting by friction are too small there"
         )
 
 

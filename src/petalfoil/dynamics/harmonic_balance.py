@@ -6,7 +6,9 @@ The directions of the journal's displacement are taken one at a time. With `R` t
 
     s + R kappa(|s|) s = s_0
 
-(`R` with what petals stretch, (M4)) by Newton's method, in as many unknowns as contacts slide under load.
+(`R` with what petals stretch, (M4)) by Newton's method, in as many unknowns as contacts slide under load. Where petals
+of a 3-D model stretch, a contact slips along the petals and along the shaft, and `|s|` is the size of both together:
+exact where both are in phase, so that the slip is to and fro.
 """
 
 from __future__ import annotations
@@ -65,7 +67,9 @@ class SlidingContacts:
     def at(cls, friction: Friction, lam: Array) -> SlidingContacts:
         """Those of an equilibrium with the reactions `lam` (m,)."""
         normal = friction.normal(lam)
-        kept = np.flatnonzero((normal > 0.0) & (np.diff(friction.slip.indptr) > 0))
+        loaded = (normal > 0.0) & (np.diff(friction.slip.indptr) > 0)
+        contacts = loaded.reshape(friction.directions, -1).any(axis=0)
+        kept = np.flatnonzero(np.tile(contacts, friction.directions))
         law = friction.in_step(lam).among(kept)
         return cls(law, law.coefficient * normal[kept])
 
@@ -80,7 +84,7 @@ class SlidingContacts:
 
     def equivalent(self, slip: Complex, amplitude: float) -> tuple[Complex, Complex]:
         """Equivalent stiffness and its derivative by the logarithm of the slip; `slip` is by unit displacement."""
-        return equivalent_stiffness(self.friction.stiffness, self.limit / amplitude, np.abs(slip))
+        return equivalent_stiffness(self.friction.stiffness, self.limit / amplitude, self.friction.magnitude(slip))
 
 
 @dataclass(frozen=True)
@@ -165,9 +169,8 @@ class FrictionCycle:
 
     def slipping(self, slip: Complex) -> NDArray[np.bool_]:
         """Contacts that slip, (k,)."""
-        slipping: NDArray[np.bool_] = (
-            self.sliding.friction.stiffness * np.abs(slip) * self.amplitude > self.sliding.limit
-        )
+        friction, size = self.sliding.friction, self.sliding.friction.magnitude(slip)
+        slipping: NDArray[np.bool_] = friction.stiffness * size * self.amplitude > self.sliding.limit
         return slipping
 
     def solved(self, slip: Complex, system: tuple[Complex, Complex], enough: float) -> tuple[Complex, int]:
@@ -208,10 +211,11 @@ class FrictionCycle:
     def newton(self, slip: Complex, left: Complex, compliance: Complex) -> Complex:
         """Step of Newton, (k,): real and imaginary parts apart, for the stiffness goes with the magnitude."""
         stiffness, by_size = self.sliding.equivalent(slip, self.amplitude)
-        size = np.abs(slip)
+        size = self.sliding.friction.magnitude(slip)
         along = np.divide(slip, size, out=np.zeros_like(slip), where=size > 0.0)
         straight = np.eye(len(slip)) + compliance * stiffness
-        grown = compliance * (by_size * along)  # d kappa s = kappa' s Re(conj(s) ds) / |s|^2
+        # d kappa s = kappa' s Re(conj(s) ds) / |s|^2, the product over both directions of a contact
+        grown = self.sliding.friction.over_directions(compliance * (by_size * along))
         by_real, by_imag = straight + grown * along.real, 1j * straight + grown * along.imag
         parts = np.block([[by_real.real, by_imag.real], [by_real.imag, by_imag.imag]])
         step = np.linalg.solve(parts, -np.concatenate([left.real, left.imag]))

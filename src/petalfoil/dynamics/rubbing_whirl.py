@@ -96,7 +96,7 @@ class RubbingResponse:
         free = slips(sliding.friction, self.response.units @ (self.bearing.units[0] * (self.bearing.by_shaft @ v)))
         stiffness = sliding.friction.stiffness
         slip = np.linalg.solve(np.eye(len(free)) + self.compliance * stiffness, free)
-        return float(np.min(sliding.limit / (stiffness * scale * np.abs(slip))))
+        return float(np.min(sliding.limit / (stiffness * scale * sliding.friction.magnitude(slip))))
 
     def force(self, v: Complex, scale: float) -> Complex:
         """Force on the shaft that moves by `scale * v` (d,), over `scale` and the units of the first bearing; (d,) [1].

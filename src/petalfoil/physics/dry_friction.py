@@ -17,6 +17,7 @@ of the reactions of its two nodes; the outermost nodes have one cell and load it
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -49,6 +50,9 @@ class Friction:
         tangential displacements are unknowns.
     exact : bool
         The law has no width (M6): petals that slide along themselves give enough.
+    directions : int
+        Directions of slip at each contact: cells are those of all contacts along the petals, then, where there are two,
+        those along the shaft.
     """
 
     coefficient: float
@@ -58,6 +62,7 @@ class Friction:
     width: float
     compliance: Array | None = None
     exact: bool = False
+    directions: int = 1
 
     def in_step(self, lam: Array) -> Friction:
         """The friction law in a step that starts with the reactions `lam` (m,)."""
@@ -73,6 +78,20 @@ class Friction:
         """Slip by the forces of sticking cells that carry load: of the contacts and of the petals, (k, k)."""
         own = np.diag(1.0 / self.stiffness)
         return own if self.compliance is None else own + self.compliance
+
+    def magnitude(self, slip: NDArray[Any]) -> Array:
+        """Size of the slip of each cell's contact, of both its directions together, (k,); (E11)."""
+        size: Array = np.abs(slip)
+        if self.directions == 1:
+            return size
+        return np.tile(np.linalg.norm(size.reshape(self.directions, -1), axis=0), self.directions)
+
+    def over_directions(self, columns: NDArray[Any]) -> NDArray[Any]:
+        """Sum of the columns (j, k) of each contact, at all its cells, (j, k)."""
+        if self.directions == 1:
+            return columns
+        each = columns.reshape(len(columns), self.directions, -1)
+        return np.tile(each.sum(axis=1), (1, self.directions))
 
     def among(self, cells: NDArray[np.intp]) -> Friction:
         """The law in some of the cells."""

@@ -234,6 +234,16 @@ def friction_of(case: Case, layout: BearingLayout) -> Friction | None:
     return Friction(surface.petal_friction, none, wall.slip, wall.reaction_share, width, exact=exact)
 
 
+def in_all_directions(friction: Friction, layout: BearingLayout) -> Friction:
+    """The same on slip along the shaft too, where petals have it."""
+    across = layout.wall.axial_slip
+    if across is None:
+        return friction
+    share = sp.csr_array(sp.vstack([friction.reaction_share] * 2))
+    slip = sp.csr_array(sp.vstack([friction.slip, across]))
+    return replace(friction, slip=slip, reaction_share=share, stiffness=np.zeros(slip.shape[0]), directions=2)
+
+
 def friction_at_points(friction: Friction, whole: PointLayout, points: ContactPoints) -> Friction:
     """The same friction at contact points: a gap for each, on the journal without slip."""
     pack, scales = whole.pack, whole.layout.scales

@@ -57,6 +57,8 @@ class Wall:
     loss : (n, n) sparse or None
         Nodal forces that are a quarter of a cycle ahead of the deflections, whatever the frequency: structural loss
         factor times stiffness (B5) [N/m]; None of a wall that loses no energy.
+    axial_slip : (k, n) sparse or None
+        Slip along the shaft where `slip` is that along the petals [1]; None where nothing moves along the shaft.
     """
 
     film: FilmMesh
@@ -73,6 +75,7 @@ class Wall:
     reaction_share: sp.csr_array
     dragged: sp.csr_array | None = None
     loss: sp.csr_array | None = None
+    axial_slip: sp.csr_array | None = None
 
     @property
     def n_unknown(self) -> int:

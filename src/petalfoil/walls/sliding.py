@@ -42,6 +42,7 @@ def sliding(wall: Wall, mesh: PackMesh, petals: Sequence[StretchingPetal], faces
         free_motions=sp.csr_array(sp.block_diag(motions, format="csr")[order]),
         support=sp.csr_array(sp.block_diag(support, format="csc")[:, order]),
         slip=sp.csr_array(sp.hstack([slip, unslipped], format="csr")),
+        axial_slip=None if mesh.axial.is_2d else slip_along_shaft(mesh, faces),
         reaction_share=rubbing_gaps(contacts),
     )
 
@@ -148,9 +149,35 @@ def sums_from_root(phi: Array) -> sp.csr_array:
     return sp.csr_array(each)
 
 
+def slip_along_shaft(mesh: PackMesh, faces: Faces) -> sp.csr_array:
+    """Slip along the shaft at the same gaps, from all displacements: faces move by `U -+ delta/2 W_z`.
+
+    `U` at a node is the mean of the cells beside it; the root holds it, and at a plane of symmetry it vanishes.
+    """
+    turn, at_stations = sp.lil_array(node_slopes(mesh.axial.z)), beside_nodes(mesh.n_z)
+    if mesh.axial.half:
+        turn[-1], at_stations[-1] = 0.0, 0.0
+    at_nodes = beside_nodes(mesh.n_node)
+    at_nodes[0] = 0.0
+    every = sp.eye_array(mesh.count)
+    by_U = sp.kron(every, sp.kron(at_nodes, at_stations), format="csr")
+    free = sp.eye_array(mesh.n_node, format="csr")[:, 1:]  # roots do not move
+    by_W = sp.kron(sp.diags_array(faces.half_thickness), sp.kron(free, turn), format="csr")
+    by_V = sp.csr_array(by_W.shape)
+    outer, inner = (sp.csr_array(sp.hstack([by_W, by_V, sign * by_U], format="csr")) for sign in (-1.0, 1.0))
+    nodes = np.arange(outer.shape[0]).reshape(mesh.shape)
+    above, below = nodes[:, mesh.on_neighbour], np.roll(nodes, -1, axis=0)[:, : mesh.n_node - mesh.cells]
+    between = outer[above.ravel()] + inner[below.ravel()]
+    return sp.csr_array(sp.vstack([outer[nodes[:, mesh.on_bushing].ravel()], between], format="csr"))
+
+
+def beside_nodes(n: int) -> sp.lil_array:
+    """Mean at nodes of what is in the cells beside them, (n, n - 1)."""
+    mean = sp.lil_array(sp.diags_array([0.5, 0.5], offsets=[-1, 0], shape=(n, n - 1)))
+    mean[0, 0], mean[n - 1, n - 2] = 1.0, 1.0
+    return mean
+
+
 def node_slopes(phi: Array) -> sp.csr_array:
     """Derivative at the nodes `phi` (n,): the mean of that in the cells beside them, shape (n, n)."""
-    n = len(phi)
-    beside = sp.lil_array(sp.diags_array([0.5, 0.5], offsets=[-1, 0], shape=(n, n - 1)))
-    beside[0, 0], beside[n - 1, n - 2] = 1.0, 1.0
-    return sp.csr_array(beside.tocsr() @ slopes(phi))
+    return sp.csr_array(beside_nodes(len(phi)).tocsr() @ slopes(phi))
