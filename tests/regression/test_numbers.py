@@ -118,6 +118,8 @@ RUNS = (
         ("bearing_force", "min_film_thickness", "friction_torque", *WORK)),
     Run("solve 3-D", partial(petalfoil.solve, SPATIAL, eccentricity=(2e-5, -1.5e-4)),
         (*PETALS, *TOUCHING, "side_leakage", *WORK)),
+    Run("solve 3-D stretching", partial(petalfoil.solve, SPATIAL.replace(**{"petals.theory": "shell"})),
+        (*PETALS, *TOUCHING, "side_leakage", "max_membrane_stress", *WORK)),
     Run("solve 3-D slip", partial(petalfoil.solve, SPATIAL.replace(**THIN_AIR)), (*PETALS, "side_leakage", *WORK)),
     Run("solve plain", partial(petalfoil.solve, PLAIN), (*POINT, "attitude_angle", "side_leakage", "pressure@mean")),
     Run("solve plain slip", partial(petalfoil.solve, PLAIN.replace(**{"model.slip": True})), (*POINT, *WORK)),
