@@ -60,8 +60,8 @@ load = "12 N"
 
 [model]
 kind = "3d"
-cells_per_pitch = 12
-axial_cells = 6
+cells_per_pitch = 16
+axial_cells = 8
 """)
 pack = plot.pack(petalfoil.check(first))
 
@@ -123,9 +123,9 @@ print(f"lift-off at {float(liftoff['liftoff_speed'][0]) * 30.0 / math.pi:.0f} rp
 # Before anybody builds it, the grid: twice as many cells. A minimum film thickness at a free edge in 3-D needs the
 # finest grid of all results, and ``petalfoil.balance(case, error=True)`` gives its error bar.
 
-fine = chosen.replace(**{"model.cells_per_pitch": 24, "model.axial_cells": 12})
-describe("six petals, 12 x 6 cells", chosen)
-describe("six petals, 24 x 12 cells", fine)
+fine = chosen.replace(**{"model.cells_per_pitch": 32, "model.axial_cells": 16})
+describe("six petals, 16 x 8 cells", chosen)
+describe("six petals, 32 x 16 cells", fine)
 result = petalfoil.balance(fine)
 film = plot.summary(result)
 
