@@ -62,9 +62,8 @@ def balance_with_friction(answer: Solution) -> float:
 
 def balance_on_elements(found: ElementEquilibrium) -> float:
     """The same of petals with continuous slopes: the work of pressure, reactions and bending in these motions [1]."""
-    equations, wall = found.equations, found.equations.problem.layout.wall
-    motions = np.column_stack([found.pack.from_nodes(motion) for motion in wall.free_motions.T.toarray()])
-    elastic, loads, size = equations.wall_forces
+    motions = found.pack.free_motions
+    elastic, loads, size = found.equations.wall_forces
     return largest(motions.T @ (loads - elastic), np.abs(motions.T) @ size)
 
 

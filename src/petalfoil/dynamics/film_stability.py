@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import NDArray
 
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import TangentEquations
@@ -46,6 +47,13 @@ def pencil_of(equations: TangentEquations) -> Pencil:
     """The matrices of petals with continuous slopes: what stores nothing first, then the film."""
     film = np.arange(equations.n) < len(equations.deflection) + len(equations.pressures)
     film[: len(equations.deflection)] = False
-    order = np.concatenate([np.flatnonzero(~film), np.flatnonzero(film)])
-    steady, stored = (sp.csc_array(matrix[order][:, order]) for matrix in (equations.steady, equations.stored))
-    return Pencil(steady, stored, int(np.count_nonzero(~film)))
+    first = int(np.count_nonzero(~film))
+    place = np.where(film, first + np.cumsum(film), np.cumsum(~film)) - 1
+    steady, stored = (moved_to(place, matrix) for matrix in (equations.steady, equations.stored))
+    return Pencil(steady, stored, first)
+
+
+def moved_to(place: NDArray[np.intp], matrix: sp.csc_array) -> sp.csc_array:
+    """The matrix with row and column `k` at `place[k]`."""
+    coo = matrix.tocoo()
+    return sp.csc_array((coo.data, (place[coo.row], place[coo.col])), shape=matrix.shape)

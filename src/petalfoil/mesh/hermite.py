@@ -35,11 +35,16 @@ def rows(element: Index, t: Array, length: Array, derivative: int = 0) -> sp.csr
     `length` (n_element,) is that of the elements; element `e` lies between the nodes `e` and `e + 1`. A derivative is
     by `t`.
     """
+    columns, weights = entries(element, t, length, derivative)
+    starts = np.arange(0, weights.size + 1, weights.shape[1])
+    return sp.csr_array((weights.ravel(), columns.ravel(), starts), shape=(len(element), 2 * len(length) + 2))
+
+
+def entries(element: Index, t: Array, length: Array, derivative: int = 0) -> tuple[Index, Array]:
+    """Columns and values of `rows`, (k, 4) each."""
     weights = basis(t, derivative)
     weights[:, 1::2] *= length[element][:, None]
-    columns = 2 * element[:, None] + np.arange(4)
-    where = (np.repeat(np.arange(len(element)), 4), columns.ravel())
-    return sp.csr_array((weights.ravel(), where), shape=(len(element), 2 * len(length) + 2))
+    return 2 * element[:, None] + np.arange(4), weights
 
 
 def integrals(element: Index, t: Array, length: Array) -> sp.csr_array:

@@ -12,6 +12,7 @@ a reaction is its product with the variation of its gap.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -40,6 +41,19 @@ class GapLines:
     number: NDArray[np.intp]
     phi: Array
     stations: int
+
+    @cached_property
+    def slope_weights(self) -> tuple[NDArray[np.intp], Array]:
+        """Nodes and their weights in the slope at each, (node, 3): of parabolas, at both ends of chords [1/rad]."""
+        step, last = np.diff(self.phi), len(self.phi) - 1
+        node = np.clip(np.arange(last + 1)[:, None] + np.arange(-1, 2), 0, last)
+        weight = np.zeros((last + 1, 3))
+        weight[0, 1:], weight[-1, :2] = np.array([-1.0, 1.0]) / step[0], np.array([-1.0, 1.0]) / step[-1]
+        before, after = step[:-1], step[1:]
+        both = before + after
+        parabolas = -after / (before * both), 1.0 / before - 1.0 / after, before / (after * both)
+        weight[1:-1] = np.stack(parabolas, axis=1)
+        return node, weight
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ At a contact point this gap vanishes, and so does its slope, except at the end o
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
@@ -93,6 +94,12 @@ class GapCurves:
         gaps: Array = self.rest + self.by_e @ e + self.by_w @ w
         return gaps
 
+    def nodal_loads(self, points: ContactPoints) -> Array:
+        """Reactions of contact points as loads on the nodal (value, slope) of the gaps, (2 n_node,)."""
+        columns, weights = hermite.entries(*self.locate(points.every_curve, points.every_position), self.angle)
+        loads = np.bincount(columns.ravel(), (weights * points.reaction[:, None]).ravel(), minlength=len(self.rest))
+        return loads.astype(np.float64)
+
 
 @dataclass(frozen=True)
 class ContactPoints:
@@ -146,8 +153,11 @@ class ContactPoints:
     @cached_property
     def every_position(self) -> Array:
         """Position of every point, (j,)."""
-        out: Array = self.spread @ self.position
-        return out
+        k, number = len(self.curve), np.arange(len(self.reaction))
+        before = np.repeat(np.arange(k), self.inner + 1)
+        part = (number - self.ends[before]) / (self.inner[before] + 1.0)
+        ahead = np.minimum(before + 1, k - 1)
+        return np.asarray((1.0 - part) * self.position[before] + part * self.position[ahead])
 
 
 @dataclass(frozen=True)
@@ -158,49 +168,105 @@ class PointGaps:
 
     Attributes
     ----------
-    value, slope : (j,) array
-        `p` and its derivative by the place in the element.
-    bend, bend_slope : (j, j) sparse
-        Derivatives of values and slopes by the reactions.
-    value_by_place, slope_by_place : (j, j) sparse
-        Derivatives of values and slopes by the places.
+    curves : GapCurves
+        All curves.
+    points : ContactPoints
+        The contact points, (j,) in all.
+    nodal : (2 n_node,) array
+        Nodal (value, slope) of all gaps.
     """
 
-    value: Array
-    slope: Array
-    bend: sp.csr_array
-    bend_slope: sp.csr_array
-    value_by_place: sp.csr_array
-    slope_by_place: sp.csr_array
+    curves: GapCurves
+    points: ContactPoints
+    nodal: Array
 
+    @cached_property
+    def value(self) -> Array:
+        """`p`, (j,)."""
+        return self._smooth(0) + self._at_points(self._bent(clamped_beam) * self._load)
 
-def point_gaps(curves: GapCurves, points: ContactPoints, nodal: Array) -> PointGaps:
-    """Gaps at all points, from nodal gaps (2 n_node,)."""
-    element, t = curves.locate(points.every_curve, points.every_position)
-    lam, C = points.reaction, curves.compliance[element]
-    value, slope, curvature = (hermite.rows(element, t, curves.angle, k) @ nodal for k in range(3))
-    at, load = together(element)
-    own, s, t_d = at == load, t[at], t[load]
-    b, b_s, b_ss, b_st = (
-        C[at] * part(s, t_d) for part in (clamped_beam, clamped_beam_slope, clamped_beam_bend, clamped_beam_twist)
-    )
+    @cached_property
+    def slope(self) -> Array:
+        """The derivative of `p` by the place in the element, (j,)."""
+        return self._smooth(1) + self._at_points(self._bent(clamped_beam_slope) * self._load)
 
-    def at_points(part: Array) -> Array:
-        """Sum of a part of the pairs at each point."""
-        return np.bincount(at, weights=part, minlength=len(t)).astype(np.float64)
+    @cached_property
+    def bend(self) -> sp.csr_array:
+        """Derivatives of values by the reactions, (j, j)."""
+        return self._matrix(self._bent(clamped_beam))
 
-    others = np.where(own, 0.0, lam[load])
-    # by the place of another point: b(t, t_d) changes with t_d, and b is symmetric
-    value_by_place, slope_by_place = C[at] * clamped_beam_slope(t_d, s) * others, b_st * others
-    # by its own place: d b(t, t)/dt = 2 b_s(t, t), d b_s(t, t)/dt = u (1 - 2 t)^2 - u^2, u = t (1 - t)
-    u = t * (1.0 - t)
-    turn = C * lam * (u * (1.0 - 2.0 * t) ** 2 - u**2)
-    value_by_place[own] = (slope + at_points(b_s * (others + np.where(own, 2.0 * lam[load], 0.0))))[at[own]]
-    slope_by_place[own] = (curvature + at_points(b_ss * others) + turn)[at[own]]
-    matrices = (
-        sp.csr_array((part, (at, load)), shape=(len(t), len(t))) for part in (b, b_s, value_by_place, slope_by_place)
-    )
-    return PointGaps(value + at_points(b * lam[load]), slope + at_points(b_s * lam[load]), *matrices)
+    @cached_property
+    def bend_slope(self) -> sp.csr_array:
+        """Derivatives of slopes by the reactions, (j, j)."""
+        return self._matrix(self._bent(clamped_beam_slope))
+
+    @cached_property
+    def value_by_place(self) -> sp.csr_array:
+        """Derivatives of values by the places, (j, j).
+
+        By the place of another point `b(t, t_d)` changes with `t_d`, and `b` is symmetric; by the own place it changes
+        by `2 b_s(t, t)`.
+        """
+        (at, load), (element, t) = self._pairs, self._place
+        own, others, slope = at == load, self._others, self._bent(clamped_beam_slope)
+        by_place = self.curves.compliance[element][at] * clamped_beam_slope(t[load], t[at]) * others
+        twice = others + np.where(own, 2.0 * self._load, 0.0)
+        by_place[own] = (self._smooth(1) + self._at_points(slope * twice))[at[own]]
+        return self._matrix(by_place)
+
+    @cached_property
+    def slope_by_place(self) -> sp.csr_array:
+        """Derivatives of slopes by the places, (j, j).
+
+        By the own place `b_s(t, t)` changes by `u (1 - 2 t)^2 - u^2`, `u = t (1 - t)`.
+        """
+        (at, load), (element, t) = self._pairs, self._place
+        own, others, u = at == load, self._others, t * (1.0 - t)
+        turn = self.curves.compliance[element] * self.points.reaction * (u * (1.0 - 2.0 * t) ** 2 - u**2)
+        by_place = self._bent(clamped_beam_twist) * others
+        bend = self._at_points(self._bent(clamped_beam_bend) * others)
+        by_place[own] = (self._smooth(2) + bend + turn)[at[own]]
+        return self._matrix(by_place)
+
+    @cached_property
+    def _place(self) -> tuple[Index, Array]:
+        """Element of each point and place in it."""
+        return self.curves.locate(self.points.every_curve, self.points.every_position)
+
+    @cached_property
+    def _pairs(self) -> tuple[Index, Index]:
+        """Points on one element: at the first, by the load of the second."""
+        return together(self._place[0])
+
+    @cached_property
+    def _load(self) -> Array:
+        """Reaction of the second point of each pair."""
+        return self.points.reaction[self._pairs[1]]
+
+    @cached_property
+    def _others(self) -> Array:
+        """The same, zero where it is the first point itself."""
+        at, load = self._pairs
+        return np.where(at == load, 0.0, self._load)
+
+    def _bent(self, part: Callable[[Array, Array], Array]) -> Array:
+        """Compliance of each pair, or a derivative."""
+        (at, load), (element, t) = self._pairs, self._place
+        return self.curves.compliance[element][at] * part(t[at], t[load])
+
+    def _smooth(self, derivative: int) -> Array:
+        """The cubic of (K10) at the points, or a derivative by the place, (j,)."""
+        columns, weights = hermite.entries(*self._place, self.curves.angle, derivative)
+        return np.asarray(np.sum(weights * self.nodal[columns], axis=1))
+
+    def _at_points(self, part: Array) -> Array:
+        """Sum of a part of the pairs at each point, (j,)."""
+        return np.bincount(self._pairs[0], weights=part, minlength=len(self.points.reaction)).astype(np.float64)
+
+    def _matrix(self, part: Array) -> sp.csr_array:
+        """A part of the pairs as a matrix, (j, j)."""
+        size = len(self.points.reaction)
+        return sp.csr_array((part, self._pairs), shape=(size, size))
 
 
 def together(element: Index) -> tuple[Index, Index]:

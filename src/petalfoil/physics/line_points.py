@@ -73,9 +73,8 @@ class LinePoints:
     def shares(self) -> sp.csr_array:
         """Shares of the two nodes beside each point that keep a reaction's place, (k, m): none is negative."""
 
-        def of(lines: GapLines, cell: Index, t: Array) -> sp.csr_array:
-            where = np.repeat(np.arange(len(cell)), 2), np.stack([cell, cell + 1], axis=1).ravel()
-            return sp.csr_array((np.stack([1.0 - t, t], axis=1).ravel(), where), shape=(len(cell), len(lines.phi)))
+        def of(lines: GapLines, cell: Index, t: Array) -> tuple[Index, Array]:
+            return np.stack([cell, cell + 1], axis=1), np.stack([1.0 - t, t], axis=1)
 
         return self._over_gaps(of)
 
@@ -83,17 +82,16 @@ class LinePoints:
     def cell_length(self) -> Array:
         """Length of the cell of each point, (k,) [rad]."""
         out = np.zeros(len(self.phi))
-        for mine, lines in self._kinds():
-            out[mine] = np.diff(lines.phi)[hermite.located(self.phi[mine], lines.phi)[0]]
+        for (points, cell, _), lines in zip(self._cells, self.lines, strict=True):
+            out[points] = np.diff(lines.phi)[cell]
         return out
 
     @cached_property
     def beside(self) -> Index:
         """Numbers of the gaps at the two nodes beside each point, (k, 2)."""
         out = np.zeros((len(self.phi), 2), dtype=np.intp)
-        for mine, lines in self._kinds():
-            cell, _ = hermite.located(self.phi[mine], lines.phi)
-            out[mine] = lines.number[self.line[mine][:, None], cell[:, None] + np.arange(2)]
+        for (points, cell, _), lines in zip(self._cells, self.lines, strict=True):
+            out[points] = lines.number[self.line[points][:, None], cell[:, None] + np.arange(2)]
         return out
 
     def moved(self, change: Array) -> LinePoints:
@@ -121,37 +119,37 @@ class LinePoints:
         for number, lines in enumerate(self.lines):
             yield self.kind == number, lines
 
+    @cached_property
+    def _cells(self) -> tuple[tuple[Index, Index, Array], ...]:
+        """Kind by kind: numbers of its points, their cells and places in them."""
+        out = []
+        for mine, lines in self._kinds():
+            points = np.flatnonzero(mine)
+            out.append((points, *hermite.located(self.phi[points], lines.phi)))
+        return tuple(out)
+
     def _derivative(self, order: int) -> sp.csr_array:
         """Weights of the gaps in a derivative of (K15) by the angle."""
 
-        def of(lines: GapLines, cell: Index, t: Array) -> sp.csr_array:
-            length = np.diff(lines.phi)
-            pairs = hermite.rows(cell, t, length, order) @ nodal_pairs(lines.phi)
-            return sp.csr_array(sp.diags_array(length[cell] ** -float(order)) @ pairs)
+        def of(lines: GapLines, cell: Index, t: Array) -> tuple[Index, Array]:
+            length = np.diff(lines.phi)[cell]
+            basis = hermite.basis(t, order) * length[:, None] ** -float(order)
+            basis[:, 1::2] *= length[:, None]
+            node, weight = lines.slope_weights
+            ahead = cell + 1
+            columns = [np.stack([cell, ahead], axis=1), node[cell], node[ahead]]
+            values = [basis[:, ::2], basis[:, [1]] * weight[cell], basis[:, [3]] * weight[ahead]]
+            return np.concatenate(columns, axis=1), np.concatenate(values, axis=1)
 
         return self._over_gaps(of)
 
-    def _over_gaps(self, of: Callable[[GapLines, Index, Array], sp.csr_array]) -> sp.csr_array:
-        """Rows over all gaps from rows over the nodes of a line, (k, m)."""
+    def _over_gaps(self, of: Callable[[GapLines, Index, Array], tuple[Index, Array]]) -> sp.csr_array:
+        """Rows over all gaps from nodes of a line and their weights, (k, m)."""
         rows, columns, values = [np.zeros(0, dtype=np.intp)], [np.zeros(0, dtype=np.intp)], [np.zeros(0)]
-        for mine, lines in self._kinds():
-            points = np.flatnonzero(mine)
-            local = of(lines, *hermite.located(self.phi[points], lines.phi)).tocoo()
-            rows.append(points[local.row])
-            columns.append(lines.number[self.line[points[local.row]], local.col])
-            values.append(local.data)
+        for (points, cell, t), lines in zip(self._cells, self.lines, strict=True):
+            node, weight = of(lines, cell, t)
+            rows.append(np.repeat(points, node.shape[1]))
+            columns.append(lines.number[self.line[points][:, None], node].ravel())
+            values.append(weight.ravel())
         where = np.concatenate(rows), np.concatenate(columns)
         return sp.csr_array((np.concatenate(values), where), shape=(len(self.phi), self.gaps))
-
-
-def nodal_pairs(phi: Array) -> sp.csr_array:
-    """(Value, slope) at all nodes from values at them, (2 n, n): slopes of parabolas, of chords at both ends."""
-    n, step = len(phi), np.diff(phi)
-    before, after, inner = step[:-1], step[1:], np.arange(1, n - 1)
-    both = before + after
-    rows = [2 * np.arange(n), *(2 * inner + 1 for _ in range(3)), np.repeat([1, 2 * n - 1], 2)]
-    columns = [np.arange(n), inner - 1, inner, inner + 1, np.array([0, 1, n - 2, n - 1])]
-    chords = np.array([-1.0, 1.0, -1.0, 1.0]) / np.repeat(step[[0, -1]], 2)
-    parabolas = [-after / (before * both), (after - before) / (before * after), before / (after * both)]
-    where = np.concatenate(rows), np.concatenate(columns)
-    return sp.csr_array((np.concatenate([np.ones(n), *parabolas, chords]), where), shape=(2 * n, n))

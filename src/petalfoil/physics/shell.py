@@ -180,13 +180,16 @@ class PetalShell:
             `motions^T f + support W = 0`.
         """
         n_z = len(self.axial.z)
-        along = (self._second_phi @ neighbour_differences(len(self.phi))).toarray() / self.metric_radius**2
-        along += np.diag(self._bent / self.bend_radius**2)
-        seeds = [(1.0, -along[0, 0] / along[0, 1])] if self.clamped else [(1.0, 1.0), (0.0, 1.0)]
+        along = (self._second_phi @ neighbour_differences(len(self.phi))) / self.metric_radius**2
+        behind, ahead = along.diagonal(-1).tolist(), along.diagonal(1).tolist()
+        here = (along.diagonal() + self._bent / self.bend_radius**2).tolist()
+        seeds = [(1.0, -here[0] / ahead[0])] if self.clamped else [(1.0, 1.0), (0.0, 1.0)]
         motions = np.zeros((len(self.phi), len(seeds)))
-        motions[:2] = np.array(seeds).T
-        for i, row in enumerate(along[1:-1], 1):
-            motions[i + 1] = -(row[i - 1] * motions[i - 1] + row[i] * motions[i]) / row[i + 1]
+        for k, (held, first) in enumerate(seeds):
+            motion = [held, first]
+            for i in range(1, len(self.phi) - 1):
+                motion.append(-(behind[i - 1] * motion[i - 1] + here[i] * motion[i]) / ahead[i])
+            motions[:, k] = motion
         root = np.zeros(len(self.phi) * n_z)
         root[:n_z] = 1.0
         bent = self.strain @ (self.difference @ root)

@@ -7,7 +7,6 @@ multiplier stands in it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -75,34 +74,96 @@ def eliminated(rows: sp.csr_array) -> tuple[sp.csr_array, Index]:
 
     Rows that share unknowns are solved together, for the unknowns with the largest pivots.
     """
-    n = rows.shape[1]
-    solved: list[tuple[Index, Index, Array]] = []
+    n, rows = rows.shape[1], without_empty(rows)
+    alone, connected = components(rows)
+    solved = [solved_alone(rows, alone), *(solved_together(rows, some) for some in connected)]
     pivot = np.zeros(n, dtype=bool)
-    for some, unknowns in components(rows):
-        dense = rows[some][:, unknowns].toarray()
-        _, R, order = la.qr(dense, mode="economic", pivoting=True)
-        sizes = np.abs(np.diag(R))
-        rank = int(np.count_nonzero(sizes > DEPENDENT * sizes[0]))
-        depends, determines = unknowns[order[:rank]], unknowns[order[rank:]]
-        solved.append((depends, determines, -la.solve_triangular(R[:rank, :rank], R[:rank, rank:])))
-        pivot[depends] = True
-    number = np.cumsum(~pivot) - 1
-    free = np.flatnonzero(~pivot)
-    parts = [(free, number[free], np.ones(len(free)))]
+    pivot[np.concatenate([part.depends for part in solved])] = True
+    number, free = np.cumsum(~pivot) - 1, np.flatnonzero(~pivot)
     strongest = np.where(pivot, -1, number)
-    for depends, determines, weights in solved:
-        parts.append((np.repeat(depends, len(determines)), np.tile(number[determines], len(depends)), weights.ravel()))
-        if len(determines):
-            strongest[depends] = number[determines[np.argmax(np.abs(weights), axis=1)]]
+    parts = [(free, number[free], np.ones(len(free)))]
+    for part in solved:
+        parts.append((part.row, number[part.determines], part.weights))
+        strongest[part.depends] = np.where(part.strongest >= 0, number[part.strongest], -1)
     at, columns, values = (np.concatenate(part) for part in zip(*parts, strict=True))
     return sp.csr_array((values, (at, columns)), shape=(n, len(free))), strongest
 
 
-def components(rows: sp.csr_array) -> Iterator[tuple[Index, Index]]:
-    """Rows that share unknowns, and these unknowns."""
+@dataclass(frozen=True)
+class DependentUnknowns:
+    """Unknowns that others determine.
+
+    Attributes
+    ----------
+    depends, strongest : (j,) int array
+        Their numbers, and the unknown that determines each most; -1 where none does.
+    row, determines, weights : (e,) array
+        Entries: an unknown that depends, one that determines it, and by how much.
+    """
+
+    depends: Index
+    strongest: Index
+    row: Index
+    determines: Index
+    weights: Array
+
+
+def without_empty(rows: sp.csr_array) -> sp.csr_array:
+    """The rows that hold unknowns, without stored zeros: a row without unknowns constrains nothing."""
+    rows = rows.copy()
+    rows.eliminate_zeros()
+    held = np.diff(rows.indptr)
+    return rows if np.all(held) else sp.csr_array(rows[held > 0])
+
+
+def solved_alone(rows: sp.csr_array, alone: Index) -> DependentUnknowns:
+    """Rows `alone` that share no unknowns with others, each solved for its unknown with the largest entry."""
+    if not len(alone):
+        none = np.zeros(0, dtype=np.intp)
+        return DependentUnknowns(none, none, none, none, np.zeros(0))
+    held = np.diff(rows.indptr)[alone]
+    starts = np.cumsum(held) - held
+    entry = np.repeat(rows.indptr[alone] - starts, held) + np.arange(held.sum())
+    unknown, value, row = rows.indices[entry].astype(np.intp), rows.data[entry], np.repeat(np.arange(len(alone)), held)
+    by_size = np.lexsort((-np.abs(value), row))  # of each row the largest entry first
+    pivot = by_size[starts]
+    second = np.where(held > 1, unknown[by_size[np.minimum(starts + 1, len(entry) - 1)]], -1)
+    others = np.ones(len(entry), dtype=bool)
+    others[pivot] = False
+    weights = -value / value[pivot][row]
+    return DependentUnknowns(unknown[pivot], second, unknown[pivot][row][others], unknown[others], weights[others])
+
+
+def solved_together(rows: sp.csr_array, some: Index) -> DependentUnknowns:
+    """Rows `some` that share unknowns, solved for those with the largest pivots."""
+    block = rows[some]
+    unknowns = np.unique(block.indices).astype(np.intp)
+    dense = np.zeros((len(some), len(unknowns)))
+    np.add.at(
+        dense,
+        (np.repeat(np.arange(len(some)), np.diff(block.indptr)), np.searchsorted(unknowns, block.indices)),
+        block.data,
+    )
+    _, R, order = la.qr(dense, mode="economic", pivoting=True)
+    sizes = np.abs(np.diag(R))
+    rank = int(np.count_nonzero(sizes > DEPENDENT * sizes[0]))
+    depends, determines = unknowns[order[:rank]], unknowns[order[rank:]]
+    weights = -la.solve_triangular(R[:rank, :rank], R[:rank, rank:])
+    strongest = np.full(rank, -1, dtype=np.intp)
+    if len(determines):
+        strongest = determines[np.argmax(np.abs(weights), axis=1)]
+    return DependentUnknowns(
+        depends, strongest, np.repeat(depends, len(determines)), np.tile(determines, rank), weights.ravel()
+    )
+
+
+def components(rows: sp.csr_array) -> tuple[Index, list[Index]]:
+    """Rows that share no unknowns with others, and groups of rows that share some."""
     k, n = rows.shape
-    coo = rows.tocoo()
-    graph = sp.coo_array((np.ones(coo.nnz), (coo.row, k + coo.col)), shape=(k + n, k + n))
-    label = sp.csgraph.connected_components(graph, directed=False)[1]
-    for one in np.unique(label[k + coo.col]):  # a row without unknowns constrains nothing
-        yield np.flatnonzero(label[:k] == one), np.flatnonzero(label[k:] == one)
+    pattern = sp.csr_array((np.ones(len(rows.data)), rows.indices + k, rows.indptr), shape=(k, k + n))
+    pattern.resize((k + n, k + n))
+    label = sp.csgraph.connected_components(pattern, directed=False)[1][:k]
+    order = np.argsort(label, kind="stable")
+    groups = np.split(order, np.flatnonzero(np.diff(label[order])) + 1) if k else []
+    alone = np.array([group[0] for group in groups if len(group) == 1], dtype=np.intp)
+    return alone, [group for group in groups if len(group) > 1]

@@ -3,12 +3,23 @@
 ==============  ========================================================
 `pattern.py`    where their entries go
 `ordering.py`   in which order they are best eliminated
-`products.py`   products with vectors at the cost of their sums
+`products.py`   products with vectors, and matrices from blocks, at the cost of their sums
 ==============  ========================================================
 """
 
 from petalfoil.sparsity.ordering import Elimination, Order, TiedOrder, postorder
 from petalfoil.sparsity.pattern import Pattern, add_up
-from petalfoil.sparsity.products import SparseRows
+from petalfoil.sparsity.products import SparseRows, added_blocks, columns_times, rows_times
 
-__all__ = ["Elimination", "Order", "Pattern", "SparseRows", "TiedOrder", "add_up", "postorder"]
+__all__ = [
+    "Elimination",
+    "Order",
+    "Pattern",
+    "SparseRows",
+    "TiedOrder",
+    "add_up",
+    "added_blocks",
+    "columns_times",
+    "postorder",
+    "rows_times",
+]

@@ -6,6 +6,7 @@ times as long as the sums. `SparseRows` goes to the compiled loop at once, and b
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
@@ -48,3 +49,24 @@ class SparseRows(sp.csr_array):  # type: ignore[misc]
     def magnitude(self) -> SparseRows:
         """Magnitudes of the entries."""
         return SparseRows(abs(self))
+
+
+def rows_times(matrix: sp.csr_array, factor: Array) -> sp.csr_array:
+    """The matrix with its rows times `factor` (n,)."""
+    data = matrix.data * np.repeat(factor, np.diff(matrix.indptr))
+    return sp.csr_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
+
+
+def columns_times(matrix: sp.csr_array, factor: Array) -> sp.csr_array:
+    """The matrix with its columns times `factor` (n,)."""
+    return sp.csr_array((matrix.data * factor[matrix.indices], matrix.indices, matrix.indptr), shape=matrix.shape)
+
+
+def added_blocks(blocks: Sequence[tuple[int, int, sp.sparray]], diagonal: Array) -> sp.csc_array:
+    """A square matrix from blocks, each with its first row and column, and what is added to its diagonal (n,)."""
+    size, on_diagonal = len(diagonal), np.flatnonzero(diagonal)
+    parts = [(row, column, block.tocoo()) for row, column, block in blocks]
+    rows = np.concatenate([*(row + part.row for row, _, part in parts), on_diagonal])
+    columns = np.concatenate([*(column + part.col for _, column, part in parts), on_diagonal])
+    data = np.concatenate([*(part.data for _, _, part in parts), diagonal[on_diagonal]])
+    return sp.csc_array((data, (rows, columns)), shape=(size, size))

@@ -21,8 +21,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.physics.gap_curves import ContactPoints, PointGaps, point_gaps
+from petalfoil.physics.gap_curves import ContactPoints, PointGaps
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
+from petalfoil.sparsity import added_blocks, columns_times, rows_times
 from petalfoil.system.coupled import WALL_ROUNDING, CoupledProblem
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.point_layout import PointLayout
@@ -97,7 +98,7 @@ class PointEquations:
     @cached_property
     def gaps(self) -> PointGaps:
         """Gaps at the travelling points."""
-        return point_gaps(self.whole.curves, self.state.points, self.nodal_gaps)
+        return PointGaps(self.whole.curves, self.state.points, self.nodal_gaps)
 
     @cached_property
     def travels(self) -> Array:
@@ -134,9 +135,9 @@ class PointEquations:
     @cached_property
     def residual(self) -> tuple[Array, Array, Array, Array]:
         """Wall, film, gaps of all points, slopes of the travelling ones."""
-        (n, _), points, state, gaps = self.by_w, self.state.points, self.state, self.gaps
+        points, state, gaps, curves = self.state.points, self.state, self.gaps, self.whole.curves
         elastic = self.whole.elastic(state.w) - self.whole.push @ (state.P - 1.0)
-        wall = elastic - n.T @ points.reaction
+        wall = elastic - curves.by_w.T @ curves.nodal_loads(points)
         value = np.where(self.idle > 0.0, points.reaction, gaps.value)
         return wall, self.film.residual, value, gaps.slope[points.ends] * self.travels
 
@@ -171,22 +172,29 @@ class PointEquations:
     @cached_property
     def steady(self) -> sp.csc_array:
         """The tangent."""
-        (n, n_slope), gaps, points = self.by_w, self.gaps, self.state.points
-        acts, free = (sp.diags_array(part) for part in (1.0 - self.idle, self.travels))
-        held, ends = sp.diags_array(1.0 - self.travels), points.ends
-        travel = points.spread @ free  # positions of all points by those that travel
-        moved = (n_slope.T @ sp.diags_array(points.reaction)) @ travel
+        (n, n_slope), gaps, points, whole = self.by_w, self.gaps, self.state.points, self.whole
+        acts, free, ends = 1.0 - self.idle, self.travels, points.ends
+        travel = columns_times(points.spread, free)  # positions of all points by those that travel
         by_P, by_w = self._film_tangent
-        bend, bend_slope = acts @ gaps.bend + sp.diags_array(self.idle), free @ gaps.bend_slope[ends]
-        value_by_place = acts @ (gaps.value_by_place @ travel)
-        slope_by_place = free @ (gaps.slope_by_place[ends] @ travel) + held
+        film = whole.n_wall
+        lam = film + whole.n_film
+        place = lam + len(acts)
         blocks = [
-            [self.whole.stiffness, -self.whole.push, -n.T, -moved],
-            [by_w, by_P, None, None],
-            [acts @ n, None, bend, value_by_place],
-            [free @ n_slope[ends], None, bend_slope, slope_by_place],
+            (0, 0, whole.stiffness),
+            (0, film, -whole.push),
+            (0, lam, -n.T),
+            (0, place, -(rows_times(n_slope, points.reaction).T @ travel)),
+            (film, 0, by_w),
+            (film, film, by_P),
+            (lam, 0, rows_times(n, acts)),
+            (lam, lam, rows_times(gaps.bend, acts)),
+            (lam, place, rows_times(gaps.value_by_place @ travel, acts)),
+            (place, 0, rows_times(n_slope[ends], free)),
+            (place, lam, rows_times(gaps.bend_slope[ends], free)),
+            (place, place, rows_times(gaps.slope_by_place[ends] @ travel, free)),
         ]
-        return sp.csc_array(sp.block_array(blocks, format="csc"))
+        diagonal = np.concatenate([np.zeros(lam), self.idle, 1.0 - free])
+        return added_blocks(blocks, diagonal)
 
     @cached_property
     def _film_tangent(self) -> tuple[sp.csr_array, sp.csr_array]:

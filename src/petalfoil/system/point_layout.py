@@ -12,6 +12,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.physics.gap_curves import GapCurves
+from petalfoil.sparsity import SparseRows
 from petalfoil.walls.element_pack import ElementPack
 
 if TYPE_CHECKING:
@@ -46,9 +47,9 @@ class PointLayout:
         return self.layout.wall.film.n_unknown
 
     @cached_property
-    def bending(self) -> sp.csr_array:
+    def bending(self) -> SparseRows:
         """`B` with `K = B^T B` [1]."""
-        return sp.csr_array(self.pack.bending * math.sqrt(self.layout.scales.length / self.layout.scales.force))
+        return SparseRows(self.pack.bending * math.sqrt(self.layout.scales.length / self.layout.scales.force))
 
     @cached_property
     def stiffness(self) -> sp.csr_array:
@@ -60,9 +61,9 @@ class PointLayout:
         return np.asarray(self.bending.T @ (self.bending @ w))
 
     @cached_property
-    def stiffness_size(self) -> sp.csr_array:
+    def stiffness_size(self) -> SparseRows:
         """Magnitudes of the entries of `K` [1]."""
-        return sp.csr_array(abs(self.stiffness))
+        return SparseRows(abs(self.stiffness))
 
     @cached_property
     def curves(self) -> GapCurves:
@@ -71,6 +72,7 @@ class PointLayout:
         return replace(
             curves,
             rest=curves.rest / scales.length,
+            by_w=SparseRows(curves.by_w),
             compliance=curves.compliance * (scales.force / scales.length),
         )
 
@@ -80,9 +82,9 @@ class PointLayout:
         return 2 * int(self.curves.first[self.pack.mesh.count])
 
     @cached_property
-    def film_by_w(self) -> sp.csr_array:
+    def film_by_w(self) -> SparseRows:
         """Derivative of the film thickness by the petals' unknowns, (film nodes, n_wall)."""
-        return sp.csr_array(self.pack.film_rows @ self.curves.by_w)
+        return SparseRows(self.pack.film_rows @ self.curves.by_w)
 
     @cached_property
     def film_by_e(self) -> Array:
@@ -90,7 +92,7 @@ class PointLayout:
         return np.asarray(self.pack.film_rows @ self.curves.by_e)
 
     @cached_property
-    def push(self) -> sp.csr_array:
+    def push(self) -> SparseRows:
         """`A`: generalised forces on the petals from the pressure unknowns, (n_wall, n_film)."""
         wall, scales = self.layout.wall, self.layout.scales
         unknown = wall.film.unknown.ravel()
@@ -98,4 +100,4 @@ class PointLayout:
         area = wall.load_area.ravel()[nodes] * scales.pressure / scales.force
         shape = (len(unknown), self.n_film)
         nodal = sp.coo_array((area, (nodes, unknown[nodes])), shape=shape).tocsr()
-        return sp.csr_array(self.film_by_w.T @ nodal)
+        return SparseRows(self.film_by_w.T @ nodal)

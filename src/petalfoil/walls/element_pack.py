@@ -22,6 +22,7 @@ from petalfoil.physics.gap_curves import ContactPoints, Facing, GapCurves
 from petalfoil.physics.petal_elements import PetalElements
 from petalfoil.physics.petal_sliding import Faces
 from petalfoil.physics.shell import PetalShell
+from petalfoil.sparsity import SparseRows
 from petalfoil.walls.base import Wall
 
 Array = NDArray[np.float64]
@@ -142,12 +143,12 @@ class ElementPack:
         return sp.csr_array(self.nodal[below.ravel()] - mine)
 
     @cached_property
-    def film_rows(self) -> sp.csr_array:
+    def film_rows(self) -> SparseRows:
         """Gap toward the journal at the film nodes from the nodal gaps of all curves, (film nodes, 2 n_node)."""
         curves, phi = self.curves, self.mesh.phi[self.mesh.exposed]
         element, t = hermite.located(phi, self.elements.phi[self.nodes[Facing.JOURNAL]])
         petal = np.repeat(np.arange(self.mesh.count), len(phi))
-        return curves.rows(petal, np.tile(element + t, self.mesh.count))
+        return SparseRows(curves.rows(petal, np.tile(element + t, self.mesh.count)))
 
     @cached_property
     def floor(self) -> Array:
@@ -164,6 +165,11 @@ class ElementPack:
         pairs = np.stack([curve(phi), curve(phi, 1) * self.elements.slope_angle], axis=-1)
         first = 2 if self.elements.clamped else 1
         return np.asarray(pairs.reshape(self.mesh.count, -1)[:, first:].ravel())
+
+    @cached_property
+    def free_motions(self) -> Array:
+        """Motions that bend nothing (S4) in the unknowns, (n, k)."""
+        return np.column_stack([self.from_nodes(motion) for motion in self.wall.free_motions.T.toarray()])
 
     def contact_places(self, points: ContactPoints) -> tuple[ElementLoads, ElementLoads]:
         """Where contact points are on the petals that touch, and between petals on those behind them.
