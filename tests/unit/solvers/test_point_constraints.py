@@ -61,3 +61,12 @@ def test_a_point_that_repeats_a_node_contact_is_not_determinate() -> None:
     repeated = sp.csr_array(0.5 * (np.eye(N)[[0]] + np.eye(N)[[2]]))
     assert constrain_points(constrain(G, closed), sp.csr_array(np.eye(N)[[5]])).determinate
     assert not constrain_points(constrain(G, closed), repeated).determinate
+
+
+def test_a_row_without_unknowns_constrains_nothing() -> None:
+    G, closed = sp.csr_array(np.eye(N)), np.arange(N) < 3
+    row = sp.csr_array(np.eye(N)[[5, 6]])
+    row.data[1] = 0.0
+    constraints = constrain_points(constrain(G, closed), row)
+    assert not constraints.determinate
+    assert constraints.n_free == N - 4

@@ -5,7 +5,7 @@ import pytest
 import scipy.sparse as sp
 from numpy.testing import assert_array_equal
 
-from petalfoil.sparsity import SparseRows
+from petalfoil.sparsity import SparseRows, added_blocks, columns_times, rows_times
 
 
 def random_rows(m: int, n: int, seed: int) -> sp.csr_array:
@@ -46,3 +46,19 @@ def test_slices_of_rows_are_right_after_the_transpose_was_used() -> None:
 def test_a_vector_of_another_length_is_refused() -> None:
     with pytest.raises(ValueError, match="30 columns cannot multiply a vector of 20"):
         SparseRows(random_rows(20, 30, seed=5)) @ np.ones(20)
+
+
+def test_rows_and_columns_times_factors() -> None:
+    plain, rng = random_rows(20, 30, seed=4), np.random.default_rng(3)
+    row, column = rng.standard_normal(20), rng.standard_normal(30)
+    assert_array_equal(rows_times(plain, row).toarray(), row[:, None] * plain.toarray())
+    assert_array_equal(columns_times(plain, column).toarray(), plain.toarray() * column)
+
+
+def test_blocks_that_overlap_add_up() -> None:
+    one, other = random_rows(2, 3, seed=5), random_rows(3, 2, seed=6)
+    whole = np.diag([0.0, 0.0, 7.0, 8.0, 0.0])
+    whole[:2, 2:] += one.toarray()
+    whole[1:4, 1:3] += other.toarray()
+    added = added_blocks([(0, 2, one), (1, 1, other.tocsc())], np.array([0.0, 0.0, 7.0, 8.0, 0.0]))
+    assert_array_equal(added.toarray(), whole)
