@@ -9,15 +9,20 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.cold_start import attempt
+from petalfoil.equilibrium.cold_start import finish
+from petalfoil.equilibrium.pack_at_rest import central_point, with_ambient
 from petalfoil.equilibrium.run_context import current_run, running
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.physics.forces import node_area
+from petalfoil.solvers.problem import PrimalDualPoint
+from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.system.coupled import CoupledProblem
 
 Array = NDArray[np.float64]
 
-PROBE_BARRIERS = (3.0, 30.0, 0.3)
+PROBE_BARRIERS = (30.0, 3.0, 0.3)
+"""Barriers at which the film joins the pack: falling, so that the pack goes on along its central path."""
+
 DIFFERENT = 1e-6
 """Equilibria whose normal forces on the journal differ by more than this fraction are different ones: a hundred times
 the tolerance of a solution. Stiff packs have some that differ by 1e-4, in which contacts end a node apart."""
@@ -48,9 +53,19 @@ def distinct(answers: list[Solution]) -> int:
 
 def probe(problem: CoupledProblem) -> int:
     """Number of different equilibria that a few cold starts find, at least 1."""
+    answers: list[Solution] = []
     with running() as question:
-        answers = [attempt(problem, barrier) for barrier in PROBE_BARRIERS]
+        pack: PrimalDualPoint | None = None
+        for barrier in PROBE_BARRIERS:
+            try:
+                pack = central_point(problem, barrier, pack)
+                start = with_ambient(problem, pack)
+                answer = finish(problem, start, f"interior point from the assembled pack, barrier {barrier:g}")
+            except SingularMatrixError as failure:
+                current_run().note("film", outcome=str(failure))
+                continue
+            answers += [] if answer is None else [answer]
     current_run().probes.factorizations += question.film.factorizations + question.pack.factorizations
-    count = max(1, distinct([answer for answer in answers if answer is not None]))
+    count = max(1, distinct(answers))
     current_run().note("probe", equilibria=count)
     return count

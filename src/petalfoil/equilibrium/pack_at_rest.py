@@ -52,18 +52,28 @@ def free_start(pack: FoilPackProblem) -> PrimalDualPoint:
 
 def assembled(problem: CoupledProblem, barrier: float) -> PrimalDualPoint:
     """The assembled pack on its central path at `barrier`, extended by ambient pressures: a start for the film."""
-    pack = unloaded(problem)
     if not problem.layout.n_wall:
+        pack = unloaded(problem)
         s = pack.gaps(np.zeros(0))
         return PrimalDualPoint(problem.layout.ambient(np.zeros(0)), s, barrier * pack.weight / s)
-    options = replace(CONVEX, least_barrier=barrier)
+    return with_ambient(problem, central_point(problem, barrier))
+
+
+def with_ambient(problem: CoupledProblem, point: PrimalDualPoint) -> PrimalDualPoint:
+    """A point of the pack alone, extended by ambient pressures."""
+    return replace(point, x=problem.layout.ambient(point.x))
+
+
+def central_point(problem: CoupledProblem, barrier: float, start: PrimalDualPoint | None = None) -> PrimalDualPoint:
+    """The assembled pack on its central path at `barrier`, from a point with a larger one or from the free shape."""
+    pack, options = unloaded(problem), replace(CONVEX, least_barrier=barrier)
 
     def finished(step: InteriorStep) -> bool:
         return step.barrier < 2.0 * barrier and step.infeasibility < 1e-3 and step.residual < 1e-2
 
     watch = current_run().watch("pack", finished)
-    point, _ = interior_point(pack, free_start(pack), current_run().pack_solver, options, watch)
-    return replace(point, x=problem.layout.ambient(point.x))
+    point, _ = interior_point(pack, start or free_start(pack), current_run().pack_solver, options, watch)
+    return point
 
 
 def at_rest(problem: CoupledProblem, withdrawn: float = 0.0, *, still: bool = False) -> ActiveContacts | None:
