@@ -13,6 +13,7 @@ from petalfoil.system.build import build_problem
 from petalfoil.walls.petals import build_mesh, petal_faces
 from petalfoil.walls.sliding import dragged_faces
 from tests.cases import case
+from tests.random_packs import random_case
 
 Array = NDArray[np.float64]
 
@@ -97,6 +98,7 @@ def test_moments_about_the_hinges_balance_with_friction_on_the_inner_face() -> N
     assert float(result.reaction_balance_error) < 1e-10
 
 
+@pytest.mark.slow
 def test_the_rotor_is_held_back_and_its_torque_is_that_of_the_same_force() -> None:
     bearing = rubbed()
     result = solve(bearing)
@@ -111,12 +113,14 @@ def test_the_rotor_is_held_back_and_its_torque_is_that_of_the_same_force() -> No
     assert float(result.contact_normal_force) > 1.05 * float(plain.contact_normal_force)  # petals wrap round the shaft
 
 
+@pytest.mark.slow
 def test_both_theories_agree_as_petals_hardly_stretch() -> None:
     first, second = (solve(rubbed(petals__theory=theory)) for theory in ("shell", "inextensible"))
     for name in ("force_x", "force_y", "friction_torque", "max_bending_stress"):
         assert_allclose(float(first[name]), float(second[name]), rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_without_friction_nothing_is_dragged_to_the_last_bit() -> None:
     """As the rubbing that is torque alone, contacts at nodes."""
     force = rubbed(surface__friction_coefficient=0.0, petals__theory="inextensible")
@@ -126,6 +130,7 @@ def test_without_friction_nothing_is_dragged_to_the_last_bit() -> None:
         assert float(first[name]) == float(second[name]), name
 
 
+@pytest.mark.slow
 def test_a_journal_at_zero_speed_is_about_to_turn() -> None:
     """Its starting torque is the limit of the torque at low speeds, larger than that of a journal that only rests."""
     slowly, at_rest = solve(rubbed(operation__speed=1e-3)), static(rubbed(), "250 um")
@@ -134,6 +139,7 @@ def test_a_journal_at_zero_speed_is_about_to_turn() -> None:
     assert at_rest["starting_torque"].item() > 1.05 * resting["starting_torque"].item()
 
 
+@pytest.mark.slow
 def test_a_motion_does_the_work_of_the_dry_friction_too() -> None:
     """A rotor that falls on its petals and rubs: nothing is missing in the balance of energy (O6)."""
     moving = rubbed(rotor={"mass": 3.0}, operation__speed=300.0, operation__eccentricity=(0.0, -240e-6))
@@ -142,6 +148,7 @@ def test_a_motion_does_the_work_of_the_dry_friction_too() -> None:
     assert errors[1] < 0.5 * errors[0]
 
 
+@pytest.mark.slow
 def test_stiffness_is_the_slope_of_the_force_and_not_symmetric() -> None:
     bearing, step = rubbed(), 2e-9
 
@@ -164,6 +171,7 @@ def test_stiffness_is_the_slope_of_the_force_and_not_symmetric() -> None:
     assert abs((K[0, 1] - K[1, 0]) - (plain[0, 1] - plain[1, 0])) > 0.01 * np.max(np.abs(K))
 
 
+@pytest.mark.slow
 def test_a_balance_is_on_the_curve_of_forces() -> None:
     """The load that it carries is the force at its position; a curve goes on from point to point."""
     bearing = rubbed()
@@ -176,6 +184,7 @@ def test_a_balance_is_on_the_curve_of_forces() -> None:
     assert_allclose(points["force_x"].to_numpy()[-1], float(last.force_x), rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_derivatives_follow_the_friction_coefficient() -> None:
     """Of the force by the coefficient: by tangent and by adjoint as by differences."""
     bearing, step = rubbed(), 1e-5
@@ -185,6 +194,29 @@ def test_derivatives_follow_the_friction_coefficient() -> None:
     for method in ("tangent", "adjoint"):
         table = sensitivity(bearing, names[0], of="force_x", method=method)
         assert_allclose(table["derivative"].item(), slope, rtol=1e-5)
+
+
+@pytest.mark.slow
+def test_a_pack_that_has_bottomed_out_is_balanced() -> None:
+    """By the interior point, as reactions there are not determined by contacts; its growth rate is that of the film."""
+    held = balance(rubbed(model__cells_per_pitch=8), load=(0.0, -2000.0))
+    assert "bottomed out" in str(held.solution_path.item())
+    assert float(held.residual) < 1e-8
+    assert_allclose(float(held.force_y), 2000.0, rtol=1e-8)
+    assert np.isfinite(float(held.growth_rate))
+
+
+@pytest.mark.slow
+def test_random_packs_are_dragged() -> None:
+    """Three at a twentieth of their speed: residual and support of the petals; the journal is pressed harder."""
+    for number in range(3):
+        drawn = random_case(np.random.default_rng(number), **{"model.cells_per_pitch": 16, "model.contacts": "nodes"})
+        slow = {"operation.speed": 0.05 * drawn.operation.speed, "surface.friction_coefficient": MU}
+        force = solve(drawn.replace(**slow, **{"surface.journal_rubbing": "force"}))
+        torque = solve(drawn.replace(**slow))
+        assert float(force.residual) < 1e-8
+        assert float(force.reaction_balance_error) < 1e-9
+        assert float(force.contact_normal_force) > 1.01 * float(torque.contact_normal_force) > 0.0
 
 
 @pytest.mark.parametrize(
@@ -204,6 +236,7 @@ def test_a_pack_with_friction_is_not_pressed_by_a_journal_that_turns() -> None:
         static(rubbed(surface__petal_friction=0.1), "0 um : 100 um : 2")
 
 
+@pytest.mark.slow
 def test_a_shaft_that_hardly_turns_rolls_up_a_dry_bore_to_the_angle_of_friction() -> None:
     """`arctan mu` against the rotation, to the spacing of the nodes."""
     dry = {"surface.journal_rubbing": "force", "surface.friction_coefficient": MU, "operation.speed": 1.0}

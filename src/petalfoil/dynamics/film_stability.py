@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import TangentEquations
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.solvers.constraints import constrain
+from petalfoil.solvers.constraints import ContactConstraints, constrain
 from petalfoil.solvers.eigenvalues import Pencil, rightmost
 from petalfoil.system.unknowns import DEFLECTION
 
@@ -31,9 +31,7 @@ def leading_eigenvalue(solution: Solution) -> complex:
     linearized = problem.linearize(solution.x)
     steady = linearized.matrix(np.zeros(len(problem.weight)))
     contacts = solution.contacts
-    constraints = (
-        constrain(problem.G, solution.active, acting=problem.acting) if contacts is None else contacts.constraints
-    )
+    constraints = held_contacts(solution) if contacts is None else contacts.constraints
     wall = constraints.group[problem.layout.unknowns[DEFLECTION]]
     first = int(wall.max(initial=-1)) + 1
     solver = current_run().probe_solver
@@ -41,6 +39,16 @@ def leading_eigenvalue(solution: Solution) -> complex:
     return rightmost(
         Pencil(constraints.reduce(steady), constraints.reduce(linearized.stored), first, order), TIME_STEP, solver
     )
+
+
+def held_contacts(solution: Solution) -> ContactConstraints:
+    """Contacts that carry load, held; where some repeat others and rub, pushes of the journal there stay as they are.
+
+    What they are does not follow from the contacts, and a pack that has bottomed out there does not move.
+    """
+    problem = solution.problem
+    stops = problem.layout.wall.contacts.journal if problem.acting is not problem.G else None
+    return constrain(problem.G, solution.active, stops, problem.acting)
 
 
 def pencil_of(equations: TangentEquations) -> Pencil:

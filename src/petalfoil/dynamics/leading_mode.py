@@ -16,11 +16,11 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.dynamics.film_stability import leading_eigenvalue, pencil_of
+from petalfoil.dynamics.film_stability import held_contacts, leading_eigenvalue, pencil_of
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
-from petalfoil.solvers.constraints import ContactConstraints, constrain
+from petalfoil.solvers.constraints import ContactConstraints
 from petalfoil.solvers.sparse_lu import LinearSolver
 
 Array = NDArray[np.float64]
@@ -64,8 +64,7 @@ class LeadingMode:
         start = leading_eigenvalue(solution)
         if not np.isfinite(start):
             raise ConvergenceError("no growth rate to differentiate: the shaft does not turn")
-        problem = solution.problem
-        constraints = constrain(problem.G, solution.active, acting=problem.acting)
+        constraints = held_contacts(solution)
         J, M = matrices(solution, constraints)
         shift = start + OFF * abs(start) * (1.0 + 1.0j if start.imag else 1.0)
         solver = current_run().probe_solver

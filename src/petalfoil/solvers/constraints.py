@@ -24,7 +24,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
-from petalfoil.solvers.sparse_lu import Factor, LinearSolver
+from petalfoil.solvers.sparse_lu import Factor, LinearSolver, SingularMatrixError
 from petalfoil.sparsity import SparseRows, TiedOrder, add_up
 
 Array = NDArray[np.float64]
@@ -75,8 +75,18 @@ class ContactConstraints:
 
     @cached_property
     def _across(self) -> spla.SuperLU:
-        """Factors of `G H^T`."""
-        return self._normal if self.acting is None else spla.splu(sp.csc_array(self.G @ self.acting.T))
+        """Factors of `G H^T`.
+
+        Raises
+        ------
+        SingularMatrixError
+            Gaps repeat each other: each of their reactions drags by itself, and none is determined.
+        """
+        if self.acting is None:
+            return self._normal
+        if not self.determinate:
+            raise SingularMatrixError("gaps that repeat each other rub")
+        return spla.splu(sp.csc_array(self.G @ self.acting.T))
 
     @cached_property
     def motions(self) -> sp.csr_array:
