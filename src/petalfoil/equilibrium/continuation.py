@@ -33,7 +33,7 @@ RESTART_BARRIER = 0.3
 
 
 def predict(known: Solution, problem: CoupledProblem) -> Array:
-    """First-order change of the unknowns from `known` to another speed or position (T4), shape (n,); no factorisation.
+    """First-order change of the unknowns from `known` to another speed or position (T5), shape (n,); no factorisation.
 
     Active gaps stay closed; the tangent is the last one that led to `known`.
     """

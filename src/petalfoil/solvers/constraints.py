@@ -7,7 +7,7 @@ linear system smaller, without multipliers. Their reactions follow afterwards fr
 Reactions of contacts that rub act along rows `H` other than those of the gaps, `G` (D6). They leave the equations by an
 oblique projection: what the free unknowns read of `F - H^T lam = 0` is
 
-    Z^T (F - (H - G)^T lam) = 0 ,    lam = (G H^T)^-1 G F                                                      (T5)
+    Z^T (F - (H - G)^T lam) = 0 ,    lam = (G H^T)^-1 G F                                                      (T4)
 
 with the motions `Z` that keep the gaps closed.
 """
@@ -97,7 +97,7 @@ class ContactConstraints:
 
     @cached_property
     def _dragged(self) -> sp.csr_array | None:
-        """What reactions leave in the equations of the free unknowns by all equations (T5), (n_free, n); None if none.
+        """What reactions leave in the equations of the free unknowns by all equations (T4), (n_free, n); None if none.
 
         Only rows whose reactions act on more than their gaps need a solve.
         """
@@ -138,7 +138,7 @@ class ContactConstraints:
         return np.append(free, 0.0)[self.group]
 
     def balanced(self, full: NDArray[Any]) -> NDArray[Any]:
-        """What all equations (n,) leave of those of the free unknowns without their reactions (T5), (n_free,)."""
+        """What all equations (n,) leave of those of the free unknowns without their reactions (T4), (n_free,)."""
         gathered = self.gather(full)
         return gathered if self._dragged is None else gathered - self._dragged @ full
 
@@ -155,7 +155,7 @@ class ContactConstraints:
         return np.where(inside, np.append(of_group, 0.0)[self.group], scale)
 
     def reduce(self, matrix: sp.csc_array) -> sp.csc_array:
-        """The matrix over the free unknowns: rows and columns of a group added up, without reactions (T5)."""
+        """The matrix over the free unknowns: rows and columns of a group added up, without reactions (T4)."""
         if not self.G.shape[0]:
             return matrix
         if self._dragged is not None:

@@ -51,7 +51,7 @@ class PointConstraints(ContactConstraints):
         return np.asarray(self.basis @ free)
 
     def reduce(self, matrix: sp.csc_array) -> sp.csc_array:
-        """The matrix over the free unknowns, without reactions (T5)."""
+        """The matrix over the free unknowns, without reactions (T4)."""
         own: sp.csr_array = self.basis.T
         return sp.csc_array((own if self._dragged is None else own - self._dragged) @ matrix @ self.basis)
 

@@ -61,7 +61,7 @@ class Tangent:
     def respond(self, residual: Values, gap_change: Array | None = None) -> tuple[Values, Values]:
         """Change of the unknowns (n,) and of the held reactions (k,) against `residual`.
 
-        `gap_change` (k,) is what else changes the held gaps: the unknowns follow it (T4).
+        `gap_change` (k,) is what else changes the held gaps: the unknowns follow it (T5).
         """
         if gap_change is None:
             change = self.step(residual)
