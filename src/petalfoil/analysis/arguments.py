@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, TypeGuard
 
 from petalfoil.case.number_fields import Range
 from petalfoil.errors import UnitError, UsageError
-from petalfoil.units import parse_pair, parse_quantity, parse_ramp, parse_range
+from petalfoil.units import format_quantity, parse_pair, parse_quantity, parse_ramp, parse_range
 from petalfoil.units.reading import shown
 
 if TYPE_CHECKING:
@@ -165,6 +165,10 @@ class Pair(Argument):
             raise UsageError(f"{shown(given)} is not a pair (x, y)")
         return parse_quantity(given[0], self.unit), parse_quantity(given[1], self.unit)
 
+    def text(self, value: Any) -> str:
+        """The pair with its unit, or the word."""
+        return value if isinstance(value, str) else ", ".join(format_quantity(part, self.unit) for part in value)
+
 
 @dataclass(frozen=True, kw_only=True)
 class LoadVector(Argument):
@@ -189,6 +193,11 @@ class LoadVector(Argument):
         if len(given) != 2:
             raise UsageError(f"{shown(given)} is neither a value nor a pair (x, y)")
         return parse_quantity(given[0], "N"), parse_quantity(given[1], "N")
+
+    def text(self, value: Any) -> str:
+        """The load with its unit; along -y a single value."""
+        x, y = value
+        return format_quantity(-y, "N") if x == 0.0 and y < 0.0 else ", ".join(format_quantity(f, "N") for f in value)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +23,8 @@ if TYPE_CHECKING:
     from petalfoil.studies.case_engine import ProcessorTime
 
 MOST_REASONS = 5
+MOST_CASES = 3
+"""Cases that are named beside a reason."""
 
 
 def deliver(ds: xr.Dataset, folder: Path, *, as_json: bool, effort: ProcessorTime | None = None) -> None:
@@ -38,8 +39,12 @@ def deliver(ds: xr.Dataset, folder: Path, *, as_json: bool, effort: ProcessorTim
         emit(json.dumps({**study_summary.to_json(ds), "folder": str(folder)}, allow_nan=False) + "\n")
     else:
         emit(text_of(ds) + f"\nFolder: {for_terminal(str(folder))}\n")
-    for reason, count in Counter(study_summary.reasons(ds)).most_common(MOST_REASONS):
-        say(f"{count} without an answer: {reason}")
+    told = sorted(study_summary.reasons(ds).items(), key=lambda item: -len(item[1]))
+    for reason, cases in told[:MOST_REASONS]:
+        which = "; ".join(cases[:MOST_CASES]) + ("; …" if len(cases) > MOST_CASES else "")
+        say(f"{len(cases)} without an answer ({which}): {reason}")
+    if len(told) > MOST_REASONS:
+        say(f"{len(told) - MOST_REASONS} more reasons are in the folder's table.csv")
     if effort is not None and effort.solver > 0.0:
         say(
             f"processor time: {effort.solver:.1f} s for the cases, {effort.workers:.1f} s of the workers in all, "

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from html import escape
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from petalfoil.studies import study_summary
 from petalfoil.studies.study_store import FIGURES, PAGE
 
 MOST_REASONS = 10
+MOST_CASES = 6
 
 
 def write_page(folder: Path, ds: xr.Dataset) -> None:
@@ -41,8 +41,9 @@ def write_page(folder: Path, ds: xr.Dataset) -> None:
 
 
 def _failures(ds: xr.Dataset) -> list[str]:
-    told = Counter(study_summary.reasons(ds)).most_common(MOST_REASONS)
+    told = study_summary.reasons(ds)
     if not told:
         return []
-    rows = tuple((str(count), text) for text, count in told)
+    most = sorted(told.items(), key=lambda item: -len(item[1]))[:MOST_REASONS]
+    rows = tuple((f"{len(cases)}: {'; '.join(cases[:MOST_CASES])}", text) for text, cases in most)
     return [html.section("failed", "Cases without an answer"), html.table(PageTable(("cases", "reason"), rows))]

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from petalfoil.analysis import known_verbs
 from petalfoil.analysis.neighbours import FROM_NEIGHBOUR
 from petalfoil.results.schema import SCALARS
 from petalfoil.results.summary import cell, in_order, values_without_rounding
@@ -25,6 +26,10 @@ LIMIT_HEADS = ("limit", "kept by", "95 % confidence", "without an answer")
 QUANTILE_KEYS = ("quantile_05", "quantile_50", "quantile_95")
 TOLERANCE_HEADS = ("quantity", "nominal", "mean", "std. dev.", "first order", "5 %", "50 %", "95 %", "unit")
 RANGE_HEADS = ("quantity", "least", "median", "greatest", "unit")
+MOST_COLUMNS = 7
+"""Cases of a study up to which each has a column of its own, instead of the range over all."""
+MOST_NAMED = 3
+"""Parameters up to which they name a case."""
 
 
 def headline(ds: xr.Dataset) -> str:
@@ -91,18 +96,41 @@ def ranges(ds: xr.Dataset) -> Lines:
     return tuple(lines)
 
 
+def each_case(ds: xr.Dataset) -> tuple[tuple[str, ...], Lines]:
+    """A column for each case under its parameters, a line for each result, in the units of tables."""
+    lines = []
+    for name in results(ds):
+        parts = [cell(name, float(value)) for value in np.ravel(values_without_rounding(ds, name))]
+        lines.append((parts[0].label.strip(), *(part.value for part in parts), parts[0].unit))
+    return ("quantity", *parameters_of_cases(ds), "unit"), tuple(lines)
+
+
+def parameters_of_cases(ds: xr.Dataset) -> list[str]:
+    """What varies, in each case: its values with their units, or the number of the case where that is too much."""
+    like, columns = ds["status"], []
+    for name in (str(name) for name in ds.coords if "path" in ds[name].attrs):
+        whole = np.ravel(ds[name].broadcast_like(like).transpose(*like.dims).values)
+        if len(set(whole)) > 1:
+            columns.append([written(float(value), str(ds[name].attrs["units"])) for value in whole])
+    if not 0 < len(columns) <= MOST_NAMED:
+        return [f"case {number}" for number in range(like.size)]
+    return [", ".join(values) for values in zip(*columns, strict=True)]
+
+
 def tables(ds: xr.Dataset) -> list[tuple[tuple[str, ...], Lines]]:
     """Tables that tell a study: headings and lines."""
     found: list[tuple[tuple[str, ...], Lines]] = []
     told = extra(ds)
     if "tolerance" in told:
-        return [(LIMIT_HEADS, _limits(told["tolerance"])), (TOLERANCE_HEADS, _scatter(told["tolerance"]))]
+        limits = _limits(told["tolerance"])
+        return [*([(LIMIT_HEADS, limits)] if limits else []), (TOLERANCE_HEADS, _scatter(told["tolerance"]))]
     if "sobol" in told:
         return [(SOBOL_HEADS, _sobol(told["sobol"]))]
     if "optimum" in told:
         return [_best(ds, told["optimum"])]
     if lines := ranges(ds):
-        found.append((RANGE_HEADS, lines))
+        few = ds["status"].size <= MOST_COLUMNS and not any("point" in ds[name].dims for name in results(ds))
+        found.append(each_case(ds) if few else (RANGE_HEADS, lines))
     return found
 
 
@@ -162,19 +190,37 @@ def _scatter(told: dict[str, Any]) -> Lines:
     return tuple(lines)
 
 
-def reasons(ds: xr.Dataset) -> list[str]:
-    """Status and reason of every case without an answer."""
-    pairs = zip(np.ravel(ds["status"].values), np.ravel(ds["reason"].values), strict=True)
-    return [f"{status}: {reason}" if reason else str(status) for status, reason in pairs if status != CONVERGED]
+def reasons(ds: xr.Dataset) -> dict[str, list[str]]:
+    """Cases without an answer, by status and reason: the parameters of each."""
+    found: dict[str, list[str]] = {}
+    columns = (np.ravel(ds["status"].values), np.ravel(ds["reason"].values), parameters_of_cases(ds))
+    for status, reason, parameters in zip(*columns, strict=True):
+        if status != CONVERGED:
+            found.setdefault(f"{status}: {reason}" if reason else str(status), []).append(parameters)
+    return found
 
 
 def asked(ds: xr.Dataset) -> list[str]:
     """What varies and what is asked, line by line."""
     lines = [f"{path} = {text}" for path, text in json.loads(ds.attrs["vary"]).items()]
-    lines += [f"{name}: {value}" for name, value in json.loads(ds.attrs["settings"]).items()]
-    arguments = ", ".join(f"{name} = {value}" for name, value in json.loads(ds.attrs["arguments"]).items())
-    lines.append(f"ask: {ds.attrs['asked']}" + (f" ({arguments}, SI)" if arguments else ""))
+    settings = json.loads(ds.attrs["settings"])
+    lines += [f"{name}: {_in_words(value)}" for name, value in settings.items() if value not in (None, [], {}, "")]
+    given = [_given(ds.attrs["asked"], name, value) for name, value in json.loads(ds.attrs["arguments"]).items()]
+    lines.append(f"ask: {' '.join([ds.attrs['asked'], *given])}")
     return lines
+
+
+def _in_words(value: Any) -> str:
+    return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+
+
+def _given(verb: str, name: str, value: Any) -> str:
+    """An argument of the analysis as it is typed."""
+    analysis = known_verbs.find(verb)
+    argument = None if analysis is None else analysis.arguments.get(name)
+    if argument is None:
+        return f"{name} = {value}"
+    return argument.option_name(name) if value is True else f'{argument.option_name(name)} "{argument.text(value)}"'
 
 
 def to_json(ds: xr.Dataset) -> dict[str, Any]:

@@ -46,7 +46,8 @@ def test_a_sweep_tells_counts_ranges_and_reasons(swept: tuple[Path, Result]) -> 
     assert "operation.eccentricity.y = 0 um, -20 um, -1 mm" in done.stdout
     assert "bearing force" in done.stdout
     assert f"Folder: {folder}" in done.stdout
-    assert "2 without an answer: invalid case: operation.eccentricity: the journal displaced by 1 mm" in done.stderr
+    assert "2 without an answer (-1 mm, 16; -1 mm, 20): invalid case: operation.eccentricity: the" in done.stderr
+    assert " ".join(done.stdout.split()).count("0 m, 16 0 m, 20 -20 µm, 16") == 1  # a column for each of a few cases
     assert "processor time: " in done.stderr
 
 
