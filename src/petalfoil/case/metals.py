@@ -76,8 +76,8 @@ FALL_OF_TITANIUM = 4.73e-4
 """Fall of the modulus of Ti-6Al-4V from 20 °C on, over it [1/K]: the straight line through 63 measurements from 23 to
 835 °C is 119.90 GPa - 0.04981 GPa/K T, and none is farther from it than 2.1 GPa."""
 
-FALL_OF_COPPER_STRIP = -0.047e9
-"""Slope of the modulus of spring strips of copper alloys [Pa/K], the mean of all directions in the strip."""
+FALL_OF_BERYLLIUM_COPPER = 3.5e-4
+"""Fall of the modulus of beryllium copper, over it, from -50 to 50 °C [1/K]."""
 
 METALS = {
     metal.name: metal
@@ -130,13 +130,12 @@ METALS = {
             },
         ),
         Metal(
-            "beryllium copper c17200", ((20.0, 127e9), (200.0, 127e9 + 180.0 * FALL_OF_COPPER_STRIP)),
+            "beryllium copper c17200",
+            tuple((at, 127e9 * (1.0 - FALL_OF_BERYLLIUM_COPPER * (at - 20.0))) for at in (-50.0, 20.0, 50.0)),
             0.30, 8260.0, 17.8e-6, 960e6, "age hardened TF00, least",
             {
-                "modulus": "at 20 °C NGK alloy 25 data sheet; its fall is that of three other spring strips of "
-                "copper alloys "
-                "(CuFe2P, CuNi3SiMg, CuCrSiTi), -0.047 GPa/K from -50 to 200 °C: Kuhn, Nothhelfer-Richter and "
-                "Futterknecht, Metall 54 (2000) 575-580",
+                "modulus": "at 20 °C NGK alloy 25 data sheet; its temperature coefficient in tension, -0.00035 per K "
+                "from -50 to 50 °C: Copper Development Association, Beryllium Copper, publication 54, 1962",
                 "poisson_ratio": "NGK alloy 25 data sheet, room temperature",
                 "density": "NGK alloy 25 data sheet, room temperature",
                 "expansion": "NGK alloy 25 data sheet, 20 to 300 °C",
