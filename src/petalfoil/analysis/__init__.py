@@ -80,6 +80,7 @@ What they share:
 `friction_told.py`     which friction forces between petals an equilibrium has
 `contact_model.py`     where contacts are, and the equilibrium that results are taken from
 `evaluation.py`        results of a solution, such as `min_film_thickness`, as typed parts
+`closest_gap.py`       where petals with continuous slopes are closest to the journal
 `extremes.py`          extremes between nodes
 `heat_results.py`      temperatures and where the heat goes
 `thermal_limit.py`     the speed above which no temperature is steady

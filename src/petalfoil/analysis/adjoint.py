@@ -242,7 +242,11 @@ def by_film_and_force(fields: FieldGradient, equations: TangentEquations, whole:
     by_x[first:last] = fields.film_force @ rows[:, first:last]
     by_x[first:last] += at_unknowns(whole.layout.wall.film.unknown, fields.pressure, whole.n_film)
     by_x[:first] += whole.film_by_w.T @ fields.film.ravel()
-    return StateWeights(by_x, np.zeros(0), fields.displacement + whole.film_by_e.T @ fields.film.ravel())
+    by_e = fields.displacement + whole.film_by_e.T @ fields.film.ravel()
+    if fields.gaps is not None:
+        by_x[:first] += whole.curves.by_w.T @ fields.gaps
+        by_e = by_e + whole.curves.by_e.T @ fields.gaps
+    return StateWeights(by_x, np.zeros(0), by_e)
 
 
 def at_unknowns(unknown: NDArray[np.intp], by_node: Array, n: int) -> Array:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.analysis.balances import mass_balance, reaction_balance
-from petalfoil.analysis.extremes import highest, lowest
+from petalfoil.analysis.closest_gap import closest_gap
+from petalfoil.analysis.extremes import Extreme, highest, lowest
 from petalfoil.case import Case
 from petalfoil.equilibrium.nodal_state import NodalState
-from petalfoil.equilibrium.small_motion import AT_POINTS
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.mesh.strips import FilmMesh
 from petalfoil.physics.forces import attitude_angle, contact_fraction, node_area, viscous_torque
@@ -109,14 +109,26 @@ class Evaluation:
         x, y = state.problem.journal_moment(state.x, state.lam) * answer.problem.layout.scales.force
         return float(x), float(y)
 
+    @property
+    def thinnest(self) -> Extreme:
+        """Minimum film thickness [m] and its place; the contact film thickness where surfaces touch.
+
+        Petals with continuous slopes have it where their gap curves are closest to the journal: between the film's
+        nodes, where their contacts are too.
+        """
+        film, elements = self.answer.problem.layout.wall.film, self.answer.elements
+        if elements is not None:
+            near = closest_gap(elements.equations.nodal_gaps, elements.equations.whole)
+            gap = max(near.gap, 0.0) * self.answer.problem.layout.scales.length
+            return Extreme(self.case.surface.contact_film_thickness + gap, near.petal, near.phi, 0.0)
+        thin = lowest(*whole_film(film, self.film_thickness))
+        return replace(thin, value=closed_film(self.case, self.film_thickness, thin.value))
+
     def film(self) -> FilmResults:
         """Extremes of film and pressure, friction and leakage."""
         film, case = self.answer.problem.layout.wall.film, self.case
         radius, omega = case.bearing.journal_radius, case.operation.speed
-        thin, high = lowest(*whole_film(film, self.film_thickness)), highest(*whole_film(film, self.pressure))
-        thinnest = closed_film(case, self.film_thickness, thin.value)
-        if self.answer.contact_model == AT_POINTS:  # gaps that close within a cell: not below zero at their contact
-            thinnest = max(thinnest, case.surface.contact_film_thickness)
+        thin, high = self.thinnest, highest(*whole_film(film, self.pressure))
         torque = viscous_torque(
             film,
             radius,
@@ -126,10 +138,10 @@ class Evaluation:
         )
         torque += case.surface.friction_coefficient * radius * self.normal_force
         return FilmResults(
-            min_film_thickness=thinnest,
+            min_film_thickness=thin.value,
             min_film_thickness_angle=self._bushing_angle(thin.strip, thin.phi),
             min_film_thickness_z=None if film.axial.is_2d else thin.z,
-            knudsen_number=self.mean_free_path / thinnest,
+            knudsen_number=self.mean_free_path / thin.value,
             peak_pressure=high.value,
             peak_pressure_angle=self._bushing_angle(high.strip, high.phi),
             friction_torque=torque,

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.analysis.closest_gap import closest_gap
 from petalfoil.analysis.evaluation import Evaluation, whole_film
 from petalfoil.analysis.extremes import Extreme, highest, lowest, weights_at
 from petalfoil.physics.forces import node_area
@@ -34,6 +35,8 @@ class FieldGradient:
         By the force of film and of contacts on the journal.
     displacement : (d,) array
         By the journal's displacement.
+    gaps : (2 n_node,) array or None
+        By the nodal gaps of petals with continuous slopes.
     """
 
     pressure: Array
@@ -42,6 +45,7 @@ class FieldGradient:
     film_force: Array
     contact_force: Array
     displacement: Array
+    gaps: Array | None = None
 
     def times(self, factor: float) -> FieldGradient:
         """A multiple."""
@@ -52,6 +56,7 @@ class FieldGradient:
             factor * self.film_force,
             factor * self.contact_force,
             factor * self.displacement,
+            None if self.gaps is None else factor * self.gaps,
         )
 
 
@@ -128,11 +133,16 @@ def contact_fraction(found: Evaluation) -> FieldGradient:
 
 def min_film_thickness(found: Evaluation) -> FieldGradient | None:
     """Minimum film thickness; None where surfaces touch and it keeps the contact film thickness."""
-    film, field = found.answer.problem.layout.wall.film, found.film_thickness
-    low = lowest(*whole_film(film, field))
-    if found.film().min_film_thickness != low.value or low.value <= CLOSED * found.case.surface.contact_film_thickness:
+    layout, field = found.answer.problem.layout, found.film_thickness
+    if found.thinnest.value <= CLOSED * found.case.surface.contact_film_thickness:
         return None
-    return replace(nothing(found), film=by_nodes(low, found, field) * found.answer.problem.layout.scales.length)
+    if (elements := found.answer.elements) is not None:
+        near = closest_gap(elements.equations.nodal_gaps, elements.equations.whole)
+        return replace(nothing(found), gaps=near.weights * layout.scales.length)
+    low = lowest(*whole_film(layout.wall.film, field))
+    if found.thinnest.value != low.value:
+        return None
+    return replace(nothing(found), film=by_nodes(low, found, field) * layout.scales.length)
 
 
 CLOSED = 1.0 + 1e-6

@@ -47,6 +47,14 @@ class TangentEquations(Protocol):
         """Speed and position."""
 
     @property
+    def whole(self) -> PointLayout:
+        """What stays the same."""
+
+    @property
+    def nodal_gaps(self) -> Array:
+        """Nodal (value, slope) of all gap curves, (2 n_node,) [1]."""
+
+    @property
     def film_thickness(self) -> Array:
         """Film over the reference length [1]."""
 

@@ -20,6 +20,7 @@ from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.point_equations import PointEquations
+from petalfoil.system.point_layout import PointLayout
 
 Array = NDArray[np.float64]
 
@@ -59,6 +60,16 @@ class AsperityEquations:
     def problem(self) -> CoupledProblem:
         """Speed and journal position."""
         return self.smooth.problem
+
+    @property
+    def whole(self) -> PointLayout:
+        """What stays the same."""
+        return self.smooth.whole
+
+    @property
+    def nodal_gaps(self) -> Array:
+        """Nodal (value, slope) of all gap curves, without what reactions bend within an element."""
+        return self.smooth.nodal_gaps
 
     @property
     def film_thickness(self) -> Array:

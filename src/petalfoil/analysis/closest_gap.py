@@ -1,0 +1,70 @@
+"""Where petals with continuous slopes are closest to the journal, which need not be at a node of the film.
+
+The gap of a petal toward the journal is a cubic on each element (K10). Where it touches, the point load bends its
+element away (K11), so that the cubic alone is zero or less at every contact, and positive where there is none: the
+minimum film thickness is the contact film thickness and the least value of the cubic, if that is positive.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.mesh import hermite
+from petalfoil.physics.gap_curves import Facing
+from petalfoil.system.point_layout import PointLayout
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ClosestGap:
+    """The least gap toward the journal.
+
+    Attributes
+    ----------
+    gap : float
+        Its value, over the reference length [1].
+    petal : int
+        The petal.
+    phi : float
+        Angle from its root [rad].
+    weights : (2 n_node,) array
+        Derivatives of the gap by the nodal gaps of all curves; its place is stationary, or an end.
+    """
+
+    gap: float
+    petal: int
+    phi: float
+    weights: Array
+
+
+def closest_gap(nodal_gaps: Array, whole: PointLayout) -> ClosestGap:
+    """The least gap of all petals toward the journal, from the nodal (value, slope) of all gap curves (2 n_node,)."""
+    curves, count = whole.curves, whole.pack.mesh.count
+    per_curve = int(curves.elements[0])
+    element = (curves.first[:count, None] + np.arange(per_curve)).ravel()
+    angle = curves.angle[element]
+    pairs = nodal_gaps[2 * element[:, None] + np.arange(4)]
+    pairs[:, 1::2] *= angle[:, None]
+    place = lowest_place(pairs @ hermite.COEFFICIENTS)
+    gap = np.einsum("ki,ki->k", hermite.basis(place), pairs)
+    least = int(gap.argmin())
+    petal, within = divmod(least, per_curve)
+    start = whole.pack.elements.phi[whole.pack.nodes[Facing.JOURNAL]][within]
+    weights = hermite.rows(element[[least]], place[[least]], curves.angle).toarray()[0]
+    return ClosestGap(float(gap[least]), petal, float(start + place[least] * angle[least]), weights)
+
+
+def lowest_place(cubic: Array) -> Array:
+    """Places in [0, 1] of the least values of cubics with coefficients (k, 4) of rising powers, (k,)."""
+    _, slope, bend, third = cubic.T
+    root = np.sqrt(np.maximum(bend**2 - 3.0 * slope * third, 0.0))
+    with np.errstate(divide="ignore", invalid="ignore"):  # a straight line has no lowest place inside
+        inside = np.where(bend > 0.0, -slope / (bend + root), (root - bend) / (3.0 * third))
+    inside = np.clip(np.nan_to_num(inside, nan=0.0, posinf=0.0, neginf=0.0), 0.0, 1.0)
+    places = np.stack([np.zeros_like(inside), inside, np.ones_like(inside)])
+    values = np.sum(cubic.T[:, None] * places ** np.arange(4)[:, None, None], axis=0)
+    return np.asarray(np.take_along_axis(places, values.argmin(axis=0)[None], axis=0)[0])
