@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -120,6 +121,8 @@ class LoadRay:
         The last factor of a search for a limit.
     lost : bool
         Whether the limit could not be followed from the known balance at another speed: the load or its contacts jump.
+    nearest : Loaded or None
+        Of the balances that were looked at, the one with the largest margin.
     """
 
     case: Case
@@ -129,6 +132,7 @@ class LoadRay:
     points_alone: bool = False
     hand: FactorAtHand = field(default_factory=FactorAtHand)
     lost: bool = field(default=False, init=False)
+    nearest: Loaded | None = field(default=None, init=False)
     base: CoupledProblem = field(init=False)
 
     def __post_init__(self) -> None:
@@ -137,8 +141,13 @@ class LoadRay:
             self.base = rotor.supports[int(rotor.turned)].problem
             return
         self.base = build_problem(self.case.replace(**{"operation.eccentricity": (0.0, 0.0)}))
-        if self.known is not None:  # its layout has the factors' elimination orders
-            self.base = self.known.problem.at(
+        self.start_from(self.known)
+
+    def start_from(self, known: Solution | None) -> None:
+        """Balances are sought from a known one: its layout has the factors' elimination orders."""
+        self.known = known
+        if known is not None and self.case.shares_evenly:
+            self.base = known.problem.at(
                 bearing_number=self.base.bearing_number, displacement=np.zeros_like(self.base.displacement)
             )
 
@@ -159,6 +168,12 @@ class LoadRay:
 
         Where the known one does not lead to it, it is sought from nothing if `cold` is set.
         """
+        found = self._balanced(size, cold=cold)
+        if isinstance(found, Loaded) and (self.nearest is None or found.margin >= self.nearest.margin):
+            self.nearest = found
+        return found
+
+    def _balanced(self, size: float, *, cold: bool) -> Loaded | str:
         known = self.known
         if found := self._followed(size):
             return found
@@ -187,24 +202,42 @@ class LoadRay:
 
     def to_limit(self) -> Loaded | None:
         """The balance at the limit, followed from the known one with the load as an unknown; None if it is lost."""
+        unit, known = self.load(1.0), self.known
+        found = self._led(lambda found, size: self._judged(size, sampled_solution(found, size * unit)).margin)
+        if found is None and self._has_elements and known is not None:
+            self.lost |= known.problem.bearing_number != self.base.bearing_number
+        return found
+
+    def under_known_load(self) -> Loaded | None:
+        """The balance at this speed under the load of the known one, followed from it; None if it is lost."""
+        size = self._known_size
+        return self._led(lambda found, here: math.log(size / here))
+
+    def _led(self, distance: Callable[[ElementEquilibrium, float], float]) -> Loaded | None:
+        """The balance at which a distance vanishes, followed from the known one with the load as an unknown."""
         known, unit = self.known, self.load(1.0)
-        if not self._follows or known is None or known.load is None:
+        if not self._has_elements or known is None or known.elements is None:
             return None
-        if known.elements is None:
-            return None
-
-        def distance(found: ElementEquilibrium, size: float) -> float:
-            return self._judged(size, sampled_solution(found, size * unit)).margin
-
-        size = float(np.linalg.norm(known.load) / np.linalg.norm(unit))
         try:
-            found = followed_to(self.base, known.elements, size, LoadLimit(unit, distance), self.hand)
+            found = followed_to(self.base, known.elements, self._known_size, LoadLimit(unit, distance), self.hand)
             self.known = sampled_solution(clear_of_journal(found.positioned), found.size * unit)
         except NoPointsError as failure:
-            self.lost |= known.problem.bearing_number != self.base.bearing_number
             current_run().note("limit", outcome=str(failure))
             return None
         return self._judged(found.size, self.known)
+
+    @property
+    def _has_elements(self) -> bool:
+        """Whether contact points or asperities under a load are known, and followed by themselves."""
+        known = self.known
+        return self._follows and known is not None and known.load is not None and known.elements is not None
+
+    @property
+    def _known_size(self) -> float:
+        """Size of the load of the known balance [N]; nan without one."""
+        if self.known is None or self.known.load is None:
+            return math.nan
+        return float(np.linalg.norm(self.known.load) / np.linalg.norm(self.load(1.0)))
 
     def _followed(self, size: float) -> Loaded | None:
         """The balance under a load [N] whose contact points are followed from the known one; None if they are lost."""

@@ -209,9 +209,9 @@ class LoadLimit:
         force = scaled_force(at.equations, at.size * self.direction)
         return max(largest(at.equations), float(np.max(np.abs(force))))
 
-    def along(self, at: LoadedState, distance: float, change: StateChange) -> float:
-        """Derivative of the distance, which is known at the state, along a change of unknowns and position."""
-        return (self.of(at.moved(change, length=PROBE)) - distance) / PROBE
+    def along(self, at: LoadedState, distance: float, change: StateChange, more: float = 0.0) -> float:
+        """Derivative of the distance, which is known at the state, along a change of unknowns, position and load."""
+        return (self.of(at.moved(change, more, PROBE)) - distance) / PROBE
 
 
 @dataclass(frozen=True)
@@ -264,7 +264,7 @@ class LimitTangent:
         tangent = ElementTangent.of(at.equations, load, factor)
         move = np.asarray(np.linalg.solve(tangent.gradient, -load), dtype=np.float64)
         by_load = tangent.units @ move, move
-        slope = limit.along(at, distance, by_load)
+        slope = limit.along(at, distance, by_load, 1.0)
         if not slope < 0.0:
             raise NoPointsError("more load does not lead nearer to the limit")
         return cls(tangent, by_load, slope)
