@@ -3,7 +3,7 @@
 On the central path `F(x) = G^T lam`, `g(x) = s` and `lam s = mu w`. It begins at a single point for a large barrier
 `mu`, stays bounded, and so leads to an answer as `mu -> 0`; but it may turn back in `mu` on the way, and there an
 interior point, which only lowers `mu`, fails. Keller's continuation by arc length (1977) takes `mu` as an unknown and
-passes.
+passes. Which way leads ahead is told by the determinant, so that the path is never taken for its way back (P8).
 
 Slacks and reactions are one variable `z = lam / w - s` each: `s`, `lam / w` are `(sqrt(z^2 + 4 mu) -+ z) / 2`, smooth
 and positive for every `z`, and their product is `mu`. Contacts may so open and close within a step.
@@ -204,12 +204,17 @@ def unit(tangent: Change, direction: float, options: PathOptions) -> Change:
 def advance(
     point: PathPoint, ahead: Change, step: float, options: PathOptions
 ) -> tuple[PathPoint, Change, float] | None:
-    """The next point, its tangent and the next step; None if no step leads on."""
+    """The next point, its tangent and the next step; None if no step leads on.
+
+    The determinant of Newton's matrix changes its sign where `ln mu` turns back, and nowhere else. So it tells the way
+    ahead also where a step has leapt to another part of a folded path (P8).
+    """
+    way = np.sign(ahead.t) * point.factor.determinant_sign
     while step >= options.shortest:
         reached, corrections = correct(point, ahead, step, options)
         if reached is not None:
             tangent = reached.tangent()
-            forward = unit(tangent, 1.0 if ahead.along(tangent, options.weight) > 0.0 else -1.0, options)
+            forward = unit(tangent, way * reached.factor.determinant_sign, options)
             if ahead.along(forward, options.weight) > options.aligned or step < options.unavoidable:
                 grow = options.longer if corrections <= options.few else 1.0
                 shrink = options.shorter if corrections >= options.many else 1.0
@@ -229,7 +234,10 @@ def correct(point: PathPoint, ahead: Change, step: float, options: PathOptions) 
             return None, count
         if trial.residual <= options.tolerance:
             return trial, count
-        newton, tangent = trial.newton(), trial.tangent()
+        try:
+            newton, tangent = trial.newton(), trial.tangent()
+        except SingularMatrixError:
+            return None, count
         gone = Change(trial.x - point.x, trial.z - point.z, trial.t - point.t)
         missing = step - ahead.along(gone, options.weight) - ahead.along(newton, options.weight)
         share = float(np.clip(missing / ahead.along(tangent, options.weight), -LARGEST, LARGEST))

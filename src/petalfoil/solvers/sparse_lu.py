@@ -12,6 +12,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 from scipy.sparse import _sparsetools  # the loops behind `@`; SciPy has no public way to them
+from scipy.sparse.csgraph import connected_components
 
 from petalfoil.sparsity import Elimination, Order, postorder
 
@@ -57,6 +58,12 @@ class Factor:
         """Solve `M^T x = rhs`, rhs of shape (n,)."""
         self.counter.solves += 1
         return np.asarray(self.row * self.scaled(self.col * rhs, "T"))
+
+    @property
+    def determinant_sign(self) -> float:
+        """Sign of the determinant of `M`: scales are positive, an order of unknowns moves rows and columns alike."""
+        diagonal = np.sign(self.lu.U.diagonal())
+        return float(np.prod(diagonal)) * parity(self.lu.perm_r) * parity(self.lu.perm_c)
 
     def scaled(self, rhs: NDArray[Any], transposed: str = "N") -> NDArray[Any]:
         """Solve with the scaled matrix, or with its transpose ("T")."""
@@ -224,6 +231,14 @@ def trusted(scaled: Columns, factor: Factor) -> bool:
         return False
     size = scaled.magnitude.times(np.abs(x)) + np.abs(rhs)
     return bool(np.max(np.abs(scaled.times(x) - rhs) / size, initial=0.0) < BACKWARD_ERROR)
+
+
+def parity(order: NDArray[np.integer]) -> int:
+    """1 for an even permutation (n,), -1 for an odd one."""
+    n = len(order)
+    moves = sp.csr_array((np.ones(n), (np.arange(n), order)), shape=(n, n))
+    cycles, _ = connected_components(moves, directed=False)
+    return 1 if (n - cycles) % 2 == 0 else -1
 
 
 @lru_cache(maxsize=8)

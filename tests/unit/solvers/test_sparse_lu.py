@@ -5,7 +5,7 @@ import pytest
 import scipy.sparse as sp
 from numpy.testing import assert_allclose, assert_array_equal
 
-from petalfoil.solvers.sparse_lu import Columns, LinearSolver, SingularMatrixError, equilibrate
+from petalfoil.solvers.sparse_lu import Columns, LinearSolver, SingularMatrixError, equilibrate, parity
 
 
 def badly_scaled(n: int = 30) -> sp.csc_array:
@@ -67,3 +67,21 @@ def test_counts() -> None:
         solver.factor(sp.csc_array(sp.eye_array(n)))
     assert solver.counter.factorizations == 3
     assert solver.counter.largest == 5
+
+
+@pytest.mark.parametrize(
+    ("order", "even"), [([0, 1, 2], 1), ([1, 0, 2], -1), ([1, 2, 0], 1), ([3, 2, 1, 0], 1), ([], 1)]
+)
+def test_parity(order: list[int], even: int) -> None:
+    assert parity(np.array(order, dtype=int)) == even
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_sign_of_the_determinant(seed: int) -> None:
+    """Also with rows exchanged and in an order that is remembered."""
+    rng = np.random.default_rng(seed)
+    dense = np.where(rng.random((9, 9)) < 0.4, rng.standard_normal((9, 9)), 0.0) + np.diag(rng.standard_normal(9))
+    solver, signs = LinearSolver(), []
+    for _ in range(3):
+        signs.append(solver.factor(sp.csc_array(dense), solver.elimination("one kind")).determinant_sign)
+    assert signs == [np.sign(np.linalg.det(dense))] * 3
