@@ -36,7 +36,7 @@ GIVEN = {
     "| | value | |": "what the paper prints, what is assumed",
     "| searched | from | to |": "ranges that were chosen",
     "| path | estimate | |": "estimates, each with its formula",
-    "| bearing | length over journal radius | lengthened up to | beyond |": "what refusals told, each of one command",
+    "| bearing | petals | steps along the path | times that it turns | processor time |": "what one long test follows",
     "| | petal bearing of the paper | test rig of the paper | single-pad bump foil | measured bump foil |": (
         "what publications print; a test below compares the last row with the page"
     ),

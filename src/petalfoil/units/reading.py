@@ -87,6 +87,7 @@ def parse_pair(text: str, unit: str) -> tuple[float, float]:
     if len(parts) != 2:
         _, example = _measure(unit)
         raise UsageError(f"{shown(text)} is not a pair of quantities; write two, such as '{example}, {example}'")
+    _refuse_mixed(text, parts, unit)
     return parse_quantity(parts[0], unit), parse_quantity(parts[1], unit)
 
 
@@ -105,15 +106,19 @@ def parse_range(text: str, unit: str, *, whirl: bool = False) -> list[float]:
     Raises
     ------
     UsageError
-        The text has another form, or the count is no whole number from 2 to `MAX_POINTS`.
+        The text has another form, some of its quantities have a unit and others none, or the count is no whole number
+        from 2 to `MAX_POINTS`.
     UnitError
         One of the quantities cannot be read.
     """
     if ":" not in text:
-        return [parse_quantity(part, unit, whirl=whirl) for part in _split(text, unit)]
+        listed = _split(text, unit)
+        _refuse_mixed(text, listed, unit)
+        return [parse_quantity(part, unit, whirl=whirl) for part in listed]
     parts = text.split(":")
     if len(parts) != 3:
         raise UsageError(f"{shown(text)} is not a range; write start : stop : count, such as '0 um : 280 um : 15'")
+    _refuse_mixed(text, parts[:2], unit)
     start, stop = (parse_quantity(part, unit, whirl=whirl) for part in parts[:2])
     count = _count(parts[2].strip(), text)
     return [start + (stop - start) * i / (count - 1) for i in range(count - 1)] + [stop]
@@ -170,6 +175,17 @@ def _split(text: str, unit: str) -> list[str]:
                 f"or in a list write a unit with each quantity, such as '{example}, {example}'"
             )
     return parts
+
+
+def _refuse_mixed(text: str, parts: list[str], unit: str) -> None:
+    """A unit after the last number alone may be meant for all: ``"20000, 30000 rpm"`` is not 20000 rad/s."""
+    bare = [part.strip() for part in parts if is_bare(part) and float(_plain(part)) != 0.0]
+    if bare and unit != "1" and not all(map(is_bare, parts)):
+        _, example = _measure(unit)
+        raise UsageError(
+            f"{shown(text)} has a unit with some of its numbers and none with {shown(bare[0])}, which would be read in "
+            f"{unit}; write a unit with each quantity, such as '{example}, {example}'"
+        )
 
 
 def _count(text: str, whole: str) -> int:

@@ -185,6 +185,25 @@ def test_a_decimal_comma_is_no_list(text: str) -> None:
             parse(text, "m")
 
 
+@pytest.mark.parametrize("text", ["20000, 30000 rpm", "20000 rpm, 30000", "20000, 30000, 40000 rpm", "−20000, 3 rpm"])
+def test_a_unit_with_some_numbers_of_a_list_is_refused(text: str) -> None:
+    """It may be meant for all: 20000 would else be rad/s."""
+    with pytest.raises(UsageError, match=r"none with '.?[23]0000'") as refused:
+        parse_range(text, "rad/s")
+    assert "would be read in rad/s; write a unit with each quantity" in str(refused.value)
+
+
+def test_a_unit_with_some_numbers_of_a_pair_or_a_range_is_refused() -> None:
+    with pytest.raises(UsageError, match="none with '20000'"):
+        parse_range("20000 : 60000 rpm : 5", "rad/s")
+    with pytest.raises(UsageError, match="none with '10'"):
+        parse_pair("10, -20 N", "N")
+    assert parse_pair("0, -20 N", "N") == (0.0, -20.0)
+    assert parse_range("0 : 4 um : 3", "m") == pytest.approx([0.0, 2e-6, 4e-6])
+    assert parse_range("10, 20", "rad/s") == [10.0, 20.0]
+    assert parse_range("0.1, 20 %", "1") == [0.1, 0.2]
+
+
 def test_a_list_without_blanks_is_a_list() -> None:
     assert parse_pair("1 um,2 um", "m") == (1e-6, 2e-6)
     assert parse_pair("0,-1 mm", "m") == (0.0, -1e-3)
