@@ -97,6 +97,8 @@ def drawn(number: int) -> tuple[Case, Arguments]:
         "levels": 2,
         "mass": rotor.mass,
         "min_film_thickness": 2.0 * case.surface.contact_film_thickness,
+        "vary": ["petals.thickness", "operation.speed"],
+        "contacts": case.model.contacts,
     }
 
 
@@ -108,7 +110,7 @@ GIVEN: dict[str, tuple[str, ...]] = {
     "curve": ("eccentricities",),
     "converge": ("levels",),
     "coefficients": ("load",),
-    "sensitivity": (),
+    "sensitivity": ("vary", "contacts"),
     "stability": ("load", "mass"),
     "liftoff": ("loads",),
     "runup": ("load", "to", "points"),
