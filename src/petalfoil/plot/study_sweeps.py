@@ -29,6 +29,8 @@ FAMILY = 6
 _LEVELS = 14
 _EDGE = 0.02
 """Where the hatching of cases without an answer begins, from 0 at their neighbours to 1: nearly at the neighbours."""
+_STACKED = 0.04
+"""Part of the height of a panel between the crosses of one line and the next."""
 _MATRIX = 6
 """Columns of a scatter matrix."""
 
@@ -95,10 +97,10 @@ def _lines(ds: xr.Dataset, names: tuple[str, ...]) -> Figure:
             label = _level(ds, family, number) if family else None
             y = in_unit(line, name, vertical)
             ax.plot(x[order], y[order], label=label, **look)
-            _mark_failed(ax, x[~line["converged"].values], str(look["color"]))
+            _mark_failed(ax, x[~line["converged"].values], number, str(look["color"]) if family else style.VERMILLION)
         style.dress(ax, horizontal.axis, style.folded(vertical.axis))
-    if family:
-        style.legend_below(axes[0], min(FAMILY, ds.sizes[family]))
+    if axes[0].get_legend_handles_labels()[1]:
+        style.legend_below(axes[0], FAMILY)
     return fig
 
 
@@ -107,11 +109,21 @@ def _level(ds: xr.Dataset, name: str, number: int) -> str:
     return f"{shown.name} {float(ds[name].values[number]) * shown.factor:.6g} {shown.unit}".strip()
 
 
-def _mark_failed(ax: Axes, x: Floats, colour: str) -> None:
-    """A cross on the lower edge for each case without an answer."""
+def _mark_failed(ax: Axes, x: Floats, number: int, colour: str) -> None:
+    """A cross where a case has no answer: on the upper edge of the panel, beyond it for further lines."""
     if x.size:
-        transform = ax.get_xaxis_transform()
-        ax.plot(x, np.full_like(x, 0.02), "x", color=colour, transform=transform, clip_on=False, markersize=7.0)
+        look: dict[str, Any] = {
+            "color": colour,
+            "markersize": 7.0,
+            "markeredgewidth": 2.0,
+            "clip_on": False,
+            "zorder": 5,
+        }
+        told = "no answer" in ax.get_legend_handles_labels()[1]
+        label = "_no answer" if told else "no answer"
+        ax.plot(
+            x, np.full_like(x, 1.0 + _STACKED * number), "x", label=label, transform=ax.get_xaxis_transform(), **look
+        )
 
 
 def _contours(ds: xr.Dataset, names: tuple[str, ...]) -> Figure:

@@ -22,6 +22,10 @@ _LENGTHS = ((1e-3, "µm", 1e6), (1.0, "mm", 1e3))
 _PRESSURES = ((1e4, "Pa", 1.0), (1e6, "kPa", 1e-3), (1e9, "MPa", 1e-6), (np.inf, "GPa", 1e-9))
 _FEW = 4
 """Results that a figure shows unless it is told which."""
+_SAME = 1e-6
+"""Relative difference below which two results are one: cases are solved to 1e-8."""
+_DERIVATIVES = ("liftoff_by_contact_film_thickness", "liftoff_by_contact_fraction")
+"""Results that a figure shows when it is told to."""
 
 
 def parameters(ds: xr.Dataset) -> list[str]:
@@ -64,10 +68,21 @@ def shown_results(ds: xr.Dataset, names: Sequence[str] = ()) -> list[str]:
     for name in names:
         if name not in ds.data_vars:
             raise UsageError(f"the study has no result {name!r}; it has {', '.join(_varying(ds)) or 'none'}")
-    found = list(names) or sorted(_varying(ds), key=_rank)[:_FEW]
+    found = list(names) or _told_once(ds, sorted(_varying(ds), key=_rank))[:_FEW]
     if not found:
         raise UsageError("no case of this study has a result that varies: there is nothing to draw")
     return found
+
+
+def _told_once(ds: xr.Dataset, names: Sequence[str]) -> list[str]:
+    """Results without those that repeat one before, such as a touchdown at the lift-off speed, and without derivatives."""
+    found: list[str] = []
+    for name in names:
+        values = ds[name].values
+        copies = (np.allclose(values, ds[other].values, rtol=_SAME, atol=0.0, equal_nan=True) for other in found)
+        if name not in _DERIVATIVES and not any(copies):
+            found.append(name)
+    return found or list(names)
 
 
 def of_cases(ds: xr.Dataset) -> xr.Dataset:
