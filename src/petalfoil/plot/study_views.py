@@ -75,7 +75,7 @@ def shown_results(ds: xr.Dataset, names: Sequence[str] = ()) -> list[str]:
 
 
 def _told_once(ds: xr.Dataset, names: Sequence[str]) -> list[str]:
-    """Results without those that repeat one before, such as a touchdown at the lift-off speed, and without derivatives."""
+    """Results but for derivatives and those that repeat one before, such as a touchdown at the lift-off speed."""
     found: list[str] = []
     for name in names:
         values = ds[name].values
