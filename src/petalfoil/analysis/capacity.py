@@ -14,11 +14,12 @@ from petalfoil.analysis.arguments import NumberWithUnit, Speed, Speeds, Whole
 from petalfoil.analysis.balance import carrier
 from petalfoil.analysis.capacity_search import CapacityRequest, CapacitySearch
 from petalfoil.analysis.classic_method import newton_only
+from petalfoil.analysis.crossings import CONTACT_FRACTION
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.fields import all_fields
 from petalfoil.analysis.friction_told import refuse_path
 from petalfoil.analysis.heat_results import heat_results
-from petalfoil.analysis.load_limit import Capacity
+from petalfoil.analysis.load_limit import NONE_KEPT, Capacity
 from petalfoil.analysis.load_ray import Limits
 from petalfoil.analysis.operating_point import at
 from petalfoil.analysis.other_bearing import rotor_parts
@@ -32,6 +33,7 @@ from petalfoil.results.layout import ArrayTable, Series, SinglePoint, at_speed
 from petalfoil.results.parts import Branch, RunOutcome
 from petalfoil.results.record import Array, Record
 from petalfoil.results.variable import DataType, Role, TableLabel, Variable
+from petalfoil.units.writing import format_percent, format_quantity
 from petalfoil.walls import wall_kind
 
 DOWN = -math.pi / 2.0
@@ -97,6 +99,11 @@ RESULTS = {
     "capacity_over_direction": Variable(
         ("load_orientation",), "N", "load capacity in each direction; nan where none was found", "W_c"
     ),
+    "film_under_smallest_load": Variable(
+        ("load_orientation",), "m",
+        "minimum film thickness under the smallest load in each direction that has no load capacity; else nan", "h_0",
+        role=Role.BOOKKEEPING,
+    ),
 }  # fmt: skip
 COLUMNS = {
     "speed": "speed",
@@ -108,14 +115,22 @@ COLUMNS = {
     "least_load_capacity": "least",
     "least_capacity_direction": "in\ndirection",
 }
+
+
+def of_direction(record: Record, name: str, k: int) -> float:
+    """An array over the direction at an index; nan where a stored result does not have it."""
+    return float(record.fields[name][k]) if name in record.fields else math.nan
+
+
 TABLE = ArrayTable(
     dim="load_orientation",
     columns={
         "direction\ndeg": lambda record, k: math.degrees(float(record.coords["load_orientation"][k])),
         "load capacity\nN": lambda record, k: float(record.fields["capacity_over_direction"][k]),
+        "film under the\nsmallest load µm": lambda record, k: 1e6 * of_direction(record, "film_under_smallest_load", k),
     },
 )
-OVER = ("load_orientation", "capacity_over_direction")
+OVER = ("load_orientation", "capacity_over_direction", "film_under_smallest_load")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -202,7 +217,7 @@ def capacity(  # noqa: PLR0913 - the options of the verb
     if speeds is None:
         with running(progress, "capacity") as run:
             record = point(search, turn[0])
-            if not record.converged:
+            if not record.converged and len(search.asked.directions) == 1:
                 raise ConvergenceError(str(record.scalars["status"]), history=run.history, advice=ADVICE)
             return record
     return Points(partial(_points, search, turn, progress), len(turn))
@@ -268,7 +283,9 @@ def point(search: CapacitySearch, speed: float) -> Record:
             Least(least_load_capacity=float(over[least]), least_capacity_direction=float(asked.directions[least])),
         )
     if first.at is None:
-        ended = RunOutcome(converged=False, status=f"not converged: {first.status}", residual=math.nan)
+        ended = RunOutcome(
+            converged=False, status=f"not converged: {why_none(search, speed, first)}", residual=math.nan
+        )
         parts += (asked_position(here), ended)
     else:
         parts += (
@@ -279,9 +296,36 @@ def point(search: CapacitySearch, speed: float) -> Record:
         "capacity",
         here,
         *parts,
-        fields={"capacity_over_direction": over},
+        fields={"capacity_over_direction": over, "film_under_smallest_load": np.array([thin(one) for one in found])},
         coords={"load_orientation": asked.directions},
     )
+
+
+def thin(found: Capacity) -> float:
+    """Minimum film thickness under the smallest load [m]; nan where a load keeps to the limits, or without balance."""
+    return math.nan if found.smallest is None else found.smallest.found.film().min_film_thickness
+
+
+def why_none(search: CapacitySearch, speed: float, found: Capacity) -> str:
+    """Why no load is carried, with the result that is beyond its limit under the smallest one."""
+    if (smallest := found.smallest) is None:
+        return found.status
+    limits, fraction = search.asked.limits, smallest.found.contact_fraction
+    beyond = {
+        "min_film_thickness": (thin(found), "<", limits.min_film_thickness, "m"),
+        "contact_fraction": (fraction, ">", limits.contact_fraction, "1"),
+    }
+    told = f"{smallest.limit} is beyond its limit at the smallest load"
+    if smallest.limit in beyond:
+        value, sign, limit, unit = beyond[smallest.limit]
+        told = f"{smallest.limit} at the smallest load: {in_unit(value, unit)} {sign} {in_unit(limit, unit)}"
+    aground = f"; not lifted off at {speed * 30.0 / math.pi:.0f} rpm" if fraction > CONTACT_FRACTION else ""
+    return f"{NONE_KEPT}: {told}{aground}"
+
+
+def in_unit(value: float | None, unit: str) -> str:
+    """A result with its unit in words; a fraction in per cent."""
+    return format_percent(value or 0.0) if unit == "1" else format_quantity(float(f"{value:.3g}"), unit)
 
 
 def carried(case: Case, capacity: Capacity) -> tuple[object, ...]:

@@ -13,17 +13,21 @@ from petalfoil.equilibrium.solution import Solution
 
 @dataclass(frozen=True)
 class ContactModel:
-    """Where contacts are, and how far the force is from that with contacts at nodes; None where the wall has none."""
+    """Where contacts are, and how far the force is from that with contacts at nodes; None where the wall has none.
+
+    `bottomed_out` is True of a pack that is, else None.
+    """
 
     contact_model: str | None
     nodal_force_difference: float | None = None
+    bottomed_out: bool | None = None
 
     @classmethod
     def of(cls, answer: Solution) -> ContactModel:
         """Those of an equilibrium."""
         if not answer.problem.layout.n_wall:
             return cls(None)
-        return cls(answer.contact_model, answer.nodal_force_difference)
+        return cls(answer.contact_model, answer.nodal_force_difference, answer.bottomed_out or None)
 
     @classmethod
     def of_motion(cls, motion: JournalMotion) -> ContactModel:

@@ -9,7 +9,7 @@ next, bearings with contact points take the load as one more unknown instead (C1
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from petalfoil.analysis.load_ray import BOTTOMED_OUT, LEAST, MOST, NO_BALANCE, Loaded, LoadRay
 from petalfoil.equilibrium.at_limit import REACHED
@@ -49,11 +49,14 @@ class Capacity:
         ``"converged"``, or what bounds the load instead of a limit.
     sought_anew : bool
         Whether it could not be followed from the speed before.
+    smallest : Loaded or None
+        The balance under the smallest load, which does not keep to the limits; None where one keeps to them.
     """
 
     at: Loaded | None
     status: str = "converged"
     sought_anew: bool = False
+    smallest: Loaded | None = None
 
 
 def largest_load(ray: LoadRay, guess: float) -> Capacity:
@@ -81,7 +84,7 @@ def largest_load(ray: LoadRay, guess: float) -> Capacity:
             beyond = size
             reason = here if isinstance(here, str) else f"{here.limit} {IN_A_JUMP}"
         if ended := bounded(ray, kept, (beyond, reason)):
-            return ended
+            return replace(ended, smallest=here) if ended.at is None and isinstance(here, Loaded) else ended
         size = following(ray, (last, here), kept, beyond)
         last = here if isinstance(here, Loaded) else last
         if kept is not None:  # beyond the limit, another branch may go on below it

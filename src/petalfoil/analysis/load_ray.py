@@ -183,7 +183,7 @@ class LoadRay:
             return NO_BALANCE
         if answer is None:
             return NO_BALANCE
-        if answer.contacts is None:  # the interior point had the last word
+        if answer.bottomed_out or (answer.other is not None and answer.other.bottomed_out):
             return BOTTOMED_OUT
         if answer.other is None and (size <= LEAST * self.unit or self._judged(size, answer).margin > -CLEAR):
             answer = reported(self.case, answer, known)

@@ -34,9 +34,6 @@ centred, and the force is what the solution leaves."""
 WIDE = 0.1
 """Error bar over the result above which the result is known to its order of magnitude only."""
 
-BOTTOMED_OUT = ("bottomed out",)
-"""Words in the solution path of a foil pack that a load has closed to its solid height."""
-
 JUDGED = (
     *("bearing_force", "min_film_thickness", "peak_pressure", "friction_torque", "max_bending_stress"),
     *("critical_mass", "threshold_speed", "liftoff_speed", "starting_torque"),
@@ -53,9 +50,9 @@ def of_answer(case: Case, scalars: Scalars) -> Iterator[str]:
     yield from _contact(case, scalars)
     yield from _mixed_lubrication(case, scalars)
     yield from _pressed_bumps(case, scalars)
-    if any(words in str(scalars.get("solution_path", "")) for words in BOTTOMED_OUT):
+    if scalars.get("bottomed_out", False):
         yield (
-            "solution_path: the foil pack has bottomed out, journal, petals and bushing touch as a solid stack, whose "
+            "bottomed_out: the foil pack has bottomed out, journal, petals and bushing touch as a solid stack, whose "
             "own stiffness is not modelled; reduce the load, or enlarge the pack's clearance"
         )
     at_nodes = "at nodes" in str(scalars.get("contact_model", ""))

@@ -186,7 +186,7 @@ def warmed(known: Solution, network: HeatNetwork) -> Solution | None:
 def by_turns(known: Solution, network: HeatNetwork) -> Solution | None:
     """Temperatures of the equilibrium, then the equilibrium at these; None if that leads nowhere.
 
-    As soon as the pack is bottomed out no more, Newton's method goes on from there.
+    As soon as a contact set determines the pack, Newton's method goes on from there.
     """
     cold = known.problem.temperatures or network.cold
     found = replace(known, problem=known.problem.at(temperatures=cold))
@@ -248,13 +248,15 @@ def stiffness(found: Solution, network: HeatNetwork | None) -> Array:
     Raises
     ------
     ConvergenceError
-        The pack is bottomed out: its stiffness has no bound.
+        The pack is bottomed out: its stiffness has no bound. Or it is undecided which contacts are active.
     """
     if found.contacts is None:
         raise ConvergenceError(
-            "the journal is on a bottomed-out pack, whose stiffness has no bound",
+            "the journal is on a bottomed-out pack, whose stiffness has no bound"
+            if found.bottomed_out
+            else "no stiffness: it is undecided which contacts without force are active",
             history=current_run().history,
-            advice="lower the load on this bearing",
+            advice="lower the load on this bearing" if found.bottomed_out else "raise the load or the speed",
         )
     problem, last = found.problem, found.contacts.tangent
     border, resists = problem.border, np.zeros((problem.layout.n_position, problem.layout.n_position))

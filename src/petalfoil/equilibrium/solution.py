@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
@@ -167,6 +168,26 @@ class Solution:
         if self.friction is not None:
             return self.friction.active
         return self.lam / self.problem.weight > self.problem.gaps(self.x)
+
+    @property
+    def bottomed_out(self) -> bool:
+        """Whether active contacts chain the journal to the bushing, or to a held root, at one angle.
+
+        Such a pack is at its solid height there, and no contact set determines its reactions.
+        """
+        contacts, G = self.problem.layout.wall.contacts, self.problem.G
+        closed = self.active & (self.problem.gaps(self.x) <= RESIDUAL_TOLERANCE)
+        rows = np.flatnonzero(closed & (np.diff(G.indptr) > 0))
+        if not len(rows):
+            return False
+        journal, bushing = G.shape[1], G.shape[1] + 1
+        on_journal = np.zeros(len(closed), dtype=np.bool_)
+        on_journal[contacts.journal] = True
+        first, last = G.indices[G.indptr[rows]], G.indices[G.indptr[rows + 1] - 1]
+        other = np.where(first != last, last, np.where(on_journal[rows], journal, bushing))
+        chains = sp.coo_array((np.ones(len(rows)), (first, other)), shape=(bushing + 1, bushing + 1))
+        _, label = sp.csgraph.connected_components(chains, directed=False)
+        return bool(label[journal] == label[bushing])
 
     @property
     def case(self) -> Case:

@@ -4,7 +4,8 @@ From nothing through the interior point, with the position among its unknowns. F
 active contacts with the position bordered: one factorisation a step serves the state and every displacement.
 
 A foil pack that the load has bottomed out has three active contacts at one angle, between journal, petals and bushing,
-where two determine the third: no contact set determines the reactions. The interior point solves it all the same.
+where two determine the third: no contact set determines the reactions. The interior point solves it all the same, and
+packs too where it is undecided which of many contacts without force are active.
 """
 
 from __future__ import annotations
@@ -142,7 +143,7 @@ def through_interior(problem: CoupledProblem, start: PrimalDualPoint, load: Arra
         balance = newton(moved, (x, active), load)
         if balance is not None:
             return balance
-    return bottomed_out(whole, point)
+    return of_interior(whole, point)
 
 
 # ---------------------------------------------------------------------------------------------- from a neighbour
@@ -264,28 +265,29 @@ def polished(problem: CoupledProblem, contacts: ActiveContacts, load: Array) -> 
     return best
 
 
-# ---------------------------------------------------------------------------------------------- bottomed out
+# ---------------------------------------------------------------------------------------------- without contact set
 
-BOTTOMED_GOALS = (1e-13, 1e-14, 1e-15, 1e-16)
-"""Barriers that a bottomed-out pack is followed to: pairs off the path need decades more than their mean."""
+LAST_GOALS = (1e-13, 1e-14, 1e-15, 1e-16)
+"""Barriers that the interior point's own solution is followed to: pairs off the path need decades more than that."""
 
-BOTTOMED_STEPS = InteriorOptions(max_steps=4)
+LAST_STEPS = InteriorOptions(max_steps=4)
 """Newton's answer loses digits at such barriers: more steps gain nothing."""
 
 BOTTOMED_OUT = "interior point; the pack is bottomed out between journal and bushing"
-"""How such a solution was reached."""
+UNDECIDED = "interior point; undecided which contacts without force are active"
+"""How such a solution was reached, by what it is."""
 
 
-def bottomed_out(whole: LoadedProblem, point: PrimalDualPoint) -> Solution | None:
+def of_interior(whole: LoadedProblem, point: PrimalDualPoint) -> Solution | None:
     """The interior point's own solution: it goes on from `point` until gap or reaction of every pair has vanished."""
     run = current_run()
-    look = run.watch("bottomed out", lambda step: False)
+    look = run.watch("without contact set", lambda step: False)
 
     def finished(at: PrimalDualPoint, step: InteriorStep) -> bool:
         return look(at, step) or without_slacks(whole, at).residual <= RESIDUAL_TOLERANCE
 
-    for goal in BOTTOMED_GOALS:
-        options = replace(BOTTOMED_STEPS, least_barrier=goal)
+    for goal in LAST_GOALS:
+        options = replace(LAST_STEPS, least_barrier=goal)
         point, found = interior_point(whole, point, run.film_solver, options, finished)
         if found:
             return without_slacks(whole, point)
@@ -295,4 +297,5 @@ def bottomed_out(whole: LoadedProblem, point: PrimalDualPoint) -> Solution | Non
 def without_slacks(whole: LoadedProblem, point: PrimalDualPoint) -> Solution:
     """The state of `point`, its slacks dropped."""
     problem, x = whole.split(point.x)
-    return replace(unrefined(problem, x, point.lam, BOTTOMED_OUT), load=whole.load)
+    found = unrefined(problem, x, point.lam, UNDECIDED)
+    return replace(found, load=whole.load, solution_path=BOTTOMED_OUT if found.bottomed_out else UNDECIDED)

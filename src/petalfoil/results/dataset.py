@@ -28,6 +28,10 @@ RAGGED = ("contact",)
 _POINT = {"long_name": "number of the point along the curve", "units": "1"}
 
 
+ALWAYS_KEPT = (Role.GEOMETRY, Role.BOOKKEEPING)
+"""Fields of these roles are kept of a state that did not converge too."""
+
+
 def to_dataset(record: Record) -> xr.Dataset:
     """Label one record.
 
@@ -43,7 +47,7 @@ def to_dataset(record: Record) -> xr.Dataset:
     """
     variables = {name: _labelled(SCALARS[name], value) for name, value in record.reported().items()}
     for name, values in record.fields.items():
-        if record.converged or FIELDS[name].role is Role.GEOMETRY:
+        if record.converged or FIELDS[name].role in ALWAYS_KEPT:
             variables[name] = _labelled(FIELDS[name], values)
     attributes = _attributes(record, record.analysis, _plain_history(record))
     return xr.Dataset(variables, coords=_coordinates(record.coords), attrs=attributes)
@@ -134,7 +138,8 @@ def _curve_fields(records: Sequence[Record], coords: Mapping[str, Array]) -> dic
             variables[name] = _labelled(variable, holder.fields[name])
             continue
         nothing = np.full([len(coords[dim]) for dim in variable.dims], np.nan)
-        values = [record.fields.get(name, nothing) if record.converged else nothing for record in records]
+        kept = variable.role in ALWAYS_KEPT
+        values = [record.fields.get(name, nothing) if record.converged or kept else nothing for record in records]
         if variable.dims[0] in RAGGED:
             values = [np.concatenate([value, nothing[len(value) :]]) for value in values]
         variables[name] = _labelled(variable, np.stack(values), ("point", *variable.dims))

@@ -280,6 +280,7 @@ SCALARS: dict[str, Variable] = {
         "1", "difference of the force from that with contacts at nodes, over that force", "dF_n"
     ),
     "friction_path": _run("", "path that friction forces between petals are those of", "friction_path", DataType.STR),
+    "bottomed_out": _run("", "journal, petals and bushing touch at one angle", "bottomed_out", DataType.BOOL),
     "contact_model": _run("", "where contacts are", "contact_model", DataType.STR),
     "known_equilibria": _run("1", "equilibria known at this position", "N_eq", DataType.INT),
     "jump": _run("", "this point left the branch of the point before", "jump", DataType.BOOL),

@@ -171,11 +171,21 @@ def test_turning_the_load_is_turning_the_petals_back() -> None:
 
 
 def test_a_bearing_that_keeps_to_no_limit_says_so() -> None:
-    with pytest.raises(ConvergenceError, match="no load keeps to the limits: min_film_thickness"):
+    with pytest.raises(ConvergenceError, match="limits: min_film_thickness at the smallest load: 25 µm < 26 µm"):
         petalfoil.capacity(PLAIN, min_film_thickness=26e-6)
     series = petalfoil.capacity(PLAIN, min_film_thickness=26e-6, speeds=[1e3, 2e3])
     assert not series["converged"].any()
     assert np.all(np.isnan(series["capacity_over_direction"]))
+    assert np.allclose(series["film_under_smallest_load"], 25e-6, rtol=1e-3)
+
+
+def test_directions_without_any_load_are_told_with_their_films() -> None:
+    """A result with the films in place of an error; no pack is said to be bottomed out."""
+    none = petalfoil.capacity(case(**{"model.cells_per_pitch": 12}), min_film_thickness="90 um", orientations=2)
+    assert not none["converged"]
+    assert "min_film_thickness at the smallest load" in none["status"].item()
+    assert none["film_under_smallest_load"].shape == (2,)
+    assert np.all(none["film_under_smallest_load"] < 90e-6)
 
 
 @pytest.mark.slow

@@ -166,10 +166,10 @@ EVERY: dict[str, tuple[str, Callable[[], Told], Callable[[], Told]]] = {
         lambda: warnings_of(bumps(), {"max_deflection": 201e-6}),
         lambda: warnings_of(bumps(), {"max_deflection": 199e-6}),
     ),
-    "of_answer solution_path": (
-        "solution_path",
-        lambda: of(scalars={"solution_path": "the pack is bottomed out between journal and bushing"}),
-        lambda: of(scalars={"solution_path": "balanced with the load"}),
+    "of_answer bottomed_out": (
+        "bottomed_out",
+        lambda: of(scalars={"bottomed_out": True}),
+        lambda: of(scalars={"bottomed_out": False, "solution_path": "interior point"}),
     ),
     "of_answer contact_model": (
         "contact_model",

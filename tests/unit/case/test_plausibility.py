@@ -238,7 +238,7 @@ def test_a_foil_pack_that_has_bottomed_out_is_warned_of() -> None:
     one = case(PETALS, **{"model.cells_per_pitch": 16})
     contact, solid, nodes = warnings_of(one, scalars_of(petalfoil.balance(one, load=(0.0, -500.0))))
     assert contact.startswith("contact_fraction: ")
-    assert solid.startswith("solution_path: the foil pack has bottomed out")
+    assert solid.startswith("bottomed_out: the foil pack has bottomed out")
     assert nodes.startswith("contact_model: no equilibrium with contact points was found")
     assert warnings_of(one, scalars_of(petalfoil.balance(one, load=(0.0, -10.0)))) == []
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -34,6 +36,23 @@ def test_forces_balance_and_the_state_is_that_of_the_position(name: str) -> None
     again = solve_cold(found.problem)
     force = again.problem.journal_force(again.x, again.lam)
     assert_allclose(force, -load, atol=1e-6 * np.linalg.norm(load))
+
+
+def test_a_pack_is_bottomed_out_where_a_chain_of_contacts_is_closed_however_it_was_solved() -> None:
+    problem, newtons = start("petals")
+    light, heavy = (
+        balance_cold(problem, np.array([0.0, -size]) / problem.layout.scales.force) for size in (newtons, 400.0)
+    )
+    assert heavy.bottomed_out
+    assert "bottomed out" in heavy.solution_path
+    assert not light.bottomed_out
+    assert np.any(light.active)
+    assert not replace(light, contacts=None).bottomed_out  # the interior point had the last word
+    contacts = problem.layout.wall.contacts
+    for rows in (contacts.journal, contacts.petals):  # the last link is a petal on the root of the next
+        lam = heavy.lam.copy()
+        lam[rows] = 0.0
+        assert not replace(heavy, state=replace(heavy.state, lam=lam)).bottomed_out
 
 
 @pytest.mark.parametrize("name", ["petals", "plain"])
