@@ -18,17 +18,20 @@ from petalfoil.errors import UsageError
 if TYPE_CHECKING:
     from petalfoil.report.claims import Evidence
 
-Folder = Annotated[Path, typer.Option(metavar="FOLDER", help="Where page and data go; it is made if it is not there.")]
+Folder = Annotated[
+    Path,
+    typer.Option(metavar="FOLDER", help="Where page and data go: a new or an empty folder, or that of an earlier run."),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object in SI units.")]
 
 
-def reproduce(out: Folder = Path("report"), as_json: Json = False) -> None:
+def reproduce(out: Folder = Path("paper"), as_json: Json = False) -> None:
     """Compute the paper's Figures 6, 7 and 8 and its claims: a page and data.
 
     Three bearings with 6, 8 and 10 petals, 2-D and 3-D; a study of what
     the paper does not state. A few minutes on one core.
 
-    Example: petalfoil reproduce --out report
+    Example: petalfoil reproduce --out paper
     """
     with handled(as_json):
         check_folder(out)

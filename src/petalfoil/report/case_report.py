@@ -14,11 +14,14 @@ from petalfoil.equilibrium.run_context import new_run
 from petalfoil.errors import StoreError
 from petalfoil.report import case_page, pdf
 from petalfoil.report.case_results import Part, Progress, Request, compute
+from petalfoil.report.report_files import refuse_foreign
 from petalfoil.results.atomic import replacing
 from petalfoil.results.store import save
 
 PAGE, PRINTED, SUMMARY, CASE = "index.html", "report.pdf", "report.json", "case.toml"
 """Files of the report."""
+OWN = (CASE, SUMMARY, PAGE)
+"""Files by which a folder is known as that of a report of a case."""
 
 
 def report(request: Request, folder: Path, *, print_it: bool, progress: Progress) -> tuple[tuple[Part, ...], Path]:
@@ -27,10 +30,11 @@ def report(request: Request, folder: Path, *, print_it: bool, progress: Progress
     Raises
     ------
     UsageError
-        A PDF is asked for, and nothing on this machine prints.
+        A PDF is asked for, and nothing on this machine prints; or the folder holds other files.
     StoreError
         A file cannot be written.
     """
+    refuse_foreign(folder, OWN)
     if print_it:
         pdf.printer()
     started, date = new_run(), datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
@@ -70,7 +74,7 @@ def design_report(
     case : Case
         The bearing.
     folder : str or path
-        Where to; it is made if it is not there.
+        Where to; it is made if it is not there. An earlier report of a case in it is written anew.
     load : quantity or pair, optional
         Load on the rotor instead of the case's; a single value acts along -y.
     mass : quantity, optional
@@ -88,7 +92,8 @@ def design_report(
     Raises
     ------
     UnitError, UsageError
-        An argument cannot be read, or a PDF is asked for and nothing on this machine prints.
+        An argument cannot be read; a PDF is asked for and nothing on this machine prints; or the folder holds other
+        files.
     StoreError
         Something cannot be written.
     """

@@ -9,7 +9,7 @@ import math
 from pathlib import Path
 from typing import TypeAlias
 
-from petalfoil.errors import StoreError
+from petalfoil.errors import StoreError, UsageError
 from petalfoil.report import page_tables, paper_page
 from petalfoil.report.assumptions import AssumptionResult
 from petalfoil.report.claims import Evidence, claims
@@ -22,6 +22,31 @@ from petalfoil.results.summary import as_json
 Plain: TypeAlias = "float | int | str | bool | list[Plain] | dict[str, Plain] | None"
 
 PAGE, SUMMARY = "index.html", "report.json"
+SHEET = "figure8.csv"
+"""A file that the pages of the paper have and the report of a case has not."""
+
+
+def refuse_foreign(folder: Path, own: tuple[str, ...]) -> None:
+    """Refuse a folder with files, unless a report of the same kind wrote it: those are written anew.
+
+    Parameters
+    ----------
+    folder : Path
+        Where the report is to go.
+    own : tuple of str
+        Files by which a folder of this kind of report is known.
+
+    Raises
+    ------
+    UsageError
+        It holds something else.
+    """
+    if not folder.is_dir() or all((folder / name).is_file() for name in own):
+        return
+    others = sorted(path.name for path in folder.iterdir())
+    if others:
+        some = ", ".join(others[:3]) + (" …" if len(others) > 3 else "")
+        raise UsageError(f"{folder} holds other files ({some}): give a new folder or an empty one")
 
 
 def write(evidence: Evidence, folder: Path) -> Path:
@@ -35,7 +60,7 @@ def write(evidence: Evidence, folder: Path) -> Path:
     sheets = {
         "figure6_7_2d.csv": page_tables.profiles(evidence.reference_2d),
         "figure6_7_3d.csv": page_tables.profiles(evidence.reference_3d),
-        "figure8.csv": page_tables.characteristics(evidence),
+        SHEET: page_tables.characteristics(evidence),
         "assumptions.csv": page_tables.assumption_loads(evidence.assumptions),
     }
     curves = {f"{f.name}_n{c.count}.nc": c.dataset for f in evidence.families for c in f.curves}

@@ -11,7 +11,7 @@ from petalfoil.report.assumptions import CLAMPED, REFERENCE
 from petalfoil.report.claims import Evidence
 from petalfoil.report.interpretations import interpretations
 from petalfoil.report.load_characteristics import TANGENT, Progress, Scope, family_2d, family_3d
-from petalfoil.report.report_files import write
+from petalfoil.report.report_files import PAGE, SHEET, SUMMARY, refuse_foreign, write
 
 WORK_FRACTIONS = (0.05, 0.3, 0.07, 0.3, 0.24, 0.04)
 """Fractions of the computing time: four families, the assumptions, the grids."""
@@ -40,18 +40,25 @@ def run(scope: Scope | None = None, progress: Progress | None = None) -> Evidenc
 
 
 def report(folder: Path, scope: Scope | None = None, progress: Progress | None = None) -> tuple[Evidence, Path]:
-    """Compute all results and write them into `folder`; returns the results and the path of the page."""
+    """Compute all results and write them into `folder`; returns the results and the path of the page.
+
+    Raises
+    ------
+    UsageError
+        The folder holds other files.
+    """
+    refuse_foreign(folder, (SHEET, SUMMARY, PAGE))
     evidence = run(scope, progress)
     return evidence, write(evidence, folder)
 
 
-def reproduce(folder: str | os.PathLike[str] = "report", *, progress: Progress | None = None) -> Path:
+def reproduce(folder: str | os.PathLike[str] = "paper", *, progress: Progress | None = None) -> Path:
     """Compute the figures and claims of the paper, in 2-D and 3-D, and write a page with data.
 
     Parameters
     ----------
     folder : str or path
-        Where to; it is made if it is not there.
+        Where to; it is made if it is not there. Earlier pages of the paper in it are written anew.
     progress : callable, optional
         Called with the part done (0 to 1) and a text.
 
@@ -62,6 +69,8 @@ def reproduce(folder: str | os.PathLike[str] = "report", *, progress: Progress |
 
     Raises
     ------
+    UsageError
+        The folder holds other files.
     StoreError
         Something cannot be written.
     """

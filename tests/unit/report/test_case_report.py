@@ -15,8 +15,9 @@ import petalfoil
 from petalfoil.case import Case
 from petalfoil.cli.app import app
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.report import case_page, case_report, case_results, pdf
+from petalfoil.report import case_page, case_report, case_results, pdf, reproduce
 from petalfoil.report.case_results import Part, Request
+from petalfoil.report.report_files import refuse_foreign
 from petalfoil.results.store import load
 from tests.cases import EXAMPLES, case
 
@@ -144,3 +145,22 @@ def test_weasyprint_prints_where_there_is_no_browser(
     printed = (tmp_path / "report.pdf").read_bytes()
     assert printed.startswith(b"%PDF")
     assert len(printed) > 20_000  # its figures are in it
+
+
+def test_a_folder_of_others_is_refused_before_any_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is there stays: the pages of the paper and the report of a case do not write over each other."""
+    monkeypatch.setattr(case_report, "compute", lambda request, progress: pytest.fail("nothing is to be computed"))
+    monkeypatch.setattr(reproduce, "run", lambda scope, progress: pytest.fail("nothing is to be computed"))
+    case_file, of_paper, of_case = tmp_path / "small.toml", tmp_path / "paper", tmp_path / "report"
+    case_file.write_text(SMALL.to_toml(), encoding="utf-8")
+    for folder, names in ((of_paper, ("figure8.csv", "report.json", "index.html")), (of_case, case_report.OWN)):
+        folder.mkdir()
+        for name in names:
+            (folder / name).write_text("mine", encoding="utf-8")
+    for command in (["report", str(case_file), "--out", str(of_paper)], ["reproduce", "--out", str(of_case)]):
+        refused = CliRunner().invoke(app, command)
+        assert refused.exit_code == 2
+        assert "holds other files" in " ".join(refused.stderr.split())
+    assert (of_case / "case.toml").read_text(encoding="utf-8") == "mine"
+    refuse_foreign(of_case, case_report.OWN)  # an earlier report is written anew
+    refuse_foreign(tmp_path / "absent", case_report.OWN)
