@@ -154,7 +154,9 @@ def test_an_overload_is_answered_with_the_share_of_the_contacts(load: float) -> 
     record = balance.record(bearing, (0.0, -load))
     share = number(record, "contact_fraction")
     assert share > 0.1
-    assert record.scalars["carried_by"] == f"touching: solid contact carries {100.0 * share:.0f} %"
+    assert record.scalars["carried_by"].startswith(
+        f"touching: solid contact makes {100.0 * share:.0f} % of the normal forces"
+    )
     assert number(record, "force_residual") <= RESIDUAL
     assert kkt_residual(bearing, record) <= 1e-7
 

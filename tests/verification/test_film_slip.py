@@ -211,9 +211,11 @@ def test_check_tells_the_knudsen_number(plain: Case) -> None:
     scalars = check.record(plain).scalars
     assert scalars["mean_free_path"] == plain.gas.mean_free_path
     assert scalars["viscosity"] == plain.gas.viscosity
-    assert scalars["knudsen_number"] == pytest.approx(plain.gas.mean_free_path / 2.5e-6, rel=1e-9)
+    assert scalars["clearance_knudsen_number"] == pytest.approx(plain.gas.mean_free_path / 2.5e-6, rel=1e-9)
     petals = case("paper_n8", **{"model.cells_per_pitch": 8})
-    assert check.record(petals).scalars["knudsen_number"] == pytest.approx(petals.gas.mean_free_path / 1e-6, rel=1e-12)
+    on_petals = check.record(petals).scalars
+    assert on_petals["contact_knudsen_number"] == pytest.approx(petals.gas.mean_free_path / 1e-6, rel=1e-12)
+    assert not {"knudsen_number", "clearance_knudsen_number"} & {*on_petals}
 
 
 @pytest.mark.slow

@@ -47,7 +47,7 @@ def balance(
     """Find the position of the journal under a load.
 
     Results as from solve, at that position. A load that the film does not
-    carry alone is an answer too: "carried by" tells what solid contact carries.
+    carry alone is an answer too: "carried by" tells the part of solid contact.
     Under a moment about the bearing's centre the journal tilts as well. Of a
     rotor in two bearings (rotor.span) load and moment are those of the rotor.
 
@@ -83,4 +83,6 @@ def carrier(contact_fraction: float) -> CarriedBy:
     """What carries the load, in words."""
     if contact_fraction < ON_FILM:
         return CarriedBy("film")
-    return CarriedBy(f"touching: solid contact carries {100.0 * contact_fraction:.0f} %")
+    return CarriedBy(
+        f"touching: solid contact makes {100.0 * contact_fraction:.0f} % of the normal forces on the journal"
+    )

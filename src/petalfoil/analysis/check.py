@@ -30,7 +30,10 @@ class BearingNumbers:
     compressibility_number: float
     viscosity: float
     mean_free_path: float
-    knudsen_number: float
+    contact_knudsen_number: float | None
+    """None for a wall that does not rest on the journal."""
+    clearance_knudsen_number: float | None
+    """None for one that does."""
 
 
 @analysis(SinglePoint())
@@ -67,18 +70,18 @@ def check(case: Case) -> Record:
 def bearing_numbers(case: Case) -> BearingNumbers:
     """Numbers of any bearing.
 
-    Without a run the minimum film thickness is the radial clearance of a plain bearing, and at the least the contact
-    film thickness of a foil pack.
+    The thinnest film is the radial clearance of a plain bearing, and at the least the contact film thickness of a pack.
     """
     scales = Scales(case.bearing.clearance, case.gas.ambient_pressure, 1.0)
     number = scales.bearing_number(case.gas.viscosity, case.operation.speed, case.bearing.journal_radius)
     on_journal = wall_kind(case).can(Capability.PACK)
-    thinnest = case.surface.contact_film_thickness if on_journal else case.radial_clearance
+    path = case.gas.mean_free_path
     return BearingNumbers(
         radial_clearance=case.radial_clearance,
         pack_clearance=case.pack_clearance if math.isfinite(case.pack_clearance) else None,
         compressibility_number=number,
         viscosity=case.gas.viscosity,
-        mean_free_path=case.gas.mean_free_path,
-        knudsen_number=case.gas.mean_free_path / thinnest,
+        mean_free_path=path,
+        contact_knudsen_number=path / case.surface.contact_film_thickness if on_journal else None,
+        clearance_knudsen_number=None if on_journal else path / case.radial_clearance,
     )

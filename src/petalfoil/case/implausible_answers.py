@@ -21,8 +21,15 @@ equilibrium: in most packs it is below 1 %, in stiff clamped ones some per cent.
 MAX_KNUDSEN = 0.1
 """Mean free path over film thickness above which first-order slip no longer holds (Burgdorfer 1959)."""
 
+FILMS = {
+    "knudsen_number": "the minimum film thickness",
+    "contact_knudsen_number": "the contact film thickness",
+    "clearance_knudsen_number": "the radial clearance",
+}
+"""Knudsen numbers of results, and the lengths that they are based on."""
+
 MIN_CONTACT = 1e-3
-"""Fraction of the force on the journal that solid contact must carry to be called contact."""
+"""Part of the normal forces on the journal that solid contact must make to be called contact."""
 
 MIXED = 3.0
 """Minimum film thickness over contact film thickness below which peaks of the surfaces touch now and then: the film
@@ -44,7 +51,6 @@ JUDGED = (
 def of_answer(case: Case, scalars: Scalars) -> Iterator[str]:
     """Yield what is implausible about an answer, by its scalars; nothing without any."""
     yield from _stress(case, number(scalars, "max_bending_stress"))
-    yield from _rarefaction(case, number(scalars, "knudsen_number"))
     yield from _real_gas(case, scalars)
     yield from _warm_parts(case, scalars)
     yield from _contact(case, scalars)
@@ -112,25 +118,24 @@ def _warm_parts(case: Case, scalars: Scalars) -> Iterator[str]:
         )
 
 
-def _rarefaction(case: Case, knudsen: float) -> Iterator[str]:
-    if knudsen > MAX_KNUDSEN:
-        slip = (
-            "first-order slip"
-            if case.model.slip
-            else "without slip the film is too stiff: set model.slip = true, which"
-        )
-        yield (
-            f"knudsen_number: the mean free path is {knudsen:.2g} of the minimum film thickness, over {MAX_KNUDSEN:g}, "
-            f"where the gas is no continuum; {slip} holds up to there: take the film's force and damping as an estimate"
-        )
+def rarefaction(case: Case, scalars: Scalars) -> Iterator[str]:
+    """Yield what is to be said of a film that is no continuum."""
+    for name, length in FILMS.items():
+        if (knudsen := number(scalars, name)) > MAX_KNUDSEN:
+            slip = "" if case.model.slip else "set model.slip = true, without which the film is too stiff; "
+            yield (
+                f"{name}: the mean free path of the gas is {knudsen:.2g} times {length}, more than {MAX_KNUDSEN:g}, up "
+                f"to which slip at the walls describes the film; {slip}take force and damping as estimates"
+            )
 
 
 def _contact(case: Case, scalars: Scalars) -> Iterator[str]:
     fraction, speed = number(scalars, "contact_fraction"), number(scalars, "speed", case.operation.speed)
     if fraction > MIN_CONTACT and 0.0 < case.operation.speed <= speed:
         yield (
-            f"contact_fraction: at operating speed solid contact carries {format_percent(fraction)} of the force on "
-            "the journal: it would heat up, and wear, which is not modelled; reduce the load, or raise the speed"
+            f"contact_fraction: at operating speed solid contact makes {format_percent(fraction)} of the normal forces "
+            "that press on the journal (all around it: they may be larger than the load, and cancel): it would heat "
+            "up, and wear, which is not modelled; reduce the load, or raise the speed"
         )
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from petalfoil.case.definitions import Case
-from petalfoil.case.implausible_answers import Scalars, number, of_answer
+from petalfoil.case.implausible_answers import Scalars, number, of_answer, rarefaction
 from petalfoil.case.measured_shape import row_errors
 from petalfoil.case.petal_table import PetalTheory
 from petalfoil.case.sections import ModelKind
@@ -140,8 +140,9 @@ def _of_inputs(case: Case, scalars: Scalars) -> Iterator[str]:
     yield from CLEARANCE_RATIO.warning(case.bearing.clearance / case.bearing.journal_radius)
     yield from SLENDERNESS.warning(0.5 * case.bearing.length / case.bearing.journal_radius)
     yield from _surface_speed(case, number(scalars, "speed", case.operation.speed))
-    if not list(_unusual(case)):  # a density that is wrong would be told twice
+    if not list(_unusual(case)):  # a density or a mean free path that is wrong would be told twice
         yield from _turbulence(case, scalars)
+        yield from rarefaction(case, scalars)
     yield from _unbalance(case)
     yield from _petal_theory(case)
     if case.rotor is not None and case.rotor.inertia_is_estimated:

@@ -306,6 +306,10 @@ SCALARS: dict[str, Variable] = {
     ),
     "compressibility_number": _geometry("1", "compressibility number on the radial clearance", "Lambda"),
     "viscosity": _geometry("Pa s", "dynamic viscosity of the gas", "mu"),
+    "contact_knudsen_number": _geometry(
+        "1", "mean free path at ambient pressure over the contact film thickness", "Kn_c"
+    ),
+    "clearance_knudsen_number": _geometry("1", "mean free path at ambient pressure over the radial clearance", "Kn_C"),
     "mean_free_path": _geometry("m", "mean free path of the gas at ambient pressure", "lambda_a"),
     "foundation_stiffness": _geometry("Pa m-1", "pressure over deflection of a bump foil or of backing springs", "k_b"),
     "bending_stiffness": _geometry("N m", "bending stiffness of a petal per length", "D"),

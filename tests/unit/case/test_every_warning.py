@@ -135,7 +135,7 @@ EVERY: dict[str, tuple[str, Callable[[], Told], Callable[[], Told]]] = {
         lambda: of(scalars={"max_bending_stress": 2.01e9}),
         lambda: of(scalars={"max_bending_stress": 1.99e9}),
     ),
-    "_rarefaction": (
+    "rarefaction": (
         "knudsen_number",
         lambda: of(PLAIN, {"knudsen_number": 0.101}),
         lambda: of(PLAIN, {"knudsen_number": 0.099}),

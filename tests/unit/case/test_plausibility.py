@@ -162,6 +162,14 @@ def test_a_stated_yield_strength_replaces_the_limit() -> None:
     assert warnings_of(hard, {"max_bending_stress": 2.4e9}) == []
 
 
+def test_a_viscosity_that_is_wrong_is_told_once() -> None:
+    """18.5 cP in place of uPa s makes the mean free path a thousand times too long: that is no second fault."""
+    for name, words in (("knudsen_number", "minimum film"), ("contact_knudsen_number", "the contact film")):
+        assert words in only(warnings_of(case(PETALS), {name: 67.0}), name)
+        (told,) = warnings_of(case(PETALS, **{"gas.viscosity": "18.5 cP"}), {name: 67.0})
+        assert told.startswith("gas.viscosity: ")
+
+
 def test_slip_changes_the_advice() -> None:
     thin = {"knudsen_number": 0.3}
     assert "set model.slip = true" in only(warnings_of(case(PLAIN), thin), "knudsen_number")
@@ -230,7 +238,7 @@ def test_fourteen_gigapascals_are_warned_of() -> None:
     assert answer["min_film_thickness"] == pytest.approx(one.surface.contact_film_thickness, rel=1e-9)
     stress, contact, nodes = warnings_of(one, answer)
     assert stress.startswith("max_bending_stress: 14.")
-    assert contact.startswith("contact_fraction: at operating speed solid contact carries 99 %")
+    assert contact.startswith("contact_fraction: at operating speed solid contact makes 99 % of the normal forces")
     assert nodes.startswith("contact_model: no equilibrium with contact points was found")
 
 

@@ -50,7 +50,7 @@ class Loads:
             "load_x": 0.0,
             "load_y": -50.0,
             "force_residual": 1e-12,
-            "carried_by": "touching: solid contact carries 38 %",
+            "carried_by": "touching: solid contact makes 38 % of the normal forces on the journal",
         }
         return Record(analysis="balance", scalars=scalars(False, speed=100.0, **own), title=TITLE, case_toml=CASE)
 
@@ -176,8 +176,8 @@ def test_balance_leaves_the_load_to_the_case(cli, loads, case) -> None:
 def test_balance_json_and_table(cli, loads, case) -> None:
     answer = json.loads(cli("balance", case, "--json").stdout)
     assert (answer["load_x"], answer["load_y"], answer["force_residual"]) == (0.0, -50.0, 1e-12)
-    assert answer["carried_by"] == "touching: solid contact carries 38 %"
-    assert "touching: solid contact carries 38 %" in cli("balance", case).stdout
+    assert answer["carried_by"] == "touching: solid contact makes 38 % of the normal forces on the journal"
+    assert "touching: solid contact makes 38 % of the normal forces on the journal" in cli("balance", case).stdout
 
 
 def test_a_balance_that_is_not_found(cli, loads, case) -> None:
