@@ -165,7 +165,7 @@ def test_the_end_of_the_search_is_no_threshold() -> None:
     found = stability.record(safe, speed=2000.0 * RPM).scalars
     assert math.isnan(float(found["threshold_speed"]))
     assert "no threshold speed found up to" in str(found["status"])
-    assert "rpm (end of the search)" in str(found["status"])
+    assert "rpm (end of the search" in str(found["status"])
 
 
 # ---------------------------------------------------------------------------------------------- the motion

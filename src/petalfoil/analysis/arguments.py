@@ -335,7 +335,8 @@ Mass: TypeAlias = Annotated[
     float | None,
     NumberWithUnit(
         unit="kg",
-        help="Mass of the rotor: \"2 kg\", in two bearings all of it; by default the case's rotor's, or the load's.",
+        help='Mass that this one bearing carries: "2 kg"; with rotor.span that of the whole rotor in its two bearings. '
+        "By default rotor.mass of the case, else load over gravity.",
         above=0.0,
     ),
 ]

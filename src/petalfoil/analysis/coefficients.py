@@ -43,8 +43,8 @@ Frequencies = Annotated[
         option="frequency",
         also="frequencies",
         metavar="LIST",
-        help='Whirl frequencies: "600 Hz, 1200 Hz", or "0 Hz : 1500 Hz : 11"; by default the speed, for --ross dense '
-        "around half of every speed.",
+        help='Whirl frequencies: "600 Hz, 1200 Hz", or "0 Hz : 1500 Hz : 11"; by default the speed; with --ross '
+        "many, closest to each other near half of each speed, where bearings whirl.",
         whirl=True,
         at_least=0.0,
     ),
@@ -225,9 +225,9 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
     At the case's eccentricity, or under a load where one is given. Those of
     one bearing: of two (rotor.span) each carries half of the load. Force on
     the journal: dF = -(K + i W C) de for a whirl de exp(i W t). Petals with
-    friction stick, or rub in cycles of the --amplitude. Where contacts of the
-    slopes are at nodes and petals lie on each other along stretches,
-    stiffness is known to several per cent, small damping to half of it. With
+    friction stick, or rub in cycles of the --amplitude. Where the row
+    "contacts" says "at nodes" and petals lie on each other along a stretch,
+    stiffness is accurate to several per cent, a small damping to 50 %. With
     --tilt the slopes of the journal's axis and the moments about the
     bearing's centre are added.
 

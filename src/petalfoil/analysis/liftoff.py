@@ -89,8 +89,9 @@ def liftoff(
     """Find the speeds of lift-off and touchdown for each load along -y.
 
     The journal has lifted off where the contact fraction is below the limit.
-    Each speed is bracketed to 0.1 % and interpolated there. How it depends on
-    the limit and on the contact film thickness is given with it.
+    Each speed is bracketed to 0.1 % and interpolated there. "d ln lift-off /
+    d ln limit" and "... contact film" tell how it changes with the limit and
+    with the contact film thickness: 0.5 is 0.5 % of speed for 1 % of these.
 
     Example: petalfoil liftoff case.toml --load "46.4 N, 55.6 N" --plot liftoff.png
 

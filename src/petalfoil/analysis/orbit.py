@@ -151,8 +151,9 @@ def orbit(  # noqa: PLR0913 - the options of the verb
     force at the start; where petals.theory is inextensible it counts the
     turning of their faces only, about a sixtieth of the slip in the paper's
     bearing. With a heat network
-    (table heat) temperatures stay those of the balance where the motion begins,
-    of a start from rest those before it: a motion is shorter than a warm-up.
+    (table heat) temperatures do not change in a motion, which is much shorter
+    than a warm-up: they are those of the balance where it begins, and of a
+    run-up from rest those of the cold bearing.
 
     Example: petalfoil orbit case.toml --revolutions 60 --plot orbit.png
 

@@ -122,8 +122,8 @@ SolveMethod = Annotated[
     Choice(
         metavar="METHOD",
         words=("tangent", ADJOINT),
-        help="One solve for each parameter, which tells how far contacts hold too; adjoint: one for each result that "
-        "has one.",
+        help="How derivatives are solved for: tangent, one linear solve for each parameter, which also tells how far "
+        "contacts hold; adjoint, one for each result, quicker for many parameters.",
     ),
 ]
 
@@ -132,7 +132,8 @@ ContactPlaces = Annotated[
     Choice(
         metavar="PLACE",
         words=("points", "nodes"),
-        help="Contacts as points that travel between nodes; at nodes: exact for tiny changes on this grid.",
+        help="Where petals touch: points, which move between grid nodes as parameters change; or nodes of the grid, "
+        "where derivatives are those of tiny changes, in which no contact moves on to the next node.",
     ),
 ]
 
@@ -163,8 +164,10 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     """Tell how far a small change of each parameter moves a result.
 
     From exact derivatives of the equilibrium, through geometry, grid and
-    contacts: a table of parameters by their effect. "Contacts hold" is the
-    change up to which no contact begins or ends. With --samples the command
+    contacts: a table of parameters by their effect. The effect is derivative
+    times change. It is good for changes in which the same petals touch at
+    the same places: "contacts hold" tells up to which relative change they
+    do, by the same derivatives. With --samples the command
     finds Sobol' indices instead: petalfoil sensitivity --samples 256 --help.
 
     Example: petalfoil sensitivity case.toml --ask liftoff --load "20 N" --plot tornado.png

@@ -22,7 +22,7 @@ from petalfoil.analysis.rotor_on_bearings import RotorOnBearings, whole_length
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
 from petalfoil.analysis.speeds import SpeedLine
-from petalfoil.analysis.threshold import AtOwnSpeed, rotor_mass, threshold_speed
+from petalfoil.analysis.threshold import AtOwnSpeed, beyond_the_model, rotor_mass, threshold_speed
 from petalfoil.case import Case
 from petalfoil.dynamics.critical_mass import Whirl
 from petalfoil.dynamics.film_stability import leading_eigenvalue
@@ -95,7 +95,7 @@ class Campbell(Series):
 
 
 GRID = LoadSpeedGrid(
-    names=("critical_mass", "whirl_ratio", "contact_fraction", "eccentricity_x", "eccentricity_y", "status"),
+    names=("verdict", "critical_mass", "whirl_ratio", "contact_fraction", "eccentricity_x", "eccentricity_y", "status"),
     tables={
         "critical_mass": "critical mass [kg] over load and speed",
         "whirl_ratio": "whirl ratio over load and speed",
@@ -116,6 +116,27 @@ class RotorMass:
     """The rotor."""
 
     rotor_mass: float
+
+
+@dataclass(frozen=True)
+class RotorVerdict:
+    """Whether the rotor is stable, in words."""
+
+    verdict: str
+
+    @classmethod
+    def of(cls, case: Case, whirl: Whirl, mass: float) -> RotorVerdict:
+        """That of a rotor of `mass` [kg] at the case's speed; of any rotor where that is nan."""
+        critical = f"critical mass {whirl.mass:.4g} kg"
+        if math.isnan(mass):
+            beyond = {0.0: "unstable for any rotor mass", math.inf: "stable for any rotor mass"}
+            return cls(beyond.get(whirl.mass, f"a rotor is stable up to the {critical}"))
+        carried = f"mass of {mass:.4g} kg on this bearing" if case.bearings == 1 else f"rotor of {mass:.4g} kg"
+        if whirl.mass > mass:
+            return cls(f"{carried}: stable ({critical if math.isfinite(whirl.mass) else 'as for any mass'})")
+        rpm = whirl.ratio * case.operation.speed * 30.0 / math.pi
+        whirling = "" if math.isnan(rpm) else f", whirls at about {rpm:.0f} rpm"
+        return cls(f"{carried}: unstable{whirling} ({critical})")
 
 
 @dataclass(frozen=True)
@@ -151,11 +172,13 @@ def stability(  # noqa: PLR0913 - the options of the verb
     --speeds or --loads as a table over load and speed. Petals with friction
     stick, as in the smallest motions; with an --amplitude they rub: modes
     pass that amplitude, and a rotor of the critical mass whirls on with it.
-    Where contacts of the slopes are at nodes and petals lie on each other
-    along stretches, frequencies are known to several per cent, small damping
-    to half of it. Of a rotor in two bearings (rotor.span) load and masses are
-    those of the whole rotor, and it may tilt. With --speeds and --mass as a
-    Campbell diagram: natural modes over speed.
+    Where the row "contacts" says "at nodes" and petals lie on each other
+    along a stretch, frequencies are accurate to several per cent, a small
+    damping to 50 %. A case without rotor.span is one bearing, and masses are
+    what it carries; with it load and masses are those of the whole rotor in
+    two bearings, which may tilt. The participation of the rotor is near 1
+    where the rotor moves as on springs, and small where gas and petals do.
+    With --speeds and --mass as a Campbell diagram: natural modes over speed.
 
     Example: petalfoil stability case.toml --load "20 N" --mass "2 kg"
 
@@ -207,7 +230,10 @@ def point(
             threshold, ended = threshold_speed(rotor, load, AtOwnSpeed(found.answer, impedance.motion, whirl))
         else:
             threshold, ended = math.nan, AT_AMPLITUDE
+        if beyond := beyond_the_model(case, threshold):
+            ended = "; ".join(filter(None, (ended, f"threshold speed: {beyond}")))
         parts = (
+            *(() if amplitude is not None else (RotorVerdict.of(case, whirl, rotor.mass),)),
             RotorThreshold(rotor.mass, threshold),
             *(() if amplitude is None else (Amplitudes(amplitude),)),
             *whirl_parts(case, found, whirl, ended),
@@ -259,7 +285,8 @@ def _points(
                 try:
                     found, whirl, impedance = _followed(line, case, rotor)
                     contacts = ContactModel.of_motion(impedance.motion)
-                    parts = (*whirl_parts(case, found, whirl, ""), contacts, effort(run.seconds))
+                    told = RotorVerdict.of(case, whirl, rotor.mass)
+                    parts = (told, *whirl_parts(case, found, whirl, ""), contacts, effort(run.seconds))
                     record = record_of("stability", case, *parts)
                 except ConvergenceError as failure:
                     line.known = None
@@ -291,7 +318,8 @@ def _campbell(
                     found, whirl, impedance = _followed(line, case, rotor)
                 fields, _ = mode_fields(rotor.modes(impedance, speed), speed, tilts=case.bearings > 1)
                 contacts = ContactModel.of_motion(impedance.motion)
-                parts = (RotorMass(mass), *whirl_parts(case, found, whirl, ""), contacts, effort(run.seconds))
+                told = RotorMass(mass), RotorVerdict.of(case, whirl, mass)
+                parts = (*told, *whirl_parts(case, found, whirl, ""), contacts, effort(run.seconds))
                 coords: dict[str, Array] = {"mode": np.arange(1, BRANCHES + 1)}
                 placed = branches.placed(fields, speed)
                 record = record_of("stability", case, *parts, fields=dict(placed), coords=coords)

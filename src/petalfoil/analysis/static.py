@@ -71,8 +71,9 @@ def static(
     finish; Ctrl-C keeps what is finished, and --resume goes on from it.
 
     With friction between the petals (surface.petal_friction) each point
-    comes from the one before, the first from a thinner journal that grows
-    to its size (not with inextensible petals); --loop unloads and reloads it.
+    depends on those before it. Petals that slide along themselves are first
+    laid without friction round a thinner journal, which then grows to its
+    radius; --loop takes the journal back to the first point and out again.
 
     Example: petalfoil static case.toml --eccentricity "0 um : 280 um : 15"
 

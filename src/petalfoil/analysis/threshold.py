@@ -15,6 +15,7 @@ from petalfoil.analysis.operating_point import Vector, applied_load, at, operati
 from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
+from petalfoil.case.plausibility import MAX_MACH, surface_mach
 from petalfoil.dynamics.critical_mass import Whirl
 from petalfoil.dynamics.rotor_motion import GRAVITY
 from petalfoil.equilibrium.continuation import advance
@@ -90,8 +91,18 @@ def threshold_speed(rotor: RotorOnBearings, load: Vector | None, start: AtOwnSpe
         current_run().note("threshold", outcome=str(failure))
         return math.nan, f"no threshold speed: no operating point beyond {in_rpm(known)}"
     if here > 0.0:
-        return math.nan, f"no threshold speed found up to {in_rpm(known)} (end of the search)"
+        beyond = beyond_the_model(rotor.case, known)
+        ended = f"end of the search: {beyond}" if beyond else "end of the search"
+        return math.nan, f"no threshold speed found up to {in_rpm(known)} ({ended})"
     return math.nan, f"no threshold speed found down to {in_rpm(known)} (end of the search): it is unstable there"
+
+
+def beyond_the_model(case: Case, speed: float) -> str:
+    """What is said of a speed [rad/s] at which the gas is faster than the film's equations allow; else empty."""
+    mach = surface_mach(case, speed)
+    if not mach > MAX_MACH:
+        return ""
+    return f"the journal's surface moves at Mach {mach:.2g} there, and the film is modelled up to {MAX_MACH:g}"
 
 
 def neutral_speed(

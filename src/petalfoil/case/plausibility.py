@@ -188,9 +188,15 @@ def _unusual(case: Case) -> Iterator[str]:
             yield from next(filter(None, warnings), [])  # of unequal petals one is told
 
 
+def surface_mach(case: Case, speed: float) -> float:
+    """Mach number of the journal's surface at a speed [rad/s]."""
+    gas = case.gas
+    sound = math.sqrt(HEAT_CAPACITY_RATIO * gas.gas_constant * gas.temperature)
+    return speed * case.bearing.journal_radius / sound
+
+
 def _surface_speed(case: Case, speed: float) -> Iterator[str]:
-    gas, surface = case.gas, speed * case.bearing.journal_radius
-    mach = surface / math.sqrt(HEAT_CAPACITY_RATIO * gas.gas_constant * gas.temperature)
+    surface, mach = speed * case.bearing.journal_radius, surface_mach(case, speed)
     if mach > MAX_MACH:
         yield (
             f"operation.speed: the journal's surface moves at {surface:.4g} m/s, Mach {mach:.2g}, above {MAX_MACH:g}, "

@@ -22,7 +22,11 @@ LoadText = Annotated[
 ]
 MassText = Annotated[
     str | None,
-    typer.Option("--mass", metavar="QUANTITY", help="Mass of the rotor; by default the case's rotor's, or the load's."),
+    typer.Option(
+        "--mass",
+        metavar="QUANTITY",
+        help="Mass of the rotor; by default rotor.mass of the case, else load over gravity.",
+    ),
 ]
 Bars = Annotated[bool, typer.Option("--error/--no-error", help="Error bars, from the case's grid and two more.")]
 Pdf = Annotated[bool, typer.Option("--pdf", help="Print the page to report.pdf too, by a browser or WeasyPrint.")]

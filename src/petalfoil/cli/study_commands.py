@@ -54,7 +54,9 @@ MemoryLimit = Annotated[
 ]
 Fields = Annotated[bool, typer.Option("--fields", help="Write film and petals of each case too, one file a case.")]
 Anew = Annotated[bool, typer.Option("--anew", help="Replace another study in the folder.")]
-NEIGHBOURS_HELP = "Begin cases at the nearest solution where that is quicker: equal to 1e-9, not bit for bit."
+NEIGHBOURS_HELP = (
+    "Begin cases at the nearest solution where that is quicker: results differ by 1e-9 of themselves at most."
+)
 Neighbours = Annotated[bool, typer.Option("--neighbours", help=NEIGHBOURS_HELP)]
 Sample = Annotated[
     str,

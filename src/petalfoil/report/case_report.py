@@ -78,7 +78,7 @@ def design_report(
     load : quantity or pair, optional
         Load on the rotor instead of the case's; a single value acts along -y.
     mass : quantity, optional
-        Mass of the rotor; by default the case's rotor's, or the load's.
+        Mass of the rotor; by default rotor.mass of the case, else load over gravity.
     error : bool
         Whether results have error bars from a grid study.
     print_pdf : bool

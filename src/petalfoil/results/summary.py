@@ -44,6 +44,7 @@ _DEG = 180.0 / math.pi
 _RPM = 30.0 / math.pi
 
 _SHOWN: dict[str, TableLabel] = {
+    "verdict": TableLabel("stability"),
     "status": TableLabel("status"),
     "carried_by": TableLabel("carried by"),
     "speed": TableLabel("speed", "rpm", _RPM),
