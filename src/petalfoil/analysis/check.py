@@ -70,7 +70,7 @@ def check(case: Case) -> Record:
 def bearing_numbers(case: Case) -> BearingNumbers:
     """Numbers of any bearing.
 
-    The thinnest film is the radial clearance of a plain bearing, and at the least the contact film thickness of a pack.
+    The film is as thin as the radial clearance of a plain bearing, and in a pack at the least as the contact film.
     """
     scales = Scales(case.bearing.clearance, case.gas.ambient_pressure, 1.0)
     number = scales.bearing_number(case.gas.viscosity, case.operation.speed, case.bearing.journal_radius)

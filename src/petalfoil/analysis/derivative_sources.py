@@ -24,6 +24,7 @@ from petalfoil.analysis.liftoff import own_load
 from petalfoil.analysis.liftoff_derivatives import speed_derivatives
 from petalfoil.analysis.load_ray import Limits
 from petalfoil.analysis.operating_point import operating_point
+from petalfoil.analysis.parameter_change import Changes
 from petalfoil.analysis.response_derivatives import coefficient_results, stability_derivatives
 from petalfoil.analysis.sensitivity_table import ALL, Source
 from petalfoil.analysis.varied_case import VariedCase
@@ -48,8 +49,8 @@ class DerivativeRequest:
         Parameters.
     quantities : list of str
         Results.
-    step : float
-        Relative change of the parameters whose effect is told [1].
+    changes : Changes
+        Changes of the parameters whose effect is told.
     all_of_them : bool
         Whether the parameters are all that the case has, so that those without effect are left out.
     as_points : bool
@@ -73,7 +74,7 @@ class DerivativeRequest:
     verb: str
     paths: list[str]
     quantities: list[str]
-    step: float
+    changes: Changes
     all_of_them: bool
     as_points: bool
     contact_fraction: float

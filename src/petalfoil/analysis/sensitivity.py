@@ -28,6 +28,7 @@ from petalfoil.analysis.differentiable import (
 from petalfoil.analysis.friction_told import refuse_path
 from petalfoil.analysis.load_ray import Limits
 from petalfoil.analysis.operating_point import at
+from petalfoil.analysis.parameter_change import Changes, ParameterChanges
 from petalfoil.analysis.records import effort, failed_record, record_of
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.sensitivity_table import (
@@ -37,13 +38,14 @@ from petalfoil.analysis.sensitivity_table import (
     MODES,
     RESULTS,
     SensitivityLine,
+    SensitivityRow,
     lines_of,
     ordered,
     rounding_of,
 )
 from petalfoil.analysis.session import part
 from petalfoil.analysis.words import Choice, Names, known
-from petalfoil.case import Case
+from petalfoil.case import Case, parameter_of
 from petalfoil.equilibrium.run_context import Progress, RunContext, running
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.parts import AppliedLoad
@@ -89,14 +91,12 @@ AnyLimit = Annotated[
         below=1.0,
     ),
 ]
-RelativeStep = Annotated[
-    float,
-    NumberWithUnit(
-        unit="1",
-        metavar="FRACTION",
-        help="Relative change of each parameter, whose effect is printed.",
-        above=0.0,
-        at_most=1.0,
+Step = Annotated[
+    dict[str, float | str] | None,
+    ParameterChanges(
+        metavar="CHANGES",
+        help='Change of the parameters, whose effect is printed: "2 %", "5 um" for all lengths, or '
+        '"petals.thickness = 5 um, 2 %"; by default 1 %, of journal and bushing radius 1 % of the clearance.',
     ),
 ]
 
@@ -158,7 +158,7 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     mass: Mass = None,
     contacts: ContactPlaces = "points",
     method: SolveMethod = "tangent",
-    step: RelativeStep = 0.01,
+    step: Step = None,
     progress: Progress | None = None,
 ) -> Points:
     """Tell how far a small change of each parameter moves a result.
@@ -194,10 +194,11 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     limits = Limits(min_film_thickness=min_film_thickness, contact_fraction=contact_fraction, max_stress=max_stress)
     fraction = CONTACT_FRACTION if contact_fraction is None else contact_fraction
     asked = DerivativeRequest(
-        verb, paths, quantities, step, vary is None, contacts == "points", fraction, limits, direction,
+        verb, paths, quantities, Changes(step or {}), vary is None, contacts == "points", fraction, limits, direction,
         frequency, mass, method == ADJOINT, {"curve": displacements, "runup": speeds},
     )  # fmt: skip
     refuse_limits(there, asked)
+    asked.changes.check([parameter_of(there, path) for path in paths])
     most = len(ANSWERS) if ALL in quantities else len(quantities)
     points = points_of(there, asked)
     return Points(_points(points, asked, progress), len(paths) * most * len(points), "effects")
@@ -229,17 +230,31 @@ def _effects(
     sources = {name: there[name] for name in quantities}
     lines, before = [], solves_of(run)
     for number, path in enumerate(asked.paths, 1):
-        lines += lines_of(path, sources, asked.step)
+        lines += lines_of(path, sources, asked.changes)
         if progress is not None:
             progress(number / len(asked.paths), f"sensitivity: {path}")
     felt = [line for line in lines if not asked.all_of_them or is_felt(case, line)] or lines
     cost = effort(run.seconds), Solves(solves_of(run) - before)
     own = point.where, *state_of(case, asked.verb), *cost
-    records = [record_of("sensitivity", case, line.row, *own, line.outcome) for line in ordered(felt, quantities)]
+    records = [
+        doubted(record_of("sensitivity", case, line.row, *own, line.outcome), line.row)
+        for line in ordered(felt, quantities)
+    ]
     silent = {line.row.parameter: True for line in lines if line.row.parameter not in {f.row.parameter for f in felt}}
     if records and silent:
         records[-1] = replace(records[-1], remarks=(f"without effect: {', '.join(silent)}",))
     return records
+
+
+def doubted(record: Record, row: SensitivityRow) -> Record:
+    """The record with a warning where its effect is no estimate of what its change does."""
+    if not row.doubts:
+        return record
+    text = (
+        f"effect: of {row.parameter} ({row.change_text}) on {row.quantity} it is {'; '.join(row.doubts)}. Derivatives "
+        "tell small changes only; take a smaller --step, or solve the changed case"
+    )
+    return replace(record, warnings=(*record.warnings, text))
 
 
 @dataclass(frozen=True)

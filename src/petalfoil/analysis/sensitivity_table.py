@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from petalfoil.analysis.derivatives import Derivative, Results
+from petalfoil.analysis.parameter_change import Changes
 from petalfoil.analysis.varied_case import VariedCase
 from petalfoil.case import Case
-from petalfoil.case.parameters import Parameter
 from petalfoil.errors import ConvergenceError, DefinitionError, PetalfoilError
 from petalfoil.results.layout import Series
 from petalfoil.results.parts import RunOutcome
@@ -165,10 +165,24 @@ class SensitivityRow:
         return abs(self.effect) > max(least, rounding)
 
     @property
+    def doubts(self) -> list[str]:
+        """What is to be said of an effect that is no estimate of what the change does; nothing of a small one."""
+        doubts = []
+        if abs(self.relative_effect) > 1.0:
+            doubts.append("over 100 %: no estimate of so large a change")
+        held = self.contacts_hold * abs(self.parameter_value)
+        if held > 0.0 and abs(self.parameter_change) > FAR * held:
+            doubts.append(f"change {abs(self.parameter_change) / held:.2g} times that for which contacts hold")
+        return doubts
+
+    @property
     def parameter_size(self) -> float:
         """Magnitude of the parameter; its change where it is zero."""
         return abs(self.parameter_value) or abs(self.parameter_change)
 
+
+FAR = 10.0
+"""Change over that up to which contacts hold, past which an effect is said to be doubtful."""
 
 LOST = 100.0
 """Digits that a difference quotient loses of a result that is zero, as a factor."""
@@ -206,7 +220,7 @@ class SensitivityLine:
     outcome: RunOutcome
 
 
-def lines_of(path: str, sources: Mapping[str, Source], step: float) -> list[SensitivityLine]:
+def lines_of(path: str, sources: Mapping[str, Source], changes: Changes) -> list[SensitivityLine]:
     """The rows of one parameter for each result; where a result has no derivative, its row says why."""
     lines: list[SensitivityLine] = []
     done: dict[int, tuple[VariedCase, Derivative | PetalfoilError]] = {}
@@ -214,15 +228,13 @@ def lines_of(path: str, sources: Mapping[str, Source], step: float) -> list[Sens
         if id(source) not in done:
             done[id(source)] = along(source, source.variation(path))
         variation, found = done[id(source)]
-        row = asked_row(variation, (quantity, source.values[quantity]), step)
+        row = asked_row(variation, (quantity, source.values[quantity]), changes)
         if isinstance(found, PetalfoilError):
             lines.append(SensitivityLine(row, RunOutcome(converged=False, status=f"not converged: {found}")))
         else:
-            lines.append(
-                SensitivityLine(
-                    with_effect(row, found, variation), RunOutcome(status=in_words(found), residual=source.residual)
-                )
-            )
+            row = with_effect(row, found, variation)
+            status = "; ".join([in_words(found), *row.doubts])
+            lines.append(SensitivityLine(row, RunOutcome(status=status, residual=source.residual)))
     return lines
 
 
@@ -234,27 +246,22 @@ def along(source: Source, variation: VariedCase) -> tuple[VariedCase, Derivative
         return variation, failure
 
 
-def asked_row(variation: VariedCase, result: tuple[str, float], step: float) -> SensitivityRow:
+def asked_row(variation: VariedCase, result: tuple[str, float], changes: Changes) -> SensitivityRow:
     """What a row tells of its parameter and its result."""
     parameter, (quantity, value) = variation.parameter, result
     value = value if abs(value) > rounding_of(variation.case, quantity) else 0.0
-    change = step * (variation.value or variation.size)
+    change, in_words_of_change = changes.of(variation.case, parameter, variation.size)
     return SensitivityRow(
         parameter=parameter.path,
         parameter_text=format_quantity(variation.value, parameter.unit),
         parameter_value=variation.value,
         parameter_unit=parameter.unit,
         parameter_change=change,
-        change_text=change_text(parameter, change, step),
+        change_text=in_words_of_change,
         quantity=quantity,
         quantity_value=value,
         quantity_unit=SCALARS[quantity].units,
     )
-
-
-def change_text(parameter: Parameter, change: float, step: float) -> str:
-    """The change in words: relative, or absolute where the parameter is zero."""
-    return f"{100.0 * step:g} %" if parameter.value else f"+{format_quantity(change, parameter.unit)}"
 
 
 def with_effect(row: SensitivityRow, found: Derivative, variation: VariedCase) -> SensitivityRow:
