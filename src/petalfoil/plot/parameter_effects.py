@@ -15,6 +15,9 @@ from petalfoil.text import for_figure
 MOST_BARS = 20
 """Parameters of one panel: those of the largest effects."""
 
+FARTHEST = 5.0
+"""A bar longer than this, over the largest of the others, is cut there: its number tells how long it is."""
+
 BAR = 0.3
 """Height of a bar with its share of the panel [in]."""
 
@@ -51,7 +54,7 @@ def tornado(ds: xr.Dataset) -> Figure:
     axes = fig.subplots(len(names), 1, squeeze=False, gridspec_kw={"height_ratios": heights}).ravel()
     for ax, name, panel in zip(axes, names, panels, strict=True):
         _draw(ax, name, panel)
-    style.legend(axes[0], loc="lower right")
+    style.legend_below(axes[0], 2)
     style.set_title(fig, ds, "effect of small changes of the parameters", *_state(shown.isel(point=0)))
     return fig
 
@@ -68,11 +71,15 @@ def _state(ds: xr.Dataset) -> tuple[str, ...]:
 def _draw(ax: Axes, of: tuple[str, str], ds: xr.Dataset) -> None:
     name, place_text = of
     effect, opposite, unit = _effects(ds)
-    place = -np.arange(len(effect))
-    ax.barh(place, opposite, height=0.62, color=style.SKY, alpha=0.45, label="opposite change", gid="opposite")
-    ax.barh(place, effect, height=0.62, color=style.BLUE, label="change as stated", gid="effect")
-    for y, value, far in zip(place, effect, np.maximum(np.abs(effect), np.abs(opposite)), strict=True):
-        ax.annotate(f"{value:+.3g}", (far, y), (4, 0), textcoords="offset points", va="center", fontsize=style.TICK)
+    place, sizes = -np.arange(len(effect)), np.maximum(np.abs(effect), np.abs(opposite))
+    reach = _reach(sizes)
+    drawn = np.clip(opposite, -reach, reach), np.clip(effect, -reach, reach)
+    ax.barh(place, drawn[0], height=0.62, color=style.SKY, alpha=0.45, label="opposite change", gid="opposite")
+    ax.barh(place, drawn[1], height=0.62, color=style.BLUE, label="change as stated", gid="effect")
+    for y, value, size in zip(place, effect, sizes, strict=True):
+        text = f"{value:+.3g}".replace("-", "−") + (" (bar cut)" if size > reach else "")
+        far = min(size, reach), y
+        ax.annotate(text, far, (4, 0), textcoords="offset points", va="center", fontsize=style.TICK)
     changes = zip(ds["parameter"].values, ds["parameter_text"].values, ds["change_text"].values, strict=True)
     ax.set_yticks(place, [for_figure(f"{path} = {value}, {_signed(change)}") for path, value, change in changes])
     ax.axvline(0.0, color=style.GREY, linewidth=0.8)
@@ -80,8 +87,16 @@ def _draw(ax: Axes, of: tuple[str, str], ds: xr.Dataset) -> None:
     at = f" at {for_figure(place_text)}" if place_text else ""
     style.dress(ax, f"change of the {label}{at} [{unit}]")
     ax.grid(False, axis="y")
-    reach = max(float(np.max(np.abs(effect))), float(np.max(np.abs(opposite)))) or 1.0  # nothing has an effect
-    ax.set_xlim(-1.1 * reach, 1.25 * reach)
+    cut = bool(np.any(sizes > reach))
+    ax.set_xlim(-1.1 * reach, (1.55 if cut else 1.3) * reach)
+
+
+def _reach(sizes: Floats) -> float:
+    """Length of the longest bar that is drawn: one that is much longer than the others would hide them."""
+    longest, *others = np.sort(sizes)[::-1]
+    if others and others[0] > 0.0:
+        return float(min(longest, FARTHEST * others[0]))
+    return float(longest) or 1.0  # nothing has an effect
 
 
 def _effects(ds: xr.Dataset) -> tuple[Floats, Floats, str]:

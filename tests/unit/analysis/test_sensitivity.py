@@ -14,6 +14,7 @@ import petalfoil
 from petalfoil import plot
 from petalfoil.cli.app import app
 from petalfoil.errors import DefinitionError, UsageError
+from petalfoil.plot.parameter_effects import FARTHEST
 from tests.cases import EXAMPLES, case
 
 SMALL = case(**{"model.cells_per_pitch": 8})
@@ -64,6 +65,19 @@ def test_the_figure_has_a_panel_for_each_result(under_load: xr.Dataset) -> None:
     ]
     longest = max(bar.get_width() for bar in fig.axes[0].patches)
     assert_allclose(longest, 100.0 * np.abs(under_load["relative_effect"].values).max(), rtol=1e-12)
+
+
+def test_one_large_effect_does_not_hide_the_others(under_load: xr.Dataset) -> None:
+    """Its bar is cut, its number is whole; the legend covers no bar."""
+    film = under_load.isel(point=slice(0, 3)).copy(deep=True)
+    film["effect"][:] = np.array([-4.098, 0.3, 0.1]) * film["quantity_value"].values
+    ax = plot.tornado(film).axes[0]
+    assert max(abs(bar.get_width()) for bar in ax.patches) <= FARTHEST * 30.0 * (1.0 + 1e-12)
+    texts = [text.get_text() for text in ax.texts]
+    assert "−410 (bar cut)" in texts
+    assert "+30" in texts
+    assert ax.get_legend() is None
+    assert ax.figure.legends
 
 
 @pytest.mark.slow
