@@ -65,6 +65,7 @@ What they share:
 `tilted_journal.py`   one equilibrium, its journal free to tilt or held
 `campbell.py`          branches of natural modes over speed
 `threshold.py`         the speed at which a rotor becomes unstable
+`rotor_verdict.py`     whether a rotor is stable, in words
 `film_force.py`        film and petals for another program's integrator
 `release.py`           where a large motion begins
 `film_figures.py`      film, contacts and friction of one bearing in it

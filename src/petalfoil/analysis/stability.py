@@ -19,6 +19,7 @@ from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.operating_point import OperatingPoint, Vector, applied_load, at, operating_point
 from petalfoil.analysis.records import branch, effort, failed_record, record_of
 from petalfoil.analysis.rotor_on_bearings import RotorOnBearings, whole_length
+from petalfoil.analysis.rotor_verdict import MassMargin, RotorVerdict, is_stable
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
 from petalfoil.analysis.speeds import SpeedLine
@@ -75,6 +76,7 @@ CAMPBELL_TABLE = ArrayTable(
     dim="mode",
     columns={
         "speed\nrpm": lambda record, _: cell("speed", record.scalars["speed"]).value,
+        "rotor": lambda record, _: "stable" if is_stable(record) else "unstable",
         "branch": lambda record, k: str(int(record.coords["mode"][k])),
         **MODE_TABLE.columns,
         "critical speed\nrpm": lambda record, k: (
@@ -95,10 +97,14 @@ class Campbell(Series):
 
 
 GRID = LoadSpeedGrid(
-    names=("verdict", "critical_mass", "whirl_ratio", "contact_fraction", "eccentricity_x", "eccentricity_y", "status"),
+    names=(
+        *("verdict", "critical_mass", "whirl_ratio", "mass_margin"),
+        *("contact_fraction", "eccentricity_x", "eccentricity_y", "status"),
+    ),
     tables={
         "critical_mass": "critical mass [kg] over load and speed",
         "whirl_ratio": "whirl ratio over load and speed",
+        "mass_margin": "critical mass over the rotor's mass, over load and speed: unstable where below 1",
     },
 )
 
@@ -116,27 +122,6 @@ class RotorMass:
     """The rotor."""
 
     rotor_mass: float
-
-
-@dataclass(frozen=True)
-class RotorVerdict:
-    """Whether the rotor is stable, in words."""
-
-    verdict: str
-
-    @classmethod
-    def of(cls, case: Case, whirl: Whirl, mass: float) -> RotorVerdict:
-        """That of a rotor of `mass` [kg] at the case's speed; of any rotor where that is nan."""
-        critical = f"critical mass {whirl.mass:.4g} kg"
-        if math.isnan(mass):
-            beyond = {0.0: "unstable for any rotor mass", math.inf: "stable for any rotor mass"}
-            return cls(beyond.get(whirl.mass, f"a rotor is stable up to the {critical}"))
-        carried = f"mass of {mass:.4g} kg on this bearing" if case.bearings == 1 else f"rotor of {mass:.4g} kg"
-        if whirl.mass > mass:
-            return cls(f"{carried}: stable ({critical if math.isfinite(whirl.mass) else 'as for any mass'})")
-        rpm = whirl.ratio * case.operation.speed * 30.0 / math.pi
-        whirling = "" if math.isnan(rpm) else f", whirls at about {rpm:.0f} rpm"
-        return cls(f"{carried}: unstable{whirling} ({critical})")
 
 
 @dataclass(frozen=True)
@@ -233,10 +218,10 @@ def point(
         if beyond := beyond_the_model(case, threshold):
             ended = "; ".join(filter(None, (ended, f"threshold speed: {beyond}")))
         parts = (
-            *(() if amplitude is not None else (RotorVerdict.of(case, whirl, rotor.mass),)),
+            *(() if amplitude is not None else (RotorVerdict.of(case, whirl, rotor.mass, modes),)),
             RotorThreshold(rotor.mass, threshold),
             *(() if amplitude is None else (Amplitudes(amplitude),)),
-            *whirl_parts(case, found, whirl, ended),
+            *whirl_parts(case, found, whirl, ended, modes),
             ContactModel.of_motion(impedance.motion),
             effort(run.seconds),
         )
@@ -244,9 +229,16 @@ def point(
         return record_of("stability", case, *parts, fields=fields, coords=coords)
 
 
-def whirl_parts(case: Case, found: OperatingPoint, whirl: Whirl, ended: str) -> tuple[object, ...]:
-    """The state and its critical mass; what has no number is told by the status."""
+def whirl_parts(
+    case: Case, found: OperatingPoint, whirl: Whirl, ended: str, modes: Sequence[Mode] | None = None
+) -> tuple[object, ...]:
+    """The state and its critical mass; what has no number is told by the status.
+
+    Where no mass is critical, stability is the same for all: the rotor's own modes tell which.
+    """
     any_mass = {0.0: "whirls at half the speed at any speed and rotor mass", math.inf: "stable for any rotor mass"}
+    if any(mode.s.real > 0.0 for mode in modes or ()):
+        any_mass[math.inf] = "a mode grows, though no mass is critical"
     if ended == AT_AMPLITUDE:
         any_mass[math.inf] = "no whirl was found that goes on at the amplitude"
     remarks = ["converged", any_mass.get(whirl.mass, ""), ended]
@@ -285,8 +277,8 @@ def _points(
                 try:
                     found, whirl, impedance = _followed(line, case, rotor)
                     contacts = ContactModel.of_motion(impedance.motion)
-                    told = RotorVerdict.of(case, whirl, rotor.mass)
-                    parts = (told, *whirl_parts(case, found, whirl, ""), contacts, effort(run.seconds))
+                    told = RotorVerdict.of(case, whirl, rotor.mass), MassMargin.of(whirl, rotor.mass)
+                    parts = (*told, *whirl_parts(case, found, whirl, ""), contacts, effort(run.seconds))
                     record = record_of("stability", case, *parts)
                 except ConvergenceError as failure:
                     line.known = None
@@ -316,10 +308,11 @@ def _campbell(
                     whirl = rotor.whirl(impedance, speed)
                 else:
                     found, whirl, impedance = _followed(line, case, rotor)
-                fields, _ = mode_fields(rotor.modes(impedance, speed), speed, tilts=case.bearings > 1)
+                modes = rotor.modes(impedance, speed)
+                fields, _ = mode_fields(modes, speed, tilts=case.bearings > 1)
                 contacts = ContactModel.of_motion(impedance.motion)
-                told = RotorMass(mass), RotorVerdict.of(case, whirl, mass)
-                parts = (*told, *whirl_parts(case, found, whirl, ""), contacts, effort(run.seconds))
+                told = RotorMass(mass), RotorVerdict.of(case, whirl, mass, modes)
+                parts = (*told, *whirl_parts(case, found, whirl, "", modes), contacts, effort(run.seconds))
                 coords: dict[str, Array] = {"mode": np.arange(1, BRANCHES + 1)}
                 placed = branches.placed(fields, speed)
                 record = record_of("stability", case, *parts, fields=dict(placed), coords=coords)

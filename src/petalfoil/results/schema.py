@@ -225,6 +225,7 @@ SCALARS: dict[str, Variable] = {
     "other_shaft_temperature": _answer("K", "temperature of the shaft in the other bearing", "T_s,2"),
     "other_pack_temperature": _answer("K", "temperature of the pack of the other bearing", "T_p,2"),
     "verdict": _run("", "whether the rotor is stable", "verdict", DataType.STR),
+    "mass_margin": _answer("1", "critical mass over the mass of the rotor: unstable below 1", "m_c/m"),
     "critical_mass": _answer("kg", "critical mass of a rigid rotor: it whirls above", "m_c"),
     "whirl_ratio": _answer("1", "whirl frequency over speed at the critical mass", "gamma"),
     "threshold_speed": _answer("rad s-1", "speed at which the rotor becomes unstable", "omega_c"),

@@ -144,7 +144,10 @@ def _remark(record: Record) -> str:
 def _grids(layout: LoadSpeedGrid, records: Sequence[Record]) -> Iterator[TextTable]:
     """One table for each result: a row for each load, a column for each speed."""
     speeds = [TextColumn(cell("speed", speed).value, "rpm") for speed in layout.speeds(records)]
+    there = [record.scalars for record in records if record.converged]
     for name, title in layout.tables.items():
+        if there and not any(name in scalars for scalars in there):
+            continue
         table = TextTable((TextColumn("load", "N"), *speeds), title=title)
         for load, line in zip(layout.loads(records), layout.over(records, name), strict=True):
             values = (number(math.nan if value is None else float(value)) for value in line)
