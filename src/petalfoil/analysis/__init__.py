@@ -66,6 +66,7 @@ What they share:
 `campbell.py`          branches of natural modes over speed
 `threshold.py`         the speed at which a rotor becomes unstable
 `rotor_verdict.py`     whether a rotor is stable, in words
+`parameter_change.py`  changes of parameters whose effects are told
 `film_force.py`        film and petals for another program's integrator
 `release.py`           where a large motion begins
 `film_figures.py`      film, contacts and friction of one bearing in it
