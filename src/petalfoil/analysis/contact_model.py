@@ -15,7 +15,7 @@ from petalfoil.equilibrium.solution import Solution
 class ContactModel:
     """Where contacts are, and how far the force is from that with contacts at nodes; None where the wall has none.
 
-    `bottomed_out` is True of a pack that is, else None.
+    `bottomed_out` is whether active contacts chain the journal to the bushing; None of stiffness and damping.
     """
 
     contact_model: str | None
@@ -27,7 +27,7 @@ class ContactModel:
         """Those of an equilibrium."""
         if not answer.problem.layout.n_wall:
             return cls(None)
-        return cls(answer.contact_model, answer.nodal_force_difference, answer.bottomed_out or None)
+        return cls(answer.contact_model, answer.nodal_force_difference, answer.bottomed_out)
 
     @classmethod
     def of_motion(cls, motion: JournalMotion) -> ContactModel:

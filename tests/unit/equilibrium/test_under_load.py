@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from petalfoil.analysis.contact_model import ContactModel
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.run_context import RunContext
 from petalfoil.equilibrium.under_load import MOST_FILMS, LoadedEquations, balance_cold, newton, rebalance
@@ -44,6 +45,8 @@ def test_a_pack_is_bottomed_out_where_a_chain_of_contacts_is_closed_however_it_w
         balance_cold(problem, np.array([0.0, -size]) / problem.layout.scales.force) for size in (newtons, 400.0)
     )
     assert heavy.bottomed_out
+    assert ContactModel.of(heavy).bottomed_out
+    assert ContactModel.of(light).bottomed_out is False  # a flag that every point of a series has
     assert "bottomed out" in heavy.solution_path
     assert not light.bottomed_out
     assert np.any(light.active)
