@@ -58,4 +58,4 @@ class MassMargin:
 def is_stable(record: Record) -> bool:
     """Whether the rotor of a point of a Campbell diagram is stable: below the critical mass, and no mode grows."""
     heavy = float(record.scalars["critical_mass"]) <= float(record.scalars["rotor_mass"])
-    return not heavy and not np.any(record.fields["mode_growth_rate"] > 0.0)
+    return not heavy and not np.any(np.asarray(record.fields["mode_growth_rate"], dtype=np.float64) > 0.0)
