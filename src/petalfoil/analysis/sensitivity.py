@@ -91,7 +91,7 @@ AnyLimit = Annotated[
         below=1.0,
     ),
 ]
-Step = Annotated[
+GivenChanges = Annotated[
     dict[str, float | str] | None,
     ParameterChanges(
         metavar="CHANGES",
@@ -158,7 +158,7 @@ def sensitivity(  # noqa: PLR0913 - the options of the verb
     mass: Mass = None,
     contacts: ContactPlaces = "points",
     method: SolveMethod = "tangent",
-    step: Step = None,
+    step: GivenChanges = None,
     progress: Progress | None = None,
 ) -> Points:
     """Tell how far a small change of each parameter moves a result.
