@@ -11,15 +11,18 @@ from petalfoil.analysis.varied_case import VariedCase
 from petalfoil.case import Case
 from petalfoil.case.parameters import parameters_of
 from petalfoil.equilibrium.element_rates import under
-from petalfoil.equilibrium.element_tangent import ElementTangent
+from petalfoil.equilibrium.line_contacts import LineContacts, stepped
 from petalfoil.equilibrium.parameter_response import Equations
-from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import ElementEquilibrium
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.results.schema import SCALARS
 
-STEPS = 12
-"""Corrections with the tangent of the first equilibrium: each takes three digits off the residual."""
+STEPS = 20
+"""Corrections with the tangent of the first equilibrium: each takes three digits off the residual, or one where two
+contact points are close together."""
+
+AT_LEAST = 3
+"""Corrections that are made in any case, so that nothing is left of a start that the derivative foretold."""
 
 SMALL = 1e-11
 """Correction of the unknowns at which the second equilibrium is reached."""
@@ -31,10 +34,13 @@ WITHOUT_EFFECT = ("model", "rotor", "surface.friction_width", "surface.petal_fri
 """Parameters of the numerical model, the rotor and histories, on which an equilibrium does not depend."""
 
 
-def solved_again(derivatives: DerivativesOf, there: Equations) -> Solution:
-    """The equilibrium of `there` with the same active contacts, by Newton's method from the first one."""
-    if derivatives.told.elements is not None:
-        return replace(derivatives.told, elements=on_elements(derivatives.told.elements, there), problem=there.problem)
+def solved_again(derivatives: DerivativesOf, there: Equations, start: Solution | None = None) -> Solution:
+    """The equilibrium of `there` with the same active contacts, by Newton's method from `start`, or the first one."""
+    found = derivatives.told if start is None else start
+    if found.elements is not None:
+        return replace(found, elements=on_elements(derivatives, found.elements, there), problem=there.problem)
+    if isinstance(found.lines, LineContacts):
+        return replace(found, lines=on_lines(derivatives, found.lines, there), problem=there.problem, load=there.load)
     first, held = derivatives.solution, derivatives.held
     problem = there.problem if there.load is None else there.problem.at(displacement=first.problem.displacement)
     found = replace(first, problem=problem, load=there.load)
@@ -47,20 +53,31 @@ def solved_again(derivatives: DerivativesOf, there: Equations) -> Solution:
     raise AssertionError("the second equilibrium was not reached")
 
 
-def on_elements(first: ElementEquilibrium, there: Equations) -> ElementEquilibrium:
+def on_elements(derivatives: DerivativesOf, first: ElementEquilibrium, there: Equations) -> ElementEquilibrium:
     """The same with petals of continuous slopes: contacts stay, their places and reactions follow."""
     load = there.load
-    tangent = ElementTangent.at(first.equations, load, current_run().probe_solver)
-    found = under(first, there)
+    tangent, found = derivatives.smooth.held_elements, under(first, there)
     assert found is not None
-    for _ in range(STEPS):
+    for count in range(STEPS):
         equations = found.equations
         force = equations.newton_force + (np.zeros_like(equations.force) if load is None else load)
         change, move = tangent.correction(equations.newton_residual, force)
         problem = equations.problem.at(displacement=equations.problem.displacement + move)
         found = found.moved(problem, change)
-        if np.max(np.abs(change)) < SMALL * max(1.0, np.max(np.abs(found.equations.deflection))):
+        small = np.max(np.abs(change)) < SMALL * max(1.0, np.max(np.abs(found.equations.deflection)))
+        if small and count + 1 >= AT_LEAST:
             return found
+    raise AssertionError("the second equilibrium was not reached")
+
+
+def on_lines(derivatives: DerivativesOf, first: LineContacts, there: Equations) -> LineContacts:
+    """The same in 3-D with contact lines, whose points follow."""
+    response, state = derivatives.smooth.held_lines, first.under(there.problem, there.load)
+    assert response is not None
+    for count in range(STEPS):
+        before, state = state, stepped(state, response)
+        if np.max(np.abs(state.x - before.x)) < SMALL * np.max(np.abs(state.x)) and count + 1 >= AT_LEAST:
+            return state
     raise AssertionError("the second equilibrium was not reached")
 
 
@@ -112,10 +129,12 @@ def compared(derivatives: DerivativesOf, path: str) -> Comparison:
 
 def difference_quotient(derivatives: DerivativesOf, variation: VariedCase) -> Results:
     """Difference quotient of results of equilibria solved again, at the points of the variation."""
+    rate = derivatives.smooth.rate(variation) if derivatives.smooth.between_nodes else None
     sampled = []
     for steps, weight in variation.stencil:
         case, there = variation.at(steps)
-        sampled.append((weight, derivatives.results(case, solved_again(derivatives, there))))
+        start = None if rate is None else derivatives.smooth.moved(rate, steps * variation.step, there)
+        sampled.append((weight, derivatives.results(case, solved_again(derivatives, there, start))))
     return {
         name: sum(weight * nearest_turn(name, results[name], value) for weight, results in sampled) / variation.step
         for name, value in derivatives.values.items()

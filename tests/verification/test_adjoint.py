@@ -58,12 +58,10 @@ def test_adjoint_and_tangent_are_transposes(name: str) -> None:
     adjoint = AdjointDerivatives.of_all(tangent)
     told = tangent.told
     variation = tangent.variation("bearing.bushing_radius")
-    rates = adjoint.rates(
-        [variation.at(steps)[1] for steps, _ in variation.stencil], [w / variation.step for _, w in variation.stencil]
-    )
+    rates = adjoint.rates(variation)
     if told.elements is not None:
         assert isinstance(rates, ElementValues)
-        moved = element_rate(told.elements, tangent.held_elements, rates)
+        moved = element_rate(told.elements, tangent.smooth.held_elements, rates)
         change, lam, displacement = moved.change, np.zeros(0), moved.displacement
     else:
         rate = tangent.held.respond(rates)
@@ -102,7 +100,7 @@ def test_derivatives_by_both(name: str) -> None:
 def test_one_solve_for_each_result(run: RunContext) -> None:
     tangent = tangent_of("points under a load")
     adjoint = AdjointDerivatives(tangent, ["bearing_force", "min_film_thickness"])
-    assert tangent.held_elements.units.shape[1] == 2  # solved for with the factor, whatever is asked
+    assert tangent.smooth.held_elements.units.shape[1] == 2  # solved for with the factor, whatever is asked
     before = run.probes.solves, run.probes.factorizations
     for path in PATHS:
         adjoint.by(path)

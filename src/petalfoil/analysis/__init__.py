@@ -44,6 +44,7 @@ What they share:
 `crossings.py`         speeds at which the contact fraction crosses a limit
 `varied_case.py`         a case at values of one of its parameters
 `derivatives.py`       exact derivatives of the results of an equilibrium
+`smooth_equilibrium.py` how an equilibrium with contacts between nodes follows such values
 `heated_derivatives.py` the same where temperatures follow
 `crossing_derivatives.py`  the same of a quantity that keeps a result at its limit
 `liftoff_derivatives.py`  lift-off and touchdown speed as such quantities

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from petalfoil.analysis.derivatives import ByParameters, Derivative, DerivativesOf, Results
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.result_gradients import GRADIENTS, FieldGradient, gradient
+from petalfoil.analysis.smooth_equilibrium import ELEMENTS_CHANGE
 from petalfoil.analysis.varied_case import EquationFamily, VariedCase
 from petalfoil.case import Case
 from petalfoil.equilibrium.element_rates import ElementValues, under
@@ -109,7 +110,7 @@ class AdjointDerivatives(ByParameters):
         weights = [weight / variation.step for _, weight in variation.stencil]
         there = [variation.at(steps) for steps, _ in variation.stencil]
         moved = [self.in_place(equations) for _, equations in there]
-        rates = self.rates([equations for _, equations in there], weights)
+        rates = self.rates(variation)
         sampled = [self.tangent.results(case, state) for (case, _), state in zip(there, moved, strict=True)]
         found, lost = {}, lost_reactions(moved, weights)
         for name in self.names:
@@ -126,16 +127,24 @@ class AdjointDerivatives(ByParameters):
             return replace(found, problem=problem, load=there.load)
         elements = under(found.elements, there)
         if elements is None:
-            raise ConvergenceError("no derivative: the elements of the petals change with the parameter")
+            raise ConvergenceError(ELEMENTS_CHANGE)
         return replace(found, problem=problem, elements=elements, load=there.load)
 
-    def rates(self, there: Sequence[Equations], weights: Sequence[float]) -> EquationValues | ElementValues:
-        """Derivatives of the equations at the fixed state."""
+    def rates(self, variation: EquationFamily) -> EquationValues | ElementValues:
+        """Derivatives of the equations at the fixed state.
+
+        Raises
+        ------
+        ConvergenceError
+            The elements change with the parameter.
+        """
         found = self.tangent.told
         if found.elements is None:
-            return EquationValues.combined([equations.at_state(found) for equations in there], weights)
-        values = [ElementValues.at(found.elements, equations) for equations in there]
-        return ElementValues.combined([value for value in values if value is not None], weights)
+            return variation.rates(found)
+        rates = self.tangent.smooth.element_rates(variation)
+        if rates is None:
+            raise ConvergenceError(ELEMENTS_CHANGE)
+        return rates
 
     def by_lost_reactions(self, name: str, lost: Array | None) -> float:
         """Derivative of a result along reactions that asperities lose, (E, S); these are no unknowns."""
@@ -148,7 +157,7 @@ class AdjointDerivatives(ByParameters):
         """`-a` and `-s` of a result; one transposed solve, once."""
         if name not in self._known:
             by_state = self.gradient(name)
-            held = self.tangent.held if self.tangent.told.elements is None else self.tangent.held_elements
+            held = self.tangent.held if self.tangent.told.elements is None else self.tangent.smooth.held_elements
             self._known[name] = held.adjoint(by_state)
         return self._known[name]
 

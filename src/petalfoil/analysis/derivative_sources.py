@@ -25,13 +25,13 @@ from petalfoil.analysis.liftoff_derivatives import speed_derivatives
 from petalfoil.analysis.load_ray import Limits
 from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.parameter_change import Changes
-from petalfoil.analysis.response_derivatives import coefficient_results, stability_derivatives
+from petalfoil.analysis.response_derivatives import coefficient_results, freely_sliding, stability_derivatives
 from petalfoil.analysis.sensitivity_table import ALL, Source
+from petalfoil.analysis.smooth_equilibrium import over_asperities
 from petalfoil.analysis.varied_case import VariedCase
 from petalfoil.case import Case
 from petalfoil.equilibrium.continuation import rest
 from petalfoil.equilibrium.run_context import current_run
-from petalfoil.equilibrium.small_motion import AT_ASPERITIES
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 from petalfoil.system.build import build_problem
@@ -101,16 +101,14 @@ def best_of(sources: Sequence[Derivatives | CrossingDerivatives], asked: Derivat
     """The same by the adjoint where it is asked for, or has less rounding."""
     found: list[Source] = []
     for source in sources:
-        found += with_adjoint(source, asked) if asked.by_adjoint or over_asperities(source) else [source]
+        found += with_adjoint(source, asked) if asked.by_adjoint or rounded(source) else [source]
     return found
 
 
-def over_asperities(source: Derivatives | CrossingDerivatives) -> bool:
-    """Whether contact pressures over asperities carry: in stiff packs the tangent's differences of them are rounded."""
+def rounded(source: Derivatives | CrossingDerivatives) -> bool:
+    """Whether contact pressures over asperities carry: the tangent takes differences of them over 5 nm."""
     whole = source.balance if isinstance(source, CrossingDerivatives) else source
-    if not isinstance(whole, DerivativesOf) or whole.told.elements is None:
-        return False
-    return whole.told.elements.contact_model == AT_ASPERITIES
+    return isinstance(whole, DerivativesOf) and over_asperities(whole.told)
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +152,7 @@ def with_adjoint(source: Derivatives | CrossingDerivatives, asked: DerivativeReq
     whole = source.balance if isinstance(source, CrossingDerivatives) else source
     if not isinstance(whole, DerivativesOf):
         return [TangentInstead(source, "with [heat]")]
-    if whole.told.elements is None and whole.with_points is not None:
+    if whole.told.elements is None and (whole.told.lines is not None or whole.with_points is not None):
         return [TangentInstead(source, "where contacts are between nodes of the grid")]
     adjoint = AdjointDerivatives.of_all(whole)
     if isinstance(source, CrossingDerivatives):
@@ -180,14 +178,19 @@ def by_tangent(case: Case, asked: DerivativeRequest) -> Sequence[Derivatives | C
         return stability_derivatives(case, asked.mass, asked.quantities, as_points=asked.as_points)
     solution = operating_point(case, None).answer
     if asked.verb == "coefficients":
-        return [derivatives_of(case, solution, coefficient_results(asked.frequency), as_points=asked.as_points)]
+        results, about = coefficient_results(asked.frequency), freely_sliding(case, solution)
+        return [derivatives_of(case, about, results, as_points=asked.as_points)]
     return [of_equilibrium(case, solution, asked)]
 
 
 def of_equilibrium(case: Case, solution: Solution, asked: DerivativeRequest) -> Derivatives:
-    """Derivatives of the results of an equilibrium; of its leading eigenvalue where that is asked for."""
-    results = results_with_growth(solution) if set(asked.quantities) & set(GROWTH) else equilibrium_results
-    return derivatives_of(case, solution, results, as_points=asked.as_points)
+    """Derivatives of the results of an equilibrium; of its leading eigenvalue where that is asked for.
+
+    In 3-D the eigenvalue is that of contacts at nodes.
+    """
+    if not set(asked.quantities) & set(GROWTH):
+        return derivatives_of(case, solution, equilibrium_results, as_points=asked.as_points)
+    return derivatives_of(case, replace(solution, lines=None), results_with_growth(solution), as_points=asked.as_points)
 
 
 def at_zero_speed(case: Case) -> Solution:

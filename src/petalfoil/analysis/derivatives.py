@@ -15,16 +15,17 @@ from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.fields import all_fields
 from petalfoil.analysis.heat_results import heat_results
 from petalfoil.analysis.records import position
+from petalfoil.analysis.smooth_equilibrium import SmoothEquilibrium, SmoothRate, over_asperities
 from petalfoil.analysis.varied_case import (
     ABOVE,
     BELOW,
     FILM_CHANGE,
-    PRESSURE_CHANGE,
     EquationFamily,
     Stencil,
     VariedCase,
@@ -34,8 +35,6 @@ from petalfoil.analysis.varied_case import (
 from petalfoil.case import Case
 from petalfoil.case.parameters import parameter_of
 from petalfoil.dynamics.leading_mode import LeadingMode
-from petalfoil.equilibrium.element_rates import ElementRate, ElementValues, element_rate, element_tangent
-from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError
 from petalfoil.equilibrium.parameter_response import (
     Equations,
     EquationValues,
@@ -44,12 +43,13 @@ from petalfoil.equilibrium.parameter_response import (
     StateRate,
 )
 from petalfoil.equilibrium.point_rates import PointEquilibrium, point_response
-from petalfoil.equilibrium.small_motion import AT_ASPERITIES, ElementEquilibrium
 from petalfoil.equilibrium.solution import Solution, total_residual
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.parts import scalars_of
 from petalfoil.results.schema import SCALARS
 from petalfoil.walls import wall_kind
+
+Array = NDArray[np.float64]
 
 Results: TypeAlias = Mapping[str, float]
 """Results of an equilibrium by name, SI."""
@@ -91,6 +91,7 @@ class Derivative:
 
 
 ROUNDED = "over asperities: in stiff packs rounding leaves some 1e-5 of the largest result of this kind"
+NOT_ON_LINES = "with contacts at nodes, isolated ones moved between them, not on contact lines"
 POINT_CHANGES = "a contact point begins or ends here: derivatives with contacts at nodes"
 
 
@@ -148,8 +149,8 @@ class DerivativesOf(ByParameters):
 
     @property
     def told(self) -> Solution:
-        """The equilibrium that results are taken from; in 3-D that with contacts at nodes."""
-        return replace(self.solution, lines=None) if self.as_points else self.at_nodes
+        """The equilibrium that results are taken from."""
+        return self.solution if self.as_points else self.at_nodes
 
     @cached_property
     def values(self) -> Results:
@@ -167,17 +168,9 @@ class DerivativesOf(ByParameters):
         return HeldEquilibrium.of(self.at_nodes, self.solution.active)
 
     @cached_property
-    def held_elements(self) -> ElementTangent:
-        """The same with petals of continuous slopes.
-
-        Raises
-        ------
-        NoPointsError
-            The contacts do not determine the state.
-        """
-        if self.told.elements is None:
-            raise ValueError("the equilibrium has no petals with continuous slopes")
-        return element_tangent(self.told.elements, under_load=self.told.load is not None)
+    def smooth(self) -> SmoothEquilibrium:
+        """The equilibrium that results are taken from, with contacts between nodes where it has them."""
+        return SmoothEquilibrium(self.told)
 
     @cached_property
     def with_points(self) -> PointEquilibrium | None:
@@ -231,10 +224,16 @@ class DerivativesOf(ByParameters):
 
     def along(self, variation: EquationFamily) -> Derivative:
         """Derivatives along a variation of the case."""
-        if self.told.elements is not None:
-            smooth = self._on_elements(self.told.elements, variation)
-            return replace(self._at_nodes(variation), remark=POINT_CHANGES) if smooth is None else smooth
-        return self._at_nodes(variation)
+        if not self.smooth.between_nodes:
+            lost = self.as_points and self.case.has_contact_lines and bool(np.any(self.solution.active))
+            return replace(self._at_nodes(variation), remark=NOT_ON_LINES if lost else "")
+        rate = self.smooth.rate(variation)
+        if rate is None or min(rate.reach) <= KINK * variation.size:
+            return replace(self._at_nodes(variation), remark=POINT_CHANGES)
+        along_line = self.smooth.in_steps_of_the_line(variation, rate)
+        along = self._quotients(along_line, along_line.stencil, rate)
+        remark = ROUNDED if over_asperities(self.told) else ""
+        return Derivative(along, along, rate.reach, False, along_line.fineness, remark)
 
     def _at_nodes(self, variation: EquationFamily) -> Derivative:
         """The derivative with contacts at nodes, isolated ones moved between them where they are `as_points`."""
@@ -254,64 +253,13 @@ class DerivativesOf(ByParameters):
         change = float(np.max(np.abs(moved / own - 1.0))) / abs(steps)
         return variation if change <= FILM_CHANGE else variation.finer(variation.fineness * FILM_CHANGE / change)
 
-    def _on_elements(self, found: ElementEquilibrium, variation: EquationFamily) -> Derivative | None:
-        """The derivative with petals of continuous slopes (V9); None at a kink, or where the elements change.
-
-        Raises
-        ------
-        ConvergenceError
-            The contacts do not determine the state.
-        """
-        values = [ElementValues.at(found, variation.at(steps)[1]) for steps, _ in variation.stencil]
-        known = [value for value in values if value is not None]
-        if len(known) < len(values):
-            return None
-        weights = [weight / variation.step for _, weight in variation.stencil]
-        try:
-            rate = element_rate(found, self.held_elements, ElementValues.combined(known, weights))
-        except NoPointsError as failure:
-            raise ConvergenceError(f"no derivative: {failure}", advice="change the case by a millionth") from None
-        if min(rate.reach) <= KINK * variation.size:
-            return None
-        finer = self._in_small_steps(found, variation, rate)
-        along = self._quotients(finer, finer.stencil, rate)
-        remark = ROUNDED if found.contact_model == AT_ASPERITIES else ""
-        return Derivative(along, along, rate.reach, False, finer.fineness, remark)
-
-    def _in_small_steps(
-        self, found: ElementEquilibrium, variation: EquationFamily, rate: ElementRate
-    ) -> EquationFamily:
-        """The variation in steps that change neither film nor contact pressures much; see `FILM_CHANGE`."""
-        own, steps = found.equations.film_thickness, variation.stencil[-1][0]
-        ahead = self._moved(rate, steps * variation.step, variation.at(steps)[1])
-        unit = ahead.equations.problem.layout.scales.length / found.equations.problem.layout.scales.length
-        film = float(np.max(np.abs(ahead.equations.film_thickness * unit / own - 1.0)))
-        change = max(film / FILM_CHANGE, found.nonlinearity(ahead) / PRESSURE_CHANGE) / abs(steps)
-        return variation if change <= 1.0 else variation.finer(variation.fineness / change)
-
-    def _quotients(self, variation: EquationFamily, points: Stencil, rate: ElementRate) -> Results:
+    def _quotients(self, variation: EquationFamily, points: Stencil, rate: SmoothRate) -> Results:
         """Derivatives of the results along the line of the state."""
         sampled = []
         for steps, _ in points:
             case, there = variation.at(steps)
-            ahead = self._moved(rate, steps * variation.step, there)
-            sampled.append(
-                self.results(case, replace(self.told, problem=there.problem, elements=ahead, load=there.load))
-            )
+            sampled.append(self.results(case, self.smooth.moved(rate, steps * variation.step, there)))
         return self._differences(variation, points, sampled)
-
-    def _moved(self, rate: ElementRate, change: float, there: Equations) -> ElementEquilibrium:
-        """The equilibrium after a change of the parameter.
-
-        Raises
-        ------
-        ConvergenceError
-            The elements change with the parameter.
-        """
-        ahead = rate.moved(self.told, change, there)
-        if ahead is None:
-            raise ConvergenceError("no derivative: the elements of the petals change with the parameter")
-        return ahead
 
     def _differences(self, variation: EquationFamily, points: Stencil, sampled: Sequence[Results]) -> Results:
         """Difference quotients of results at the points of a stencil."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 from petalfoil.analysis.curve import displaced_problem, point_after
@@ -87,7 +87,7 @@ def along_speeds(case: Case, speeds: Sequence[float], asked: DerivativeRequest) 
 
     def found_at(there: Case) -> Sequence[Source]:
         try:
-            found: Solution = replace(line.at(there.operation.speed), lines=None)
+            found: Solution = line.at(there.operation.speed)
         except ConvergenceError:
             line.known = None
             raise

@@ -20,7 +20,7 @@ import numpy as np
 from petalfoil.analysis.crossing_derivatives import CrossingDerivatives, newton_to
 from petalfoil.analysis.derivatives import Results, ResultsOf
 from petalfoil.analysis.heated_derivatives import Derivatives, derivatives_of
-from petalfoil.analysis.impedance import elastic, impedance
+from petalfoil.analysis.impedance import elastic, impedance, sliding_at
 from petalfoil.analysis.mode_derivatives import mode_results
 from petalfoil.analysis.operating_point import at, operating_point
 from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
@@ -57,6 +57,14 @@ def coefficient_results(frequency: float | None) -> ResultsOf:
         return {name: float(value) for name, value in zip(STIFFNESS + DAMPING, entries, strict=True)}
 
     return results
+
+
+def freely_sliding(case: Case, answer: Solution) -> Solution:
+    """The equilibrium that small motions are about, see `impedance.elastic_and_sliding`.
+
+    Contact lines travel where petals slide freely, and stay at nodes where they stick.
+    """
+    return answer if sliding_at(case, answer) is None else replace(answer, lines=None)
 
 
 @dataclass(frozen=True)
@@ -157,7 +165,7 @@ def stability_derivatives(
             "and of two in 2-D only",
             advice="leave rotor.span out, or compare two runs of `stability`",
         )
-    found = operating_point(case, None).answer
+    found = freely_sliding(case, operating_point(case, None).answer)
     of_modes = {name for mode in MODES for name in mode}
     sources: list[Derivatives | CrossingDerivatives] = []
     if not set(quantities) <= of_modes:
@@ -185,7 +193,7 @@ def threshold_derivatives(case: Case, answer: Solution, mass: float | None, *, a
 
     def balance_at(omega: float) -> Derivatives:
         there = at(case, omega)
-        found = replace(operating_point(there, None).answer if line is None else line.at(omega), lines=None)
+        found = freely_sliding(there, operating_point(there, None).answer if line is None else line.at(omega))
         return derivatives_of(there, found, whirl_results(there, found, mass), as_points=as_points)
 
     found = None if math.isnan(speed) else newton_to(THRESHOLD, (TO_THRESHOLD, 0.0), speed, balance_at)

@@ -32,10 +32,24 @@ ABOVE: Stencil = ((0, -25.0 / 12.0), (1, 4.0), (2, -3.0), (3, 4.0 / 3.0), (4, -1
 BELOW: Stencil = tuple((-steps, -weight) for steps, weight in ABOVE)
 """Difference quotients of fourth order: on both sides of a value, above it, below it."""
 
+SIXTH_ORDER: Stencil = (
+    *((-3, -1.0 / 60.0), (-2, 3.0 / 20.0), (-1, -3.0 / 4.0)),
+    *((1, 3.0 / 4.0), (2, -3.0 / 20.0), (3, 1.0 / 60.0)),
+)
+"""The same of sixth order, on both sides."""
+
 FILM_CHANGE = 1.5e-3
 """Change of a film in a step, over its thickness. Flows change with its cube: twice as much leaves errors of 4e-6 in
 stiff packs, and these fall with its fourth power. Gaps are differences of radii and rounded with them, to 3e-9 of a
 step of 1.5 nm where the film is 1 um thin."""
+
+GAP_CHANGE = 1.0
+"""Change of a gap in a step, over the film thickness, where the film itself is held. Gaps are differences of lengths
+that are ten thousand times as long: in smaller steps, petals that deflect by millimetres are rounded to 1e-5 of the
+bending stress."""
+
+HELD_FILM_STEP = 1e-5
+"""Largest such step over the value of the parameter."""
 
 PRESSURE_CHANGE = 3e-2
 """Change of the logarithm of a contact pressure over asperities in a step: quotients of fourth order of an exponential
@@ -83,6 +97,16 @@ class EquationFamily(ABC):
     @abstractmethod
     def size(self) -> float:
         """What changes are compared with."""
+
+    @property
+    def most_fineness(self) -> float:
+        """Fineness of the longest steps, for what does not depend on a film."""
+        return self.fineness
+
+    @property
+    def at_held_film(self) -> Self:
+        """The same in steps for equations whose film is held, see `GAP_CHANGE`."""
+        return self
 
     @property
     @abstractmethod
@@ -145,8 +169,23 @@ class VariedCase(EquationFamily):
     @cached_property
     def step(self) -> float:
         """Step of the difference quotients, in the unit of the parameter."""
+        return self.fineness * self._first_step
+
+    @cached_property
+    def _first_step(self) -> float:
+        """The step of fineness 1."""
         largest = LARGEST_STEP * self.size
-        return self.fineness * (min(largest, FILM_CHANGE * self.film / self.gap_rate) if self.gap_rate else largest)
+        return min(largest, FILM_CHANGE * self.film / self.gap_rate) if self.gap_rate else largest
+
+    @property
+    def most_fineness(self) -> float:
+        """That of `HELD_FILM_STEP`, or of the first step where that is longer."""
+        return max(HELD_FILM_STEP * self.size / self._first_step, 1.0)
+
+    @property
+    def at_held_film(self) -> Self:
+        """Steps that move gaps by the thickness of the film."""
+        return self.finer(min(self.most_fineness, GAP_CHANGE / FILM_CHANGE))
 
     def finer(self, fineness: float) -> Self:
         """The same with steps of another `fineness`."""

@@ -31,6 +31,7 @@
 `element_rates.py`         how such an equilibrium follows a parameter of its case
 `line_contacts.py`         3-D equilibria whose contact lines cross stations between nodes: equations, Newton's step
 `line_sets.py`             which these contacts are: from active nodes, and corrected by signs
+`line_rates.py`            how such an equilibrium follows a parameter of its case
 `nodal_state.py`           film, deflections and reactions at nodes, wherever contacts are
 `element_response.py`      the response about these
 =========================  =====================================================================================

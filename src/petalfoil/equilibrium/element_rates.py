@@ -43,30 +43,47 @@ class ElementValues:
         Displacement of the journal where it is given.
     gaps : (sample,) array
         Gaps along all curves, see `ElementEquilibrium.gaps`.
+    film : (strip, node, axial) array
+        Film thickness [1].
     """
 
     residual: Array
     force: Array
     displacement: Array
     gaps: Array
+    film: Array
 
     @classmethod
-    def at(cls, found: ElementEquilibrium, there: Equations) -> ElementValues | None:
-        """Those of the equations `there`; None where their petals have other elements."""
+    def rates(
+        cls, found: ElementEquilibrium, there: Sequence[Equations], weights: Sequence[float]
+    ) -> ElementValues | None:
+        """Derivatives from the equations at several values of the parameter; None where petals have other elements.
+
+        The rows of the film follow its thickness by the chain rule, `F_p + F_H H_p`: flows change with its cube, while
+        gaps are nearly linear in every parameter. So the steps may be as long as the film is thick, and rounded gaps,
+        of petals that deflect by thousands of films, count for little.
+        """
+        values = [cls._at_own_film(found, equations) for equations in there]
+        known = [value for value in values if value is not None]
+        if len(known) < len(values):
+            return None
+        parts = zip(*((v.residual, v.force, v.displacement, v.gaps, v.film) for v in known), strict=True)
+        rates = cls(*(sum((w * a for w, a in zip(weights, part, strict=True)), 0.0 * part[0]) for part in parts))
+        first = len(found.equations.deflection)
+        through_film = found.equations.film.moved(rates.film.ravel(), 0.0)
+        rates.residual[first : first + len(through_film)] += through_film
+        return rates
+
+    @classmethod
+    def _at_own_film(cls, found: ElementEquilibrium, there: Equations) -> ElementValues | None:
+        """Those of the equations `there` with the film of `found`, and their film."""
         moved = under(found, there)
         if moved is None:
             return None
-        equations = moved.equations
+        equations = moved.equations.with_film(found.equations.film_thickness)
         load = np.zeros_like(equations.force) if there.load is None else there.load
-        return cls(
-            equations.newton_residual, equations.newton_force + load, equations.problem.displacement, moved.gaps[0]
-        )
-
-    @classmethod
-    def combined(cls, values: Sequence[ElementValues], weights: Sequence[float]) -> ElementValues:
-        """Weighted sum of several, such as a difference quotient."""
-        parts = zip(*((v.residual, v.force, v.displacement, v.gaps) for v in values), strict=True)
-        return cls(*(sum((w * a for w, a in zip(weights, part, strict=True)), 0.0 * part[0]) for part in parts))
+        force, displacement = equations.newton_force + load, equations.problem.displacement
+        return cls(equations.newton_residual, force, displacement, moved.gaps[0], moved.equations.film_thickness)
 
 
 def under(found: ElementEquilibrium, there: Equations) -> ElementEquilibrium | None:
@@ -97,16 +114,16 @@ class ElementRate:
     displacement: Array
     reach: tuple[float, float]
 
-    def moved(self, solution: Solution, change: float, there: Equations) -> ElementEquilibrium | None:
+    def moved(self, solution: Solution, change: float, there: Equations) -> Solution | None:
         """The equilibrium after a `change` of the parameter, under the equations `there`; None on other elements."""
-        if solution.elements is None:
-            raise ValueError("the solution has no petals with continuous slopes")
-        moved = under(solution.elements, there)
+        moved = None if solution.elements is None else under(solution.elements, there)
         if moved is None:
             return None
         before = moved.equations.problem.displacement if there.load is not None else solution.position
         problem = moved.equations.problem.at(displacement=before + change * self.displacement)
-        return moved.moved(problem, change * self.change)
+        return replace(
+            solution, problem=there.problem, elements=moved.moved(problem, change * self.change), load=there.load
+        )
 
 
 def element_tangent(found: ElementEquilibrium, *, under_load: bool) -> ElementTangent:
@@ -122,14 +139,16 @@ def element_tangent(found: ElementEquilibrium, *, under_load: bool) -> ElementTa
 
 
 def element_rate(found: ElementEquilibrium, tangent: ElementTangent, rates: ElementValues) -> ElementRate:
-    """The derivative (V9) from the rates of the equations at a fixed state; one solve.
+    """The derivative (V9) from the rates of the equations at a fixed state; one solve or two.
+
+    See `ElementTangent.refined`.
 
     Raises
     ------
     NoPointsError
         The contacts do not determine the state.
     """
-    change, move = tangent.correction(rates.residual, rates.force)
+    change, move = tangent.refined(rates.residual, rates.force)
     displacement = move if tangent.units.shape[1] else rates.displacement
     rate = ElementRate(change, displacement, (0.0, 0.0))
     return replace(rate, reach=(reach(found, rates, rate, -1.0), reach(found, rates, rate, 1.0)))

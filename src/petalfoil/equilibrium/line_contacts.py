@@ -186,6 +186,24 @@ class LineContacts:
         """Small motions about the state."""
         return SmallMotion(self.problem, self.linearized, self.contacts, contact_model=ON_LINES)
 
+    def under(self, problem: CoupledProblem, load: Array | None) -> LineContacts:
+        """The same state under other equations on a grid of the same shape, under a load at its own position."""
+        there = problem if load is None else problem.at(displacement=self.problem.displacement)
+        points = replace(self.points, lines=there.layout.wall.contacts.lines)
+        return replace(self, problem=there, points=points, load=load)
+
+    def moved(self, change: LineChange, length: float, problem: CoupledProblem) -> LineContacts:
+        """The state after a `length` of a change, under the equations of `problem` before the journal's move."""
+        j = len(self.held_reaction)
+        return replace(
+            self,
+            problem=problem.at(displacement=problem.displacement + length * change.displacement),
+            x=self.x + length * change.x,
+            points=self.points.moved(length * change.phi),
+            reaction=self.reaction + length * change.reaction[j:],
+            held_reaction=self.held_reaction + length * change.reaction[:j],
+        )
+
     def foretold(self, more: Array, faster: float = 0.0) -> LineContacts:
         """The state under `more` load (n_position,) and a part `faster`, by the tangent alone; one factorisation.
 
@@ -205,6 +223,58 @@ class NoLinesError(ArithmeticError):
     """No equilibrium with contact points between nodes was found; it says why."""
 
 
+@dataclass(frozen=True)
+class LineResiduals:
+    """What is left of the equations at a state, or the rates of it by a parameter.
+
+    Attributes
+    ----------
+    rows : (n,) array
+        Of (C11).
+    closed, slopes : (j + k,) array, (k,) array
+        Of (C12): gaps at held nodes and points, slopes at points.
+    force : (n_position,) array
+        Of the journal; zeros at a fixed position.
+    """
+
+    rows: Array
+    closed: Array
+    slopes: Array
+    force: Array
+
+    @classmethod
+    def of(cls, state: LineContacts) -> LineResiduals:
+        """Those of a state."""
+        return cls(state.rows, state.closed, state.slopes, state.unbalanced)
+
+
+@dataclass(frozen=True)
+class LineChange:
+    """Changes of the unknowns (n,), reactions at nodes and points (j + k,), position (n_position,), angles (k,)."""
+
+    x: Array
+    reaction: Array
+    displacement: Array
+    phi: Array
+
+
+def correction(response: LinearResponse, left: LineResiduals, bending: Array, *, under_load: bool) -> LineChange:
+    """The change that takes away what is `left`, by a tangent (E12); `bending` (k,) divides slopes.
+
+    Under a load the journal's position follows too.
+    """
+    tangent, contacts = response.tangent, response.motion.contacts
+    travel = contacts.travel_stiffness * left.slopes
+    rows, move = left.rows + contacts.slope_by_x.T @ travel, np.zeros(len(left.force))
+    if under_load:
+        dx, dlam = tangent.respond(rows, left.closed)
+        force = left.force + tangent.border.rows(dx, dlam) - contacts.slope_by_e.T @ travel
+        move = np.linalg.solve(-response.force_gradient, force)
+    dx, dlam = tangent.respond(rows + tangent.forcing @ move, left.closed + contacts.gap_by_e @ move)
+    turned = left.slopes + contacts.slope_by_x @ dx + contacts.slope_by_e @ move
+    return LineChange(dx, dlam, move, -turned / bending)
+
+
 def stepped(state: LineContacts, response: LinearResponse) -> LineContacts:
     """The state after a Newton step with a tangent of its own or of a state nearby.
 
@@ -213,29 +283,11 @@ def stepped(state: LineContacts, response: LinearResponse) -> LineContacts:
     NoLinesError
         The film has closed, or the step is no number.
     """
-    tangent, contacts = response.tangent, response.motion.contacts
-    travel = contacts.travel_stiffness * state.slopes
-    rows, closed = state.rows + contacts.slope_by_x.T @ travel, state.closed
-    move = np.zeros(len(state.force))
-    if state.load is not None:
-        dx, dlam = tangent.respond(rows, closed)
-        left = state.unbalanced + tangent.border.rows(dx, dlam) - contacts.slope_by_e.T @ travel
-        move = np.linalg.solve(-response.force_gradient, left)
-    dx, dlam = tangent.respond(rows + tangent.forcing @ move, closed + contacts.gap_by_e @ move)
-    turned = state.slopes + contacts.slope_by_x @ dx + contacts.slope_by_e @ move
-    travelled = -turned / state.bending
+    change = correction(response, LineResiduals.of(state), state.bending, under_load=state.load is not None)
     trust = TRUST * state.points.cell_length
-    length = positive_step(state.problem, state.x, dx)
-    x = state.x + length * dx
-    problem = state.problem.at(displacement=state.problem.displacement + length * move)
-    if not np.all(np.isfinite(x)) or not problem.admits(x):
+    length = positive_step(state.problem, state.x, change.x)
+    there = replace(change, phi=np.clip(length * change.phi, -trust, trust) / length)
+    ahead = state.moved(there, length, state.problem)
+    if not np.all(np.isfinite(ahead.x)) or not ahead.problem.admits(ahead.x):
         raise NoLinesError("the film closes in a Newton step")
-    j = len(state.held_reaction)
-    return replace(
-        state,
-        problem=problem,
-        x=x,
-        points=state.points.moved(np.clip(length * travelled, -trust, trust)),
-        reaction=state.reaction + length * dlam[j:],
-        held_reaction=state.held_reaction + length * dlam[:j],
-    )
+    return ahead

@@ -117,8 +117,13 @@ class PointContacts:
         return replace(self, equations=replace(self.equations, problem=problem, state=changed(self.equations, change)))
 
     def nonlinearity(self, moved: PointContacts) -> float:
-        """None: reactions and places are unknowns."""
-        return 0.0
+        """How far points travel, in elements or in distances from the next point; 1 where points meet."""
+        before, after, curve = self.points.position, moved.points.position, self.points.curve
+        if len(after) != len(before):
+            return 1.0
+        apart, travel = np.diff(before)[np.diff(curve) == 0], after - before
+        nearer = np.diff(travel)[np.diff(curve) == 0] / apart
+        return float(np.max(np.abs(np.concatenate([travel, nearer])), initial=0.0))
 
 
 def with_points(

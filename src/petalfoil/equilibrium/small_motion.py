@@ -38,6 +38,9 @@ HELD_AT_NODES = "contacts at nodes"
 class TangentEquations(Protocol):
     """Equations of film and petals at an equilibrium, and their tangent in all unknowns, deflections first."""
 
+    def with_film(self, thickness: Array) -> TangentEquations:
+        """The same at a given film thickness (strip, node, axial) [1], which does not follow petals and journal."""
+
     @property
     def n(self) -> int:
         """All unknowns."""

@@ -94,6 +94,16 @@ class LinePoints:
             out[points] = lines.number[self.line[points][:, None], cell[:, None] + np.arange(2)]
         return out
 
+    @cached_property
+    def room(self) -> tuple[Array, Array]:
+        """Angle from each point to the node before and after it, (k,) each [rad]."""
+        before, after = np.zeros(len(self.phi)), np.zeros(len(self.phi))
+        for mine, lines in self._kinds():
+            cell, _ = hermite.located(self.phi[mine], lines.phi)
+            before[mine] = self.phi[mine] - lines.phi[cell]
+            after[mine] = lines.phi[cell + 1] - self.phi[mine]
+        return before, after
+
     def moved(self, change: Array) -> LinePoints:
         """The points after a `change` (k,) of their angles, on their lines."""
         phi = self.phi + change

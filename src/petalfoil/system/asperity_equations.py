@@ -8,7 +8,7 @@ The pressures are iterated on beside deflections and film, and follow (K13) exac
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -55,6 +55,10 @@ class AsperityEquations:
     pressure: Array
     height: float
     followed: float = OPEN
+
+    def with_film(self, thickness: Array) -> AsperityEquations:
+        """The same at a given film thickness (strip, node, axial) [1]."""
+        return replace(self, smooth=self.smooth.with_film(thickness))
 
     @property
     def problem(self) -> CoupledProblem:

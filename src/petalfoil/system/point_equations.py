@@ -14,7 +14,7 @@ tangent has exact second derivatives, `-lam n'` among them: it is that of the eq
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -52,11 +52,18 @@ class PointEquations:
         Speed and journal position.
     state : PointState
         The unknowns.
+    film_held : (strip, node, axial) array or None
+        Film thickness that does not follow petals and journal [1]; None where it does.
     """
 
     whole: PointLayout
     problem: CoupledProblem
     state: PointState
+    film_held: Array | None = None
+
+    def with_film(self, thickness: Array) -> PointEquations:
+        """The same at a given film thickness (strip, node, axial) [1]."""
+        return replace(self, film_held=thickness)
 
     @property
     def n(self) -> int:
@@ -84,6 +91,8 @@ class PointEquations:
     @cached_property
     def film_thickness(self) -> Array:
         """At every film node, (strip, node, axial) [1]."""
+        if self.film_held is not None:
+            return self.film_held
         layout = self.whole.layout
         H: Array = self.whole.pack.floor / layout.scales.length + self.whole.pack.film_rows @ self.nodal_gaps
         return H.reshape(layout.wall.film.shape)
