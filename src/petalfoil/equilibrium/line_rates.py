@@ -121,7 +121,7 @@ def reach(found: LineContacts, change: LineChange, gaps: Array, sign: float) -> 
     covered = found.held.copy()
     covered[found.points.beside.ravel()] = True
     reaction = np.concatenate([found.held_reaction, found.reaction])
-    near, far = found.points.room
+    near, far = found.points.to_nodes
     return min(
         falling(reaction - RESIDUAL_TOLERANCE, sign * change.reaction),
         falling(found.gaps[~covered] - RESIDUAL_TOLERANCE, sign * gaps[~covered]),

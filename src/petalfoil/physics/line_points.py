@@ -95,7 +95,7 @@ class LinePoints:
         return out
 
     @cached_property
-    def room(self) -> tuple[Array, Array]:
+    def to_nodes(self) -> tuple[Array, Array]:
         """Angle from each point to the node before and after it, (k,) each [rad]."""
         before, after = np.zeros(len(self.phi)), np.zeros(len(self.phi))
         for mine, lines in self._kinds():
