@@ -27,9 +27,9 @@ from petalfoil.system.loaded import load_scale
 Array = NDArray[np.float64]
 
 
-ROUNDED = 3e-14
+ROUNDED = 1e-13
 """What a solve may leave of a row, over the magnitudes of its terms; more is solved for once more. Most packs leave
-1e-15 to 1e-14; one of the stiff ones leaves 4e-12, and 1e-5 of its derivatives."""
+1e-15 to 3e-14; one of the stiff ones leaves 4e-12, and 1e-5 of its derivatives."""
 
 
 class NoPointsError(ArithmeticError):
