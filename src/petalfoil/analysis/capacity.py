@@ -33,7 +33,7 @@ from petalfoil.results.layout import ArrayTable, Series, SinglePoint, at_speed
 from petalfoil.results.parts import Branch, RunOutcome
 from petalfoil.results.record import Array, Record
 from petalfoil.results.variable import DataType, Role, TableLabel, Variable
-from petalfoil.units.writing import format_percent, format_quantity
+from petalfoil.units.writing import format_percent
 from petalfoil.walls import wall_kind
 
 DOWN = -math.pi / 2.0
@@ -324,8 +324,8 @@ def why_none(search: CapacitySearch, speed: float, found: Capacity) -> str:
 
 
 def in_unit(value: float | None, unit: str) -> str:
-    """A result with its unit in words; a fraction in per cent."""
-    return format_percent(value or 0.0) if unit == "1" else format_quantity(float(f"{value:.3g}"), unit)
+    """A fraction in per cent, or a film thickness in micrometres."""
+    return format_percent(value or 0.0) if unit == "1" else f"{1e6 * (value or 0.0):.3g} µm"
 
 
 def carried(case: Case, capacity: Capacity) -> tuple[object, ...]:
