@@ -78,7 +78,7 @@ MARCH = InteriorOptions(march=True, max_steps=150, least_barrier=0.1 * GOALS[0])
 
 PATHS = ((100.0, 10.0, 2000), (10.0, 10.0, 200), (100.0, 1.0, 200), (1000.0, 1.0, 200))
 """First barriers of a central path, weights of the unknowns in its arc length and most steps, in the order of trial.
-Petals that snap one by one fold a path a hundred times: the first has led to the end in 26 to 1700 steps."""
+Petals that snap one by one fold a path a hundred times: the first has led to the end in 26 to 1017 steps."""
 
 PATH_END = 1e-6
 """Barrier at the end of a path, whence the contact set is read."""
