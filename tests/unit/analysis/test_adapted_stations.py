@@ -63,6 +63,15 @@ def test_stations_crowd_where_the_petals_lift_off_the_film() -> None:
     assert with_stations(bearing) == adapted
 
 
+def test_stations_crowd_where_the_rig_touches_last() -> None:
+    """1.4 to 2.4 mm from the ends: from a coarse solution on equal cells the first station would lie at 1.4 mm."""
+    at_work = {"operation.speed": "12000 rpm", "operation.load": "46.4 N"}
+    rig = case("rig", **{"model.kind": "3d", "model.cells_per_pitch": 64, "model.axial_cells": 24, **at_work})
+    z = axial_grid(with_stations(rig)).z
+    assert z[1] < 1e-3
+    assert np.count_nonzero((1.4e-3 < z) & (z < 2.8e-3)) == 2
+
+
 @pytest.mark.slow
 def test_results_tell_their_stations() -> None:
     result = petalfoil.solve(case("paper_n8_spatial", **COARSE))
