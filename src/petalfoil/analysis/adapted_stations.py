@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.analysis.session import one_thread
-from petalfoil.case import Case
+from petalfoil.case import Case, PetalTheory
 from petalfoil.case.sections import UNIFORM
 from petalfoil.equilibrium.cold_start import by_barriers
 from petalfoil.equilibrium.run_context import running
@@ -52,13 +52,14 @@ def with_stations(case: Case) -> Case:
     """The case with its adapted `model.axial_density`; as it is where stations are not to be adapted.
 
     Where what asks for stations is largest at the ends, equal cells do not resolve it: the coarse solution is repeated
-    on cells that shrink toward them. Where the coarse grid has no solution, stations lie at equal distances, and the
-    case of the result says so.
+    on cells that shrink toward them, of petals that bend only (of petals that stretch this has not been measured).
+    Where the coarse grid has no solution, stations lie at equal distances, and the case of the result says so.
     """
     if not case.adapts_stations or case.operation.speed == 0.0:
         return case
     density = coarse_density(case, {"model.axial_density": UNIFORM})
-    if density is not None and density[0] == max(density):
+    bends_only = case.petal_theory is PetalTheory.INEXTENSIBLE
+    if bends_only and density is not None and density[0] == max(density):
         density = coarse_density(case, {"model.axial_density": None, "model.axial_grading": FIRST_GRADING}) or density
     return case.replace(**{"model.axial_density": UNIFORM if density is None else density})
 
