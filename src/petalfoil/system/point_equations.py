@@ -124,6 +124,11 @@ class PointEquations:
         return (on_bushing & (points.every_position <= 0.0)).astype(np.float64)
 
     @cached_property
+    def _nodal_loads(self) -> Array:
+        """Reactions on the nodal (value, slope) of the gaps."""
+        return self.whole.curves.nodal_loads(self.state.points)
+
+    @cached_property
     def _weights(self) -> tuple[sp.csr_array, sp.csr_array]:
         """Weights of the nodal gaps in the gaps at all points, and in their slopes."""
         at = self.state.points.every_curve, self.state.points.every_position
@@ -146,7 +151,7 @@ class PointEquations:
         """Wall, film, gaps of all points, slopes of the travelling ones."""
         points, state, gaps, curves = self.state.points, self.state, self.gaps, self.whole.curves
         elastic = self.whole.elastic(state.w) - self.whole.push @ (state.P - 1.0)
-        wall = elastic - curves.by_w.T @ curves.nodal_loads(points)
+        wall = elastic - curves.by_w.T @ self._nodal_loads
         value = np.where(self.idle > 0.0, points.reaction, gaps.value)
         return wall, self.film.residual, value, gaps.slope[points.ends] * self.travels
 
@@ -162,7 +167,7 @@ class PointEquations:
         loads = self.whole.push @ over + n.T @ reaction
         return self.whole.elastic(self.state.w), loads, abs(self.whole.push) @ np.abs(over) + abs(n.T) @ reaction
 
-    @property
+    @cached_property
     def scaled(self) -> Array:
         """Residuals over their row scales: ambient pressure on a node, the flows of a cell, the reference film.
 
@@ -249,11 +254,11 @@ class PointEquations:
         size = len(self.problem.displacement)
         return np.zeros((size, size))
 
-    @property
+    @cached_property
     def force(self) -> Array:
         """Force of film and contacts on the journal over the unit of force, (d,)."""
         film: Array = self.whole.layout.border.row_derivative @ (self.state.P - 1.0)
-        return film + self.by_e[0].T @ self.state.points.reaction
+        return film + self.whole.curves.by_e.T @ self._nodal_loads
 
     @property
     def newton_force(self) -> Array:
