@@ -57,6 +57,18 @@ def test_a_displaced_journal_and_petals_have_another_critical_mass() -> None:
         assert "at any speed and rotor mass" not in str(found["status"])
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("mass", [0.001, 2.0, 100.0])
+def test_a_long_plain_bearing_under_a_light_load_is_unstable_for_any_mass(mass: float) -> None:
+    """Its branch turns real at a negative stiffness: a rotor whose mode grows was called stable."""
+    bearing = case("plain_journal", **{"model.kind": "2d", "model.cells_per_pitch": 24})
+    found = stability.record(bearing, load=(0.0, -60.0), mass=mass)
+    assert found.scalars["critical_mass"] == 0.0
+    assert "unstable for any rotor mass" in str(found.scalars["status"])
+    assert max(found.fields["mode_growth_rate"]) > 50.0
+    assert float(found.scalars["threshold_speed"]) < 370.0
+
+
 def test_the_exact_force_of_half_speed_whirl_is_none() -> None:
     """Stiffness and cross-coupled damping cancel at half the speed as the square of the cells: 0 is their limit."""
     left = []

@@ -25,7 +25,7 @@ from petalfoil.analysis.session import part
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.analysis.threshold import AtOwnSpeed, beyond_the_model, rotor_mass, threshold_speed
 from petalfoil.case import Case
-from petalfoil.dynamics.critical_mass import Whirl
+from petalfoil.dynamics.critical_mass import EVEN_FILM, Whirl
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.dynamics.natural_modes import Mode
 from petalfoil.dynamics.reduced_impedance import Impedance
@@ -236,7 +236,9 @@ def whirl_parts(
 
     Where no mass is critical, stability is the same for all: the rotor's own modes tell which.
     """
-    any_mass = {0.0: "whirls at half the speed at any speed and rotor mass", math.inf: "stable for any rotor mass"}
+    even = whirl.ratio == EVEN_FILM.ratio
+    half = "whirls at half the speed at any speed and rotor mass"
+    any_mass = {0.0: half if even else "unstable for any rotor mass", math.inf: "stable for any rotor mass"}
     if any(mode.s.real > 0.0 for mode in modes or ()):
         any_mass[math.inf] = "a mode grows, though no mass is critical"
     if ended == AT_AMPLITUDE:

@@ -16,7 +16,7 @@ from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
 from petalfoil.case.plausibility import MAX_MACH, surface_mach
-from petalfoil.dynamics.critical_mass import Whirl
+from petalfoil.dynamics.critical_mass import Whirl, whirls_at_any_mass
 from petalfoil.dynamics.rotor_motion import GRAVITY
 from petalfoil.equilibrium.continuation import advance
 from petalfoil.equilibrium.linear_response import SmallMotion
@@ -72,8 +72,8 @@ def threshold_speed(rotor: RotorOnBearings, load: Vector | None, start: AtOwnSpe
 
     Upward from a stable bearing, downward from an unstable one. A speed without an equilibrium ends the search.
     """
-    if start.whirl.mass == 0.0:
-        return math.nan, ""  # it whirls at any speed
+    if whirls_at_any_mass(start.motion):
+        return math.nan, ""  # and at any speed
     if math.isnan(rotor.mass):
         return math.nan, "no threshold speed: give a mass or a load"
     margin_at = margins(rotor, load, start)

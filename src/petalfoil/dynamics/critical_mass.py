@@ -40,6 +40,10 @@ class Whirl:
     ratio: float
 
 
+EVEN_FILM = Whirl(0.0, 0.5)
+"""Of a film that is even all round: it exerts no force in a whirl at half the speed."""
+
+
 def whirl_impedance(motion: JournalMotion) -> Impedance:
     """The impedance over the whirl ratios of `SCAN`."""
     return Impedance.over(motion, SCAN.tolist())
@@ -99,7 +103,7 @@ def neutral_whirl(impedance: Impedance, speed: float, inertia: Inertia | None = 
     are followed over whirl ratio, and their zeros bracketed.
     """
     if whirls_at_any_mass(impedance.motion):
-        return Whirl(0.0, 0.5)
+        return EVEN_FILM
     roots: list[Whirl] = []
     balance = Balance(impedance, inertia)
     values = [balance.eigenvalues(nu) for nu in SCAN]
@@ -119,7 +123,11 @@ def matched(before: Complex, after: Complex) -> Complex:
 
 
 def crossing(balance: Balance, between: tuple[float, float], start: complex, speed: float) -> list[Whirl]:
-    """The neutral whirl in a bracket of whirl ratios, if it belongs to a positive mass."""
+    """The neutral whirl in a bracket of whirl ratios, if it belongs to a positive mass.
+
+    A branch whose imaginary part rises through zero at a negative stiffness has passed the imaginary axis below it,
+    where its mass is zero and the whirl grows: a rotor of any mass whirls.
+    """
     nearest = start
 
     def imaginary(nu: float) -> float:
@@ -133,4 +141,8 @@ def crossing(balance: Balance, between: tuple[float, float], start: complex, spe
     values = balance.eigenvalues(nu)
     neutral = values[np.argmin(np.abs(values.imag))]
     mass = float(neutral.real) / (nu * speed) ** 2
-    return [Whirl(mass, nu)] if mass > 0.0 and abs(neutral.imag) <= POLE * abs(neutral) else []
+    if abs(neutral.imag) > POLE * abs(neutral):
+        return []
+    if mass <= 0.0:
+        return [Whirl(0.0, nu)] if balance.inertia is None and low < 0.0 else []
+    return [Whirl(mass, nu)]
