@@ -194,7 +194,7 @@ RUNS = (
          "covered_angle", "metric_radius", "bending_stiffness", "root_tilt", "first_contact_angle",
          "free_petal_height", "radius@mean")),
     Run("check plain", partial(petalfoil.check, PLAIN),
-        ("pack_clearance", "compressibility_number", "mean_free_path", "knudsen_number")),
+        ("pack_clearance", "compressibility_number", "mean_free_path", "clearance_knudsen_number")),
 )  # fmt: skip
 
 
