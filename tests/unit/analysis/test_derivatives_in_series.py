@@ -32,7 +32,8 @@ def test_each_point_of_a_curve_has_the_derivatives_of_solve() -> None:
 @pytest.mark.slow
 def test_each_speed_of_a_run_up_has_the_derivatives_of_balance() -> None:
     of, asked = case(**{"model.cells_per_pitch": 12}), "min_film_thickness, friction_torque"
-    told = petalfoil.sensitivity(of, "petals.thickness", ask="runup", load="20 N", speeds="4000 rad/s, 8000 rad/s", of=asked)
+    speeds = "4000 rad/s, 8000 rad/s"
+    told = petalfoil.sensitivity(of, "petals.thickness", ask="runup", load="20 N", speeds=speeds, of=asked)
     for number, speed in enumerate((4000.0, 8000.0)):
         alone = petalfoil.sensitivity(of, "petals.thickness", load="20 N", speed=speed, of=asked)
         here = told.isel(point=slice(2 * number, 2 * number + 2))
