@@ -133,9 +133,13 @@ def _contours(ds: xr.Dataset, names: list[str]) -> Figure:
 
 
 def _table(ds: xr.Dataset) -> Figure:
-    """Name, value and unit of the answers of a point."""
+    """Name, value and unit of the answers of a point; of a result without any, as that of `check`, its geometry."""
     ds = one_point(ds)
-    lines = [(quantity(ds, str(name)), _scalar(ds, str(name))) for name in ds.data_vars if _is_told(ds, str(name))]
+    names = [str(name) for name in ds.data_vars]
+    told = [name for name in names if _is_told(ds, name, Role.ANSWER)] or [
+        name for name in names if _is_told(ds, name, Role.GEOMETRY)
+    ]
+    lines = [(quantity(ds, name), _scalar(ds, name)) for name in told]
     if not lines:
         raise UsageError("this result holds no quantity that a figure could show")
     lines = lines[:_MOST_LINES]
@@ -153,10 +157,10 @@ def _table(ds: xr.Dataset) -> Figure:
     return fig
 
 
-def _is_told(ds: xr.Dataset, name: str) -> bool:
-    answer = name not in SCALARS or SCALARS[name].role is Role.ANSWER
+def _is_told(ds: xr.Dataset, name: str, role: Role) -> bool:
+    of_role = SCALARS[name].role is role if name in SCALARS else role is Role.ANSWER
     numeric = ds[name].ndim == 0 and ds[name].dtype.kind in "fi" and name not in COORDINATES
-    return answer and numeric and bool(np.isfinite(float(ds[name])))
+    return of_role and numeric and bool(np.isfinite(float(ds[name])))
 
 
 def _scalar(ds: xr.Dataset, name: str) -> float:
