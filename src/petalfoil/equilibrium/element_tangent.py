@@ -128,7 +128,7 @@ class ElementTangent:
         change, move = self.correction(residual, force)
         J, by_e = self.equations.steady, self.equations.forcing()
         left = residual + J @ change + by_e @ move
-        if not is_rounded(left, np.abs(residual) + abs(J) @ np.abs(change) + np.abs(by_e) @ np.abs(move)):
+        if not has_lost_digits(left, np.abs(residual) + abs(J) @ np.abs(change) + np.abs(by_e) @ np.abs(move)):
             return change, move
         unbalanced = force + self.equations.force_rows @ change + self.equations.force_direct @ move
         more, further = self.correction(left, unbalanced)
@@ -147,15 +147,9 @@ class ElementTangent:
         found, J = self._adjoint(by_state), self.equations.steady
         left = by_state.residual + J.T @ found.residual
         size = np.abs(by_state.residual) + abs(J).T @ np.abs(found.residual)
-        if not self.units.shape[1]:
-            if not is_rounded(left, size):
-                return found
-            return StateWeights(
-                found.residual + self._adjoint(replace(by_state, residual=left)).residual, found.gaps, found.force
-            )
         rows, direct = self.equations.force_rows, self.equations.force_direct
         left, size = left + rows.T @ found.force, size + np.abs(rows).T @ np.abs(found.force)
-        if not is_rounded(left, size):
+        if not has_lost_digits(left, size):
             return found
         unbalanced = by_state.force + self.equations.forcing().T @ found.residual + direct.T @ found.force
         more = self._adjoint(replace(by_state, residual=left, force=unbalanced))
@@ -174,6 +168,6 @@ class ElementTangent:
         return StateWeights(-self.factor.solve_transposed(by_unknowns), np.zeros(0), force)
 
 
-def is_rounded(left: Array, size: Array) -> bool:
+def has_lost_digits(left: Array, size: Array) -> bool:
     """Whether what a solve leaves of some row is more than `ROUNDED` of the magnitudes of its terms."""
     return bool(np.any(np.abs(left) > ROUNDED * size))
