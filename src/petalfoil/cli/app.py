@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -41,12 +39,6 @@ def is_sampled(name: str, words: list[str]) -> bool:
     return name == "sensitivity" and any(word.partition("=")[0] == "--samples" for word in words)
 
 
-def meant_by(word: str, commands: Sequence[str]) -> str:
-    """Ask whether a command with a similar name was meant; nothing where there is none."""
-    matches = get_close_matches(word.lower(), commands, n=1)
-    return f" Did you mean '{matches[0]}'?" if matches else ""
-
-
 class Verbs(TyperGroup):
     """The analyses, read from their declarations, and the commands that are none.
 
@@ -68,7 +60,9 @@ class Verbs(TyperGroup):
     def resolve_command(self, ctx: Context, args: list[str]) -> Any:
         """The command that is called, with all its options."""
         if args and args[0] not in self.list_commands(ctx):
-            ctx.fail(f"No such command '{for_terminal(args[0])}'.{meant_by(args[0], self.list_commands(ctx))}")
+            from petalfoil.case.hints import nearest
+
+            ctx.fail(f"No such command '{for_terminal(args[0])}'.{nearest(args[0], self.list_commands(ctx))}")
         name, command, rest = super().resolve_command(ctx, args)
         if name in STUDIES or is_sampled(str(name), rest):
             from petalfoil.cli.study_commands import study_command
