@@ -39,7 +39,7 @@ def deliver(ds: xr.Dataset, folder: Path, *, as_json: bool, effort: ProcessorTim
         emit(json.dumps({**study_summary.to_json(ds), "folder": str(folder)}, allow_nan=False) + "\n")
     else:
         emit(text_of(ds) + f"\nFolder: {for_terminal(str(folder))}\n")
-    told = sorted(study_summary.reasons(ds).items(), key=lambda item: -len(item[1]))
+    told = list(study_summary.reasons(ds).items())
     for reason, cases in told[:MOST_REASONS]:
         which = "; ".join(cases[:MOST_CASES]) + ("; …" if len(cases) > MOST_CASES else "")
         say(f"{len(cases)} without an answer ({which}): {reason}")

@@ -44,6 +44,6 @@ def _failures(ds: xr.Dataset) -> list[str]:
     told = study_summary.reasons(ds)
     if not told:
         return []
-    most = sorted(told.items(), key=lambda item: -len(item[1]))[:MOST_REASONS]
+    most = list(told.items())[:MOST_REASONS]
     rows = tuple((f"{len(cases)}: {'; '.join(cases[:MOST_CASES])}", text) for text, cases in most)
     return [html.section("failed", "Cases without an answer"), html.table(PageTable(("cases", "reason"), rows))]

@@ -191,13 +191,13 @@ def _scatter(told: dict[str, Any]) -> Lines:
 
 
 def reasons(ds: xr.Dataset) -> dict[str, list[str]]:
-    """Cases without an answer, by status and reason: the parameters of each."""
+    """Cases without an answer, by status and reason, the commonest first: the parameters of each."""
     found: dict[str, list[str]] = {}
     columns = (np.ravel(ds["status"].values), np.ravel(ds["reason"].values), parameters_of_cases(ds))
     for status, reason, parameters in zip(*columns, strict=True):
         if status != CONVERGED:
             found.setdefault(f"{status}: {reason}" if reason else str(status), []).append(parameters)
-    return found
+    return dict(sorted(found.items(), key=lambda item: -len(item[1])))
 
 
 def asked(ds: xr.Dataset) -> list[str]:
