@@ -98,10 +98,9 @@ class LinePoints:
     def to_nodes(self) -> tuple[Array, Array]:
         """Angle from each point to the node before and after it, (k,) each [rad]."""
         before, after = np.zeros(len(self.phi)), np.zeros(len(self.phi))
-        for mine, lines in self._kinds():
-            cell, _ = hermite.located(self.phi[mine], lines.phi)
-            before[mine] = self.phi[mine] - lines.phi[cell]
-            after[mine] = lines.phi[cell + 1] - self.phi[mine]
+        for (points, cell, _), lines in zip(self._cells, self.lines, strict=True):
+            before[points] = self.phi[points] - lines.phi[cell]
+            after[points] = lines.phi[cell + 1] - self.phi[points]
         return before, after
 
     def moved(self, change: Array) -> LinePoints:
