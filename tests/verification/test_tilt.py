@@ -15,6 +15,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from petalfoil import Case, balance, check, coefficients, curve, orbit, runup, solve, stability, static
+from petalfoil.equilibrium.small_motion import ON_LINES
 from petalfoil.errors import DefinitionError, UsageError
 from petalfoil.results.record import Record
 from petalfoil.solvers import sparse_lu
@@ -217,6 +218,29 @@ def test_coefficients_under_a_moment_are_those_of_the_slopes_that_it_makes() -> 
     assert_allclose(one.fields["stiffness"], other.fields["stiffness"], rtol=1e-6)
     both = coefficients.record(free, [3000.0], tilt=True)
     assert_allclose(both.fields["stiffness"], one.fields["stiffness"], rtol=1e-6)
+
+
+@pytest.mark.slow
+def test_coefficients_with_tilt_are_those_of_the_contact_lines_under_a_load() -> None:
+    # 6 cells over the length: lines and contacts at nodes balance the load at positions 10 um apart
+    grid = {"model.cells_per_pitch": 12, "model.axial_cells": 6}
+    loaded = case("paper_n8_spatial", **grid, **{"operation.load": (0.0, -5.0)})
+    half, whole = coefficients.record(loaded), coefficients.record(loaded, tilt=True)
+    assert half.scalars["contact_model"] == whole.scalars["contact_model"] == ON_LINES
+    for name in ("stiffness", "damping"):
+        assert_allclose(whole.fields[name], half.fields[name], rtol=0.0, atol=1e-8 * np.max(np.abs(half.fields[name])))
+
+
+@pytest.mark.slow
+def test_coefficients_with_contact_lines_under_a_moment_are_those_of_its_slopes() -> None:
+    grid = {"model.cells_per_pitch": 12, "model.axial_cells": 6}
+    free = case("paper_n8_spatial", **grid, **{"operation.load": (0.0, -5.0), "operation.moment": (0.02, 0.01)})
+    found = balance.record(free).scalars
+    slopes = (found["tilt_x"], found["tilt_y"])
+    one = coefficients.record(free)
+    other = coefficients.record(free.replace(**{"operation.moment": None, "operation.tilt": slopes}))
+    assert one.scalars["contact_model"] == other.scalars["contact_model"] == ON_LINES
+    assert_allclose(one.fields["stiffness"], other.fields["stiffness"], rtol=1e-6, atol=0.1)
 
 
 @pytest.mark.slow

@@ -184,6 +184,9 @@ class LineEquilibrium(Protocol):
     def motion(self) -> Motion:
         """Small motions about it."""
 
+    def under(self, problem: CoupledProblem, load: Array | None) -> LineEquilibrium:
+        """The same state under other equations on a grid of the same shape, unsolved."""
+
     def foretold(self, more: Array, faster: float = 0.0) -> LineEquilibrium:
         """The state under `more` load (n_position,) and a part `faster`, by the tangent alone; one factorisation."""
 
