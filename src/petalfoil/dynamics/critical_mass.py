@@ -17,10 +17,15 @@ from petalfoil.dynamics.rotor_motion import Inertia
 from petalfoil.equilibrium.small_motion import JournalMotion
 
 Complex = NDArray[np.complex128]
+FloatArray = NDArray[np.float64]
 
 SCAN = np.concatenate([[0.006, 0.012, 0.025], np.linspace(0.05, 1.2, 24), [1.5, 2.0, 3.0]])
 """Whirl ratios between which changes of sign are searched for. Gas bearings whirl near a ratio of a half and below, a
 heavy rotor on soft petals far below."""
+
+BEYOND = np.linspace(3.0, 12.0, 10)
+"""Whirl ratios at which a whirl that grows at the last ratio of `SCAN` is followed to where it dies out. That of a pack
+whose two natural frequencies nearly agree grew between 0.03 and 6; the masses beyond are a sixteenth of the last."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +60,11 @@ EVEN = 1e-9
 POLE = 1e-3
 """Imaginary part over the size of an eigenvalue beyond which a change of its sign is no zero: it passes infinity where
 gyroscopic moments cancel inertia."""
+
+
+NEUTRAL = 1e-3
+"""Imaginary part over the size of an eigenvalue at the last whirl ratio within which it is called neutral: damping as
+small as that has an error of its size on coarse grids."""
 
 
 @dataclass(frozen=True)
@@ -100,20 +110,37 @@ def neutral_whirl(impedance: Impedance, speed: float, inertia: Inertia | None = 
     """Find the critical rotor mass; with `inertia` that of a rotor whose inertias are in the same proportion.
 
     At the threshold one eigenvalue of `Z(i Omega)` is real and equals `m Omega^2`. The branches of the imaginary parts
-    are followed over whirl ratio, and their zeros bracketed.
+    are followed over whirl ratio, and their zeros bracketed. The mass is the smallest that whirls: where a branch with
+    a positive mass still has a negative imaginary part at the last ratio, lighter rotors whirl, and the search goes on.
     """
     if whirls_at_any_mass(impedance.motion):
         return EVEN_FILM
+    roots, last = neutral_whirls(Balance(impedance, inertia), SCAN, speed)
+    if grows(last):
+        further = Impedance.over(impedance.motion, BEYOND.tolist())
+        lighter, last = neutral_whirls(Balance(further, inertia), BEYOND, speed)
+        roots += lighter
+        if inertia is None and grows(last):
+            return Whirl(0.0, np.nan)
+    return min(roots, key=lambda root: root.mass, default=Whirl(np.inf, np.nan))
+
+
+def grows(values: Complex) -> bool:
+    """Whether a rotor of one of the masses that balance the impedance whirls ever wider."""
+    return bool(np.any((values.imag < -NEUTRAL * np.abs(values)) & (values.real > 0.0)))
+
+
+def neutral_whirls(balance: Balance, ratios: FloatArray, speed: float) -> tuple[list[Whirl], Complex]:
+    """All neutral whirls between some whirl ratios, and the eigenvalues at the last one, (d,)."""
     roots: list[Whirl] = []
-    balance = Balance(impedance, inertia)
-    values = [balance.eigenvalues(nu) for nu in SCAN]
-    for k in range(len(SCAN) - 1):
+    values = [balance.eigenvalues(nu) for nu in ratios]
+    for k in range(len(ratios) - 1):
         ahead = matched(values[k], values[k + 1])
         for branch in range(len(ahead)):
             if np.sign(values[k][branch].imag) != np.sign(ahead[branch].imag):
-                roots += crossing(balance, (SCAN[k], SCAN[k + 1]), values[k][branch], speed)
+                roots += crossing(balance, (ratios[k], ratios[k + 1]), values[k][branch], speed)
         values[k + 1] = ahead
-    return min(roots, key=lambda root: root.mass, default=Whirl(np.inf, np.nan))
+    return roots, values[-1]
 
 
 def matched(before: Complex, after: Complex) -> Complex:
