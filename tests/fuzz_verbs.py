@@ -45,8 +45,15 @@ from tests.random_packs import wide_case
 SEED = 13
 SECONDS = 60.0
 ROUND = 25
+CELLS = 8
+"""Cells per pitch."""
+POINTS_EVERY = 32
 POINTS_TAKE = 5.0
 """Processor time of contacts at points over that of contacts at nodes, at least."""
+MOST_PETALS = 20
+FEW_PETALS = 8
+COSTLY = ("tolerance", "optimize", "runup", "report", "capacity")
+"""Verbs that solve many states: on bearings of few petals."""
 Arguments = dict[str, object]
 
 
@@ -66,15 +73,23 @@ class Ran:
     """Processor time."""
 
 
-def drawn(number: int) -> tuple[Case, Arguments]:
-    """A random bearing on a coarse grid, with a rotor; and the arguments of every verb that needs some.
+def pack(number: int, petals: int) -> tuple[Case, np.random.Generator]:
+    """The first random bearing of a number that has at most so many petals, on a coarse grid, and its generator."""
+    rng = np.random.default_rng([number, SEED])
+    contacts = {"model.petal_cells": 12} if number % POINTS_EVERY == 0 else {"model.contacts": "nodes"}
+    while True:
+        case = wide_case(rng, **{"model.cells_per_pitch": CELLS, **contacts})
+        if case.petals is not None and case.petals.count <= petals:
+            return case, rng
 
-    One bearing in sixteen has its contacts at points between nodes, on the coarsest petals that there are. Those take
+
+def drawn(number: int, petals: int = MOST_PETALS) -> tuple[Case, Arguments]:
+    """A random bearing of at most so many petals with a rotor; and the arguments of every verb that needs some.
+
+    One bearing in 32 has its contacts at points between nodes, on the coarsest petals that there are. Those take
     ten times the time of contacts at nodes, which the others have.
     """
-    rng = np.random.default_rng([number, SEED])
-    contacts = {"model.contacts": "nodes"} if number % 16 else {"model.petal_cells": 12}
-    case = wide_case(rng, **{"model.cells_per_pitch": 12, **contacts})
+    case, rng = pack(number, petals)
     assert case.pack is not None
     area = case.gas.ambient_pressure * 2.0 * case.bearing.journal_radius * case.bearing.length
     load = area * 10.0 ** rng.uniform(-4.0, -1.0)
@@ -136,12 +151,12 @@ def scattered(case: Case, arguments: Arguments) -> None:
 
 
 def optimised(case: Case, arguments: Arguments) -> None:
-    """Three designs under a load."""
+    """Two designs under a load."""
     assert case.petals is not None
     thin, thick = 0.95 * case.petals.thickness, 1.02 * case.petals.thickness
     vary, wanted = {"petals.thickness": f"{thin} m : {thick} m"}, "min_film_thickness"
     load = arguments["load"]
-    refuse_mistakes(optimize(case, vary, "balance", maximize=wanted, budget=3, execution=ALONE, load=load))
+    refuse_mistakes(optimize(case, vary, "balance", maximize=wanted, budget=2, execution=ALONE, load=load))
 
 
 def reported(case: Case, arguments: Arguments) -> None:
@@ -193,7 +208,7 @@ RUNS = {verb: OF_MANY.get(verb, partial(analysed, verb)) for verb in COSTS}
 
 def ran(number: int, verb: str, seconds: float = SECONDS) -> Ran:
     """Run one verb on one bearing; contacts at points have longer."""
-    case, arguments = drawn(number)
+    case, arguments = drawn(number, FEW_PETALS if verb in COSTLY else MOST_PETALS)
     if case.model.contacts == "points":
         seconds *= POINTS_TAKE
     begun = time.process_time()
