@@ -7,6 +7,7 @@ some ``c N log2 N`` entries (George 1973); `c` is measured, at the peak of whole
 from __future__ import annotations
 
 import math
+import os
 from dataclasses import dataclass, replace
 
 from petalfoil.case import Case, ModelKind, PetalTheory
@@ -17,7 +18,7 @@ BYTES_WITH_PETALS = 900.0
 """`c` of film and petals [bytes]: measured 430 to 660 over 4 000 to 160 000 unknowns, to 780 with adapted stations."""
 
 BYTES_WITH_STRETCHING = 1200.0
-"""`c` of film and petals that stretch [bytes]: measured 590 to 1160 over 50 000 to 75 000 unknowns."""
+"""`c` of film and petals that stretch [bytes]: measured 540 to 1160 over 3 700 to 290 000 unknowns."""
 
 BYTES_OF_FILM = 350.0
 """`c` of a film alone [bytes]: measured 220 to 330, over 2 000 to 130 000 unknowns."""
@@ -118,10 +119,28 @@ def check_memory(case: Case, bearings: int = 1) -> None:
 
 
 def available_memory() -> float:
-    """Memory that can be taken without swapping [bytes]."""
+    """Memory that can be taken without swapping and within the limits of this process [bytes]."""
     import psutil
 
-    return float(psutil.virtual_memory().available)
+    return min(float(psutil.virtual_memory().available), within_limits())
+
+
+def within_limits() -> float:
+    """Memory that the operating system still grants this process; infinite without limits [bytes].
+
+    Near such a limit the sparse factorisation does not fail: it goes on with little memory, for minutes.
+    """
+    if os.name != "posix":
+        return math.inf
+    import resource
+
+    import psutil
+
+    used = psutil.Process().memory_info()
+    taken = {resource.RLIMIT_AS: used.vms, resource.RLIMIT_DATA: getattr(used, "data", used.rss)}
+    limits = {kind: resource.getrlimit(kind)[0] for kind in taken}
+    granted = (limits[kind] - size for kind, size in taken.items() if limits[kind] != resource.RLIM_INFINITY)
+    return max(float(min(granted, default=math.inf)), 0.0)
 
 
 def _fitting(grid: GridSize, available: float) -> str:

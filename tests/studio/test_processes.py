@@ -24,8 +24,6 @@ pytestmark = [pytest.mark.slow, pytest.mark.skipif(os.name != "posix", reason="s
 ORPHANS_END = 5.0
 """Time in which workers end after their server was killed [s]."""
 LONG = Design.starting().with_value("model.kind", "3d").with_value("model.cells_per_pitch", 96).to_toml()
-BENT = Design.from_toml(LONG).with_value("petals.theory", "inextensible").to_toml()
-"""The long case with petals that bend only: its coarse solution fits into little memory, and it itself does not."""
 LITTLE = 300e6
 """Memory in which a worker answers the short case and not the long one [bytes]: it takes 200 MB before it begins."""
 SHORT = Design.starting().with_value("model.cells_per_pitch", 24).to_toml()
@@ -110,7 +108,7 @@ def test_a_worker_that_takes_too_much_memory_is_told(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr("petalfoil.studio.worker_process.MOST_MEMORY", LITTLE)
 
     async def ask(engine: WorkerPool) -> None:
-        outcome = await answer(engine, BENT, is_long=True).outcome
+        outcome = await answer(engine, LONG, is_long=True).outcome
         assert isinstance(outcome, Failure)
         assert "memory" in f"{outcome.message} {outcome.advice}"
         assert isinstance(await answer(engine, SHORT).outcome, Done)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import time
@@ -81,7 +82,8 @@ from tests.cases import case
 def peak():  # [bytes]; that of `resource` would be the parent's
     return 1024 * int(re.search(r"VmHWM:\\s*(\\d+)", Path("/proc/self/status").read_text())[1])
 
-one = case(sys.argv[1], **{"model.cells_per_pitch": int(sys.argv[2]), "model.axial_cells": int(sys.argv[3])})
+changes = {} if sys.argv[4] == "-" else {"model.kind": "3d", "petals.theory": sys.argv[4]}
+one = case(sys.argv[1], **changes, **{"model.cells_per_pitch": int(sys.argv[2]), "model.axial_cells": int(sys.argv[3])})
 petalfoil.solve(one.replace(**{"model.cells_per_pitch": 8, "model.axial_cells": 2}))  # what Python itself takes
 before = peak()
 petalfoil.solve(one)
@@ -91,10 +93,50 @@ print(peak() - before)
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
-@pytest.mark.parametrize(("name", "grid"), [("paper_n8_spatial", (64, 24)), ("plain_journal", (512, 128))])
-def test_the_estimate_holds_within_a_factor_of_two(name: str, grid: tuple[int, int]) -> None:
+@pytest.mark.parametrize(
+    ("name", "grid", "theory"),
+    [
+        ("paper_n8_spatial", (64, 24), "inextensible"),
+        ("plain_journal", (512, 128), "-"),
+        ("paper_n8", (24, 12), "shell"),
+    ],
+)
+def test_the_estimate_holds_within_a_factor_of_two(name: str, grid: tuple[int, int], theory: str) -> None:
     cells, axial = grid
-    command = [sys.executable, "-c", PEAK, name, str(cells), str(axial)]
+    command = [sys.executable, "-c", PEAK, name, str(cells), str(axial), theory]
     peak = float(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
     one = case(name, **{"model.cells_per_pitch": cells, "model.axial_cells": axial})
+    one = one if theory == "-" else one.replace(**{"model.kind": "3d", "petals.theory": theory})
     assert 1.0 <= grid_of(one).memory / peak <= 2.0
+
+
+LIMITED = """
+import resource
+import time
+
+import psutil
+
+import petalfoil
+from petalfoil.errors import DefinitionError
+from tests.cases import case
+
+one = case("paper_n8", **{"model.kind": "3d"})
+petalfoil.solve(one.replace(**{"model.cells_per_pitch": 8, "model.axial_cells": 2}))
+most = psutil.Process().memory_info().data + 300_000_000
+resource.setrlimit(resource.RLIMIT_DATA, (most, most))
+start = time.process_time()
+try:
+    petalfoil.solve(one)
+except DefinitionError as refusal:
+    print(time.process_time() - start, refusal)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="macOS ignores such limits")
+def test_a_limit_of_the_process_counts_as_the_memory_that_there_is() -> None:
+    """Near it SuperLU would go on for minutes."""
+    run = subprocess.run([sys.executable, "-c", LIMITED], check=True, capture_output=True, text=True)
+    seconds, refusal = run.stdout.split(" ", 1)
+    assert float(seconds) < 1.0
+    assert re.search(r"needs some 0\.\d+ GB of memory, 0\.[23]\d* GB are available; allowed: up to cells_per", refusal)
