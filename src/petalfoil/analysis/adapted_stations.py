@@ -23,6 +23,7 @@ from petalfoil.equilibrium.run_context import running
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold
 from petalfoil.errors import ConvergenceError
+from petalfoil.memory import check_memory
 from petalfoil.system.build import build_problem
 from petalfoil.system.loaded import load_of
 
@@ -52,11 +53,18 @@ def with_stations(case: Case) -> Case:
     """The case with its adapted `model.axial_density`; as it is where stations are not to be adapted.
 
     Where what asks for stations is largest at the ends, equal cells do not resolve it: the coarse solution is repeated
-    on cells that shrink toward them, of petals that bend only (of petals that stretch this has not been measured).
+    on cells that shrink toward them, of petals that bend only. The contact fraction of the rig with petals that
+    stretch, 0.0248 on 128 × 48 cells, is 0.0270 on the default grid without that and 0.0353 with it (decision 018).
     Where the coarse grid has no solution, stations lie at equal distances, and the case of the result says so.
+
+    Raises
+    ------
+    DefinitionError
+        The grid of the case needs more memory than there is.
     """
     if not case.adapts_stations or case.operation.speed == 0.0:
         return case
+    check_memory(case)
     density = coarse_density(case, {"model.axial_density": UNIFORM})
     bends_only = case.petal_theory is PetalTheory.INEXTENSIBLE
     if bends_only and density is not None and density[0] == max(density):
