@@ -17,13 +17,14 @@ from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
 from petalfoil.analysis.sensitivity_table import MODES
 from petalfoil.case import Case
 from petalfoil.case.parameters import with_values
-from petalfoil.equilibrium.small_motion import AT_POINTS
+from petalfoil.equilibrium.small_motion import AT_POINTS, ON_LINES
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError, UsageError
 from tests.cases import case
 from tests.verification.resolved import difference_quotient
 
 PLAIN = {"model.cells_per_pitch": 12, "model.axial_cells": 4}
+LINES = {"model.cells_per_pitch": 8, "model.axial_cells": 4}
 
 
 EXACT = {
@@ -47,7 +48,7 @@ def found_at(of: Case) -> Solution:
 def derivatives(of: Case, results: Callable[[Case, Solution], ResultsOf]) -> DerivativesOf:
     """Derivatives of results that belong to an equilibrium."""
     found = found_at(of)
-    return DerivativesOf(of, found, results(of, found), as_points=found.elements is not None)
+    return DerivativesOf(of, found, results(of, found), as_points=found.contact_model in (AT_POINTS, ON_LINES))
 
 
 def loaded(of: Case, load: float) -> Case:
@@ -83,6 +84,29 @@ def test_stiffness_and_damping_by_all_kinds_of_parameters(frequency: float | Non
     of = loaded(case(**{"model.cells_per_pitch": 16}), 20.0)
     found = derivatives(of, lambda _case, _found: coefficient_results(frequency))
     assert_solved_again(found, ("petals.bend_radius", "petals.arc_length", "bearing.bushing_radius", "gas.viscosity"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("theory", "load"), [("inextensible", None), ("shell", 20.0)])
+def test_stiffness_and_damping_with_contact_lines(theory: str, load: float | None) -> None:
+    of = case("paper_n8_spatial", **{**LINES, "petals.theory": theory})
+    found = derivatives(of if load is None else loaded(of, load), lambda _case, _found: coefficient_results(None))
+    assert found.solution.contact_model == ON_LINES
+    assert_solved_again(found, ("petals.thickness", "operation.speed", "bearing.bushing_radius"))
+
+
+@pytest.mark.slow
+def test_stiffness_and_damping_with_contact_lines_follow_a_change_of_a_thousandth() -> None:
+    """The whole way, whatever the set of contacts: `sensitivity` beside `coefficients` of neighbours."""
+    of = loaded(case("paper_n8_spatial", **{**LINES, "petals.theory": "shell"}), 20.0)
+    wanted = "stiffness_xx, stiffness_yy, damping_yy"
+    table = petalfoil.sensitivity(of, "petals.youngs_modulus", ask="coefficients", of=wanted)
+    value = of.petals.youngs_modulus
+    there = [petalfoil.coefficients(of.replace(**{"petals.youngs_modulus": share * value})) for share in (0.999, 1.001)]
+    for name, entry in (("stiffness_xx", (0, 0)), ("stiffness_yy", (1, 1)), ("damping_yy", (1, 1))):
+        row = table.isel(point=list(table["quantity"].values).index(name))
+        change = float(there[1][name[:-3]][0][entry] - there[0][name[:-3]][0][entry])
+        assert_allclose(float(row["derivative"]) * 0.002 * value, change, rtol=1e-3)
 
 
 @pytest.mark.slow
