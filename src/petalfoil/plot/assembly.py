@@ -19,11 +19,14 @@ from petalfoil.plot.views import Floats, array, journal_surface, mid_plane, numb
 _CIRCLE = np.linspace(0.0, 2.0 * np.pi, 361)
 _MARGIN = 0.12
 """Angle shown beyond each end of the unrolled petal over the petal's angle."""
+_DEPTH = 0.12
+"""Drawn depth of journal and bushing over the radii between them."""
+_ANGLE = "bushing angle  θ [deg]"
 _MILLI = 1e3
 
 
 def pack(ds: xr.Dataset) -> Figure:
-    """Draw the foil pack of ``check``: the section with its clearance stretched, and one petal unrolled.
+    """Draw the foil pack of ``check``: its section, and one petal unrolled, assembled in the pack and free of it.
 
     Parameters
     ----------
@@ -33,7 +36,8 @@ def pack(ds: xr.Dataset) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Section on the left, unrolled petal on the right.
+        Section with its clearance stretched on the left; on the right the unrolled pack, and below it, on a scale of
+        its own, the free petal, which reaches far into the journal.
 
     Raises
     ------
@@ -41,31 +45,48 @@ def pack(ds: xr.Dataset) -> Figure:
         The assembled shape did not converge.
     """
     ds = mid_plane(one_point(ds))
-    fig = style.figure(12.0, 6.2)
-    left, right = fig.subplots(1, 2, width_ratios=[1.0, 1.05])
-    _draw_section(left, ds)
-    _draw_unrolled(right, ds)
+    fig = style.figure(12.0, 6.8)
+    has_free = "radius" in ds and "free_radius" in ds
+    rows = ["pack", "free"] if has_free else ["pack"]
+    axes = fig.subplot_mosaic([["section", row] for row in rows], width_ratios=[1.0, 1.1])
+    _draw_section(axes["section"], ds)
+    _draw_pack(axes["pack"], ds)
+    if has_free:
+        _draw_free(axes["free"], ds)
+    _draw_legend(axes[rows[-1]], [axes[row] for row in rows])
     style.set_title(fig, ds, *_facts(ds))
-    _state_stretch(fig, right, ds)
+    shown = {"pack": "foil pack" if "radius" in ds else "clearance", "free": "petal 0 before assembly"}
+    _state_stretches(fig, {axes[row]: shown[row] for row in rows}, ds)
     return fig
 
 
-def _state_stretch(fig: Figure, ax: Axes, ds: xr.Dataset) -> None:
-    """Head the unrolled petal with how many times its radius is stretched against its arc."""
-    ax.set_title("unrolled", fontsize=style.LABEL, color=style.INK)
+def _draw_legend(lowest: Axes, shown: list[Axes]) -> None:
+    """One legend of all unrolled panels, below the lowest of them."""
+    handles = [handle for ax in shown for handle in ax.get_legend_handles_labels()[0]]
+    if handles:
+        look: style.Look = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.34), "ncols": 2, "frameon": False}
+        names = [str(handle.get_label()) for handle in handles]
+        lowest.legend(handles, names, fontsize=style.TICK, **look)
+
+
+def _state_stretches(fig: Figure, shown: dict[Axes, str], ds: xr.Dataset) -> None:
+    """Head each unrolled panel with how many times its radius is stretched against its arc."""
+    for ax, name in shown.items():
+        ax.set_title(name, fontsize=style.LABEL, color=style.INK)
     fig.draw_without_rendering()  # the layout decides the size of the axes
-    box = ax.get_window_extent()
-    arc = math.radians(np.ptp(ax.get_xlim())) * number(ds, "bushing_radius") * _MILLI
-    stretch = (box.height / np.ptp(ax.get_ylim())) / (box.width / arc)
-    told = f"{stretch:.2g}" if stretch < 100.0 else labels.grouped(float(f"{stretch:.2g}"))
-    ax.set_title(f"unrolled, radius stretched ×{told}", fontsize=style.LABEL, color=style.INK)
+    for ax, name in shown.items():
+        box = ax.get_window_extent()
+        arc = math.radians(np.ptp(ax.get_xlim())) * number(ds, "bushing_radius") * _MILLI
+        stretch = (box.height / np.ptp(ax.get_ylim())) / (box.width / arc)
+        told = f"{stretch:.2g}" if stretch < 100.0 else labels.grouped(float(f"{stretch:.2g}"))
+        ax.set_title(f"{name}, unrolled, radius stretched ×{told}", fontsize=style.LABEL, color=style.INK)
 
 
 def _facts(ds: xr.Dataset) -> list[str]:
     formats = {
         "overlap": "overlap {:.3g}",
         "layers": "{:.0f} layers",
-        "radial_clearance": "radial clearance {:.4g} µm",
+        "radial_clearance": "least radial clearance {:.4g} µm",
         "pack_clearance": "{:.4g} µm above the solid pack height",
         "compressibility_number": "Λ on radial clearance = {:.3g}",
     }
@@ -89,32 +110,47 @@ def _draw_section(ax: Axes, ds: xr.Dataset) -> None:
             patch.set(facecolor=style.BLUE, zorder=3)
     surface = stretch.points(journal_surface(ds, _CIRCLE), _CIRCLE)
     ax.plot(*surface.T, color=style.INK, linewidth=1.0, gid="journal surface")
-    ax.text(0.0, 0.0, "journal", ha="center", va="center", fontsize=style.TICK, color=style.INK)
+    size = f"journal\nØ {2e3 * number(ds, 'journal_radius'):.4g} mm"
+    ax.text(0.0, 0.0, size, ha="center", va="center", fontsize=style.TICK, color=style.INK)
     frame_section(ax, stretch)
 
 
-def _draw_unrolled(ax: Axes, ds: xr.Dataset) -> None:
-    """Radius against bushing angle over one petal, with everything that passes there; the legend stands below."""
+def _draw_pack(ax: Axes, ds: xr.Dataset) -> None:
+    """Radius against bushing angle over one petal: the assembled petals between journal and bushing."""
+    window = _window(ds)
+    bore, journal = number(ds, "bushing_radius") * _MILLI, journal_surface(ds, window) * _MILLI
+    if "radius" in ds:
+        _draw_petals(ax, ds, window)
+    _draw_walls(ax, np.degrees(window), journal, (float(journal.min()), bore))
+    style.dress(ax, "" if "free_radius" in ds else _ANGLE, "radius [mm]")
+
+
+def _draw_free(ax: Axes, ds: xr.Dataset) -> None:
+    """The free mid-surface of the first petal, and where it would meet the journal."""
+    window, root = _window(ds), float(array(ds, "root_angle")[0])
+    bore, journal = number(ds, "bushing_radius") * _MILLI, journal_surface(ds, window) * _MILLI
+    phi, free = array(ds, "phi"), array(ds, "free_radius") * _MILLI
+    ax.plot(np.degrees(root + phi), free, "--", color=style.VERMILLION, linewidth=1.6, label="petal 0, free", zorder=4)
+    meets = number(ds, "first_contact_angle")
+    if not math.isnan(meets):
+        place = (math.degrees(root + meets), float(np.interp(meets, phi, free)))
+        ax.plot(*place, "o", color=style.VERMILLION, markersize=6, label="free petal meets the journal", zorder=5)
+    _draw_walls(ax, np.degrees(window), journal, (min(float(journal.min()), float(free.min())), bore))
+    style.dress(ax, _ANGLE, "radius [mm]")
+
+
+def _window(ds: xr.Dataset) -> Floats:
+    """Bushing angles that are shown: those of the first petal and a margin, or the whole bore [rad]."""
     span = float(array(ds, "phi")[-1]) if "phi" in ds.coords else 2.0 * math.pi
     root = float(array(ds, "root_angle")[0]) if "root_angle" in ds.coords else 0.0
     margin = _MARGIN if "radius" in ds else 0.0
-    window = np.linspace(root - margin * span, root + (1.0 + margin) * span, 361)
-    bore, journal = number(ds, "bushing_radius") * _MILLI, journal_surface(ds, window) * _MILLI
-    low = float(journal.min())
-    if "radius" in ds:
-        _draw_neighbours(ax, ds, window)
-        low = min(low, _draw_free(ax, ds, root))
-    _draw_walls(ax, np.degrees(window), journal, (low, bore))
-    style.dress(ax, "bushing angle  θ [deg]", "radius [mm]")
-    ax.set_xlim(math.degrees(window[0]), math.degrees(window[-1]))
-    if ax.get_legend_handles_labels()[0]:
-        style.legend(ax, loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3, frameon=False)
+    return np.linspace(root - margin * span, root + (1.0 + margin) * span, 361)
 
 
 def _draw_walls(ax: Axes, degrees: Floats, journal: Floats, limits: tuple[float, float]) -> None:
     """Journal below and bushing above, each with its name."""
     low, bore = limits
-    depth = 0.12 * (bore - low)
+    depth = _DEPTH * (bore - low)
     look: style.Look = {"facecolor": style.PALE, "edgecolor": style.GREY, "hatch": "////", "linewidth": 0}
     ax.fill_between(degrees, bore, bore + depth, gid="bushing", **look)
     ax.fill_between(degrees, low - depth, journal, facecolor=style.STEEL, linewidth=0, zorder=0, gid="journal")
@@ -124,14 +160,15 @@ def _draw_walls(ax: Axes, degrees: Floats, journal: Floats, limits: tuple[float,
     box = {"facecolor": style.WHITE, "edgecolor": "none", "pad": 1.5}
     ax.text(degrees[6], low - depth / 2, "journal", **place)
     ax.text(degrees[6], bore + depth / 2, "bushing", bbox=box, **place)
+    ax.set_xlim(degrees[0], degrees[-1])
     ax.set_ylim(low - depth, bore + depth)
 
 
-def _draw_neighbours(ax: Axes, ds: xr.Dataset, window: Floats) -> None:
-    """The petals with their thickness; the first one stands out."""
+def _draw_petals(ax: Axes, ds: xr.Dataset, window: Floats) -> None:
+    """The petals with their thickness; the first one stands out, the others have two shades in turn."""
     half, phi, radius = number(ds, "petal_thickness") / 2, array(ds, "phi"), array(ds, "radius")
-    roots = array(ds, "root_angle")
-    for petal, root in enumerate(roots):
+    named: set[str] = set()
+    for petal, root in enumerate(array(ds, "root_angle")):
         for turn in (-2.0 * math.pi, 0.0, 2.0 * math.pi):
             theta = root + turn + phi
             if theta[-1] < window[0] or theta[0] > window[-1]:
@@ -142,19 +179,8 @@ def _draw_neighbours(ax: Axes, ds: xr.Dataset, window: Floats) -> None:
                 "edgecolor": style.INK,
                 "linewidth": 0.5,
             }
-            label = "petal, assembled" if first else None
+            name = "petal 0, assembled" if first else f"{('even', 'odd')[petal % 2]} petals"
             faces = ((radius[petal] - half) * _MILLI, (radius[petal] + half) * _MILLI)
+            label = None if name in named else name
             ax.fill_between(np.degrees(theta), *faces, label=label, zorder=2 + first, gid=f"petal {petal}", **look)
-
-
-def _draw_free(ax: Axes, ds: xr.Dataset, root: float) -> float:
-    """The free mid-surface of the first petal and where it would meet the journal; returns its lowest radius [mm]."""
-    if "free_radius" not in ds:
-        return math.inf
-    phi, free = array(ds, "phi"), array(ds, "free_radius") * _MILLI
-    ax.plot(np.degrees(root + phi), free, "--", color=style.VERMILLION, linewidth=1.6, label="petal, free", zorder=4)
-    meets = number(ds, "first_contact_angle")
-    if not math.isnan(meets):
-        place = (math.degrees(root + meets), float(np.interp(meets, phi, free)))
-        ax.plot(*place, "o", color=style.VERMILLION, markersize=6, label="free petal meets the journal", zorder=5)
-    return float(free.min())
+            named.add(name)

@@ -109,11 +109,11 @@ def draw_film(ax: Axes, ds: xr.Dataset) -> None:
             least, color=style.GREY, linewidth=1.0, linestyle="--", label=f"contact film thickness, {least:.3g} µm"
         )
     ax.set_yscale("log")
-    ax.set_ylim(0.7 * min(film.min(), least if least > 0.0 else math.inf), 6.0 * film.max())
+    ax.set_ylim(0.7 * min(film.min(), least if least > 0.0 else math.inf), 9.0 * film.max())
     style.logarithmic(ax.yaxis)
     _frame_circle(ax, ds, "film thickness  h [µm]")
     _remark(ax, "minimum", number(ds, "min_film_thickness") * MICRO, "µm", number(ds, "min_film_thickness_angle"))
-    style.legend(ax, loc="upper left")
+    style.legend(ax, loc="upper left", fontsize=style.TICK - 1.0, handlelength=1.4)
 
 
 def _frame_circle(ax: Axes, ds: xr.Dataset, ylabel: str) -> None:

@@ -21,6 +21,7 @@ from matplotlib.patches import FancyArrowPatch
 from petalfoil.errors import UsageError
 from petalfoil.plot import labels, style
 from petalfoil.plot.film_fields import draw_film, draw_film_map, draw_pressure, draw_pressure_map
+from petalfoil.plot.labels import MICRO
 from petalfoil.plot.section_walls import draw_backing, draw_foil, draw_petals, draw_solids, foil_room
 from petalfoil.plot.stretch import Stretch, round_scale
 from petalfoil.plot.views import (
@@ -41,7 +42,9 @@ _LEAST_JOURNAL = 0.1
 """Least share of the bore's radius that is left to the journal at any scale."""
 _BAND = 0.34
 """Height of the largest excess pressure over the drawn radius of the journal."""
-_LEGEND = 0.32
+_LEAST_ARROW = 0.03
+"""Least drawn displacement over the drawn radius of the journal that an arrow shows: a shorter one is all head."""
+_LEGEND = 0.45
 """Space below the section for its legend, over the bushing's radius."""
 _CIRCLE = np.linspace(0.0, 2.0 * np.pi, 361)
 
@@ -121,6 +124,7 @@ def draw_section(ax: Axes, ds: xr.Dataset, scale: float | None = None) -> None:
             array(ds, "pressure") / number(ds, "ambient_pressure")
         )  # of the whole film, as a map beside it
         draw_film_pressure(ax, plane, stretch, shades)
+        _draw_ambient_line(ax, plane, stretch, shades)
         bar = ax.figure.colorbar(ax.collections[-1], ax=ax, shrink=0.6, pad=0.02, aspect=24)
         bar.set_label("p / p$_a$", fontsize=style.LABEL)
     draw_foil(ax, plane, stretch)
@@ -190,11 +194,22 @@ def draw_film_pressure(ax: Axes, ds: xr.Dataset, stretch: Stretch, shades: Shade
 def _band(ds: xr.Dataset, stretch: Stretch, pressure: tuple[Floats, Shades], theta: Floats) -> tuple[Floats, Floats]:
     """Base line (ambient pressure) and top of the pressure band; suction goes outside the base line."""
     ratio, shades = pressure
-    drawn = stretch.radius(journal_surface(ds, theta))
-    height = _BAND * stretch.radius(np.array(grown_radius(ds))) / shades.largest
-    base = drawn - height * shades.suction
+    base, height = _ambient_line(ds, stretch, shades, theta)
     direction = np.stack([np.cos(theta), np.sin(theta)], axis=-1)
     return base[..., None] * direction, (base - height * (ratio - 1.0))[..., None] * direction
+
+
+def _ambient_line(ds: xr.Dataset, stretch: Stretch, shades: Shades, theta: Floats) -> tuple[Floats, float]:
+    """Drawn radius of ambient pressure in the band, and of one ambient pressure above it [m]."""
+    height = _BAND * float(stretch.radius(np.array(grown_radius(ds)))) / shades.largest
+    return stretch.radius(journal_surface(ds, theta)) - height * shades.suction, height
+
+
+def _draw_ambient_line(ax: Axes, ds: xr.Dataset, stretch: Stretch, shades: Shades) -> None:
+    """The line that the pressure band is drawn from: inward above ambient pressure, outward below it."""
+    base, _ = _ambient_line(ds, stretch, shades, _CIRCLE)
+    look: style.Look = {"color": style.GREY, "linewidth": 1.0, "linestyle": ":", "gid": "ambient pressure"}
+    ax.plot(base * np.cos(_CIRCLE), base * np.sin(_CIRCLE), label="pressure band, from p$_a$ inward", **look)
 
 
 def _between(low: Floats, high: Floats) -> Floats:
@@ -235,12 +250,16 @@ def _draw_arrows(ax: Axes, ds: xr.Dataset, stretch: Stretch) -> None:
     drawn = float(stretch.radius(np.array(grown_radius(ds))))
     force = np.array([number(ds, "force_x"), number(ds, "force_y")])
     size, distance = float(np.hypot(*force)), float(np.hypot(*e))
-    ax.plot(0.0, 0.0, "+", color=style.INK, markersize=9, gid="centre")
+    ax.plot(0.0, 0.0, "+", color=style.INK, markersize=9, label="centre of the bushing", gid="centre")
     taken = []  # directions from the journal's centre that arrows occupy
-    if distance > 0.0:
-        _arrow(ax, np.zeros(2), e, style.INK, "displacement")
-        ax.plot([], [], color=style.INK, linewidth=1.6, label="displacement, to the same scale")
+    if distance > _LEAST_ARROW * drawn:
+        _arrow(ax, np.zeros(2), e, style.GREEN, "displacement")
+        told = f"displacement, {distance / stretch.scale * MICRO:.3g} µm ×{labels.grouped(stretch.scale)}"
+        ax.plot([], [], color=style.GREEN, linewidth=1.6, label=told)
         taken.append(-e / distance)
+    elif distance > 0.0:
+        told = f"displacement, {distance / stretch.scale * MICRO:.3g} µm (not visible)"
+        ax.plot([], [], linestyle="", label=told)
     if size > 0.0:
         along = 0.5 * drawn * force / size
         against = (
@@ -265,7 +284,7 @@ def _widest_gap(directions: list[Floats]) -> float:
 
 
 def _arrow(ax: Axes, tail: Floats, tip: Floats, colour: str, name: str) -> None:
-    arrow = FancyArrowPatch(tuple(tail), tuple(tip), arrowstyle="-|>", mutation_scale=12, shrinkA=0, shrinkB=0)
+    arrow = FancyArrowPatch(tuple(tail), tuple(tip), arrowstyle="-|>", mutation_scale=10, shrinkA=0, shrinkB=0)
     arrow.set(color=colour, linewidth=1.6, gid=name, zorder=6)
     ax.add_patch(arrow)
 
@@ -292,8 +311,16 @@ def frame_section(ax: Axes, stretch: Stretch) -> None:
     size = stretch.bushing
     ax.set_xlim(-1.18 * size, 1.18 * size)
     ax.set_ylim(-(1.18 + _LEGEND) * size, 1.18 * size)
-    wall = "foil" if any(line.get_gid() == "top foil" for line in ax.lines) else "petals"
-    note = f"radial clearance drawn ×{labels.grouped(stretch.scale)}: {wall}, film and displacement alike"
+    drawn = f"radial clearance drawn ×{labels.grouped(stretch.scale)}"
+    note = f"{drawn}, {_within(ax)}displacement too; journal not to scale"
     ax.text(0.0, -1.24 * size, note, ha="center", va="center", fontsize=style.TICK, color=style.INK)
     below = {"bbox_to_anchor": (0.0, -1.27 * size), "bbox_transform": ax.transData, "borderaxespad": 0.0}
-    style.legend(ax, loc="upper center", ncols=3, frameon=False, **below)
+    style.legend(ax, loc="upper center", ncols=2, frameon=False, **below)
+
+
+def _within(ax: Axes) -> str:
+    """What is stretched together with the clearance, beside the displacement."""
+    gids = {str(artist.get_gid()) for artist in (*ax.lines, *ax.patches)}
+    if "top foil" in gids:
+        return "foil and "
+    return "petals and " if "petal 0" in gids else ""

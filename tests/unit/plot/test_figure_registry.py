@@ -42,7 +42,7 @@ def test_a_curve_gets_its_characteristic(curve: xr.Dataset, static: xr.Dataset, 
         "contact fraction [%]",
     ]
     assert ylabels(static) == ["bearing force  |F| [N]", "starting torque  M$_0$ [mN·m]"]
-    assert ylabels(checked) == ["radius [mm]"]
+    assert ylabels(checked) == ["radius [mm]", "radius [mm]"]
 
 
 def test_a_single_static_point_gets_its_section() -> None:

@@ -138,6 +138,21 @@ def test_the_scale_is_stated_with_what_else_is_needed(flat: xr.Dataset, texts: C
     assert "radial clearance drawn ×4" in texts(plot.cross_section(flat, scale=4))
 
 
+def test_a_displacement_that_is_too_small_to_be_seen_is_told_in_words(
+    flat: xr.Dataset, texts: Callable[[Figure], str]
+) -> None:
+    near = flat.assign(eccentricity_x=((), 0.0), eccentricity_y=((), -8e-9))
+    fig = plot.cross_section(near)
+    assert not fig.axes[0].findobj(lambda artist: artist.get_gid() == "displacement")
+    assert "displacement, 0.008 µm (not visible)" in texts(fig)
+    assert "displacement, 100 µm ×10" in texts(plot.cross_section(flat))
+
+
+def test_the_note_names_what_is_stretched(flat: xr.Dataset, plain: xr.Dataset, texts: Callable[[Figure], str]) -> None:
+    assert "×10, petals and displacement too; journal not to scale" in texts(plot.cross_section(flat))
+    assert "×200, displacement too; journal not to scale" in texts(plot.cross_section(plain))
+
+
 def test_the_default_scale_is_a_round_number_that_fits(flat: xr.Dataset, plain: xr.Dataset) -> None:
     assert default_scale(flat) == 10.0
     assert default_scale(plain) == 200.0
