@@ -62,15 +62,31 @@ def campbell(ds: xr.Dataset) -> Figure:
 
 
 def _kind(ds: xr.Dataset, branch: int) -> tuple[str, style.Look]:
-    """What a branch is called, and its look: colour by direction, line by form."""
-    shown = np.isfinite(array(ds, "natural_frequency")[:, branch])
-    direction = float(np.median(array(ds, "whirl_direction")[shown, branch]))
-    tilt = float(np.median(array(ds, "mode_tilt")[shown, branch])) if "mode_tilt" in ds else 0.0
-    way, colour = ("forward", style.BLUE) if direction > ROUND else ("elliptical", style.PURPLE)
+    """What a branch is called, and its look: colour and width by direction, line and marker by form.
+
+    Forward branches are wide and backward ones thin with open markers, so that both are seen where they coincide.
+    """
+    direction = _direction(ds, branch)
+    tilt = _middle(ds, "mode_tilt", branch) if "mode_tilt" in ds else 0.0
+    way, look = "elliptical", {"color": style.PURPLE, "linewidth": 1.8, "markersize": 5.0}
+    if direction > ROUND:
+        way, look = "forward", {"color": style.BLUE, "linewidth": 2.4, "markersize": 6.0}
     if direction < -ROUND:
-        way, colour = "backward", style.ORANGE
+        open_marker = {"markerfacecolor": style.WHITE, "markersize": 4.0}
+        way, look = "backward", {"color": style.ORANGE, "linewidth": 1.2, "zorder": 3.0} | open_marker
     form, marker = ("conical", "^") if tilt > CONICAL else ("cylindrical", "o")
-    return f"{form}, {way}", {"color": colour, "marker": marker, "linestyle": "--" if tilt > CONICAL else "-"}
+    return f"{form}, {way}", look | {"marker": marker, "linestyle": "--" if tilt > CONICAL else "-"}
+
+
+def _direction(ds: xr.Dataset, branch: int) -> float:
+    """Whirl direction of a branch: 1 forward, -1 backward."""
+    return _middle(ds, "whirl_direction", branch)
+
+
+def _middle(ds: xr.Dataset, name: str, branch: int) -> float:
+    """Median of a quantity of a branch over the speeds that have it."""
+    shown = np.isfinite(array(ds, "natural_frequency")[:, branch])
+    return float(np.median(array(ds, name)[shown, branch]))
 
 
 def _draw_branches(above: Axes, below: Axes, ds: xr.Dataset) -> None:
@@ -81,8 +97,8 @@ def _draw_branches(above: Axes, below: Axes, ds: xr.Dataset) -> None:
         name, look = _kind(ds, int(branch))
         label = "_" if name in named else name
         named.add(name)
-        above.plot(rpm, hertz[:, branch], label=label, markersize=5, linewidth=1.6, **look)
-        below.plot(rpm, ratio[:, branch], markersize=5, linewidth=1.6, **look)
+        above.plot(rpm, hertz[:, branch], label=label, **look)
+        below.plot(rpm, ratio[:, branch], **look)
         growing = ratio[:, branch] < 0.0
         if growing.any():
             ring: style.Look = {"markersize": 10, "markeredgecolor": style.VERMILLION, "markerfacecolor": "none"}
@@ -101,19 +117,34 @@ def _draw_speed_lines(ax: Axes, ds: xr.Dataset) -> None:
 
 BESIDE = (((8.0, -14.0), "left"), ((-8.0, 9.0), "right"))
 """Where labels of critical speeds stand in turn [points]."""
+SAME = 0.005
+"""Relative distance of two critical speeds that share a label."""
 
 
 def _mark_crossings(ax: Axes, ds: xr.Dataset) -> None:
+    """Mark where a branch has the frequency of the speed; the unbalance, which whirls forward, drives forward ones."""
     critical = array(ds, "critical_speed")
-    critical = np.sort(critical[np.isfinite(critical)])
-    if not critical.size:
-        return
-    ax.plot(
-        critical * RPM, critical * HERTZ, "x", color=style.INK, markersize=9, markeredgewidth=2.0, gid="critical",
-        label="critical speed", zorder=5,
-    )  # fmt: skip
-    near_end = 0.85 * float(array(ds, "speed").max())  # a label to the right would cross the axis there
-    for place, speed in enumerate(critical):
+    found = sorted(
+        (float(speed), _direction(ds, branch) < -ROUND)
+        for branch in range(critical.shape[1])
+        for speed in critical[np.isfinite(critical[:, branch]), branch]
+    )
+    kinds: dict[bool, tuple[str, str, style.Look]] = {
+        False: ("critical speed", "x", {"color": style.INK, "markersize": 9.0, "markeredgewidth": 2.0}),
+        True: ("backward mode at 1×", "+", {"color": style.GREY, "markersize": 11.0, "markeredgewidth": 1.6}),
+    }
+    for backward, (label, marker, look) in kinds.items():
+        speeds = np.array([speed for speed, is_backward in found if is_backward == backward])
+        if speeds.size:
+            gid = "backward crossing" if backward else "critical"
+            ax.plot(speeds * RPM, speeds * HERTZ, marker, gid=gid, label=label, linestyle="", zorder=5, **look)
+    _label_speeds(ax, [speed for speed, _ in found], near_end=0.85 * float(array(ds, "speed").max()))
+
+
+def _label_speeds(ax: Axes, found: list[float], near_end: float) -> None:
+    """Write speeds beside their marks, those at one place once; past `near_end` a label to the right would be cut."""
+    apart = [speed for place, speed in enumerate(found) if not place or speed > (1.0 + SAME) * found[place - 1]]
+    for place, speed in enumerate(apart):
         place_at, side = ((34.0, -22.0), "right") if speed > near_end else BESIDE[place % 2]
         ax.annotate(
             f"{labels.grouped(speed * RPM)} rpm",
@@ -123,6 +154,7 @@ def _mark_crossings(ax: Axes, ds: xr.Dataset) -> None:
             ha=side,
             fontsize=style.TICK,
             color=style.INK,
+            bbox={"facecolor": style.WHITE, "edgecolor": "none", "alpha": 0.8, "pad": 1.0},
         )
 
 

@@ -21,6 +21,8 @@ WIDE = 5.0
 _USUAL_RATIO = 0.6
 """Whirl ratio up to which the axis goes at least: half-speed whirl is seen in its place."""
 _CALM = "stable for any rotor mass"
+_LEAST_LABEL = 0.25
+"""Part of the axis of masses in which a label has space."""
 
 
 def stability(ds: xr.Dataset) -> Figure:
@@ -149,25 +151,43 @@ def _point(ds: xr.Dataset) -> Figure:
 def _draw_masses(ax: Axes, ds: xr.Dataset) -> None:
     """Which rotor masses are stable, and which whirl; the rotor's own among them."""
     critical, rotor, ratio = (number(ds, name) for name in ("critical_mass", "rotor_mass", "whirl_ratio"))
-    known = [mass for mass in (critical, rotor) if math.isfinite(mass)]
-    right = 1.6 * max(known, default=0.0) or 1.0
-    calm = min(critical, right)
-    ax.axvspan(0.0, calm, color=style.GREEN, alpha=0.25, linewidth=0, gid="stable masses")
+    style.dress(ax, QUANTITIES["rotor_mass"].axis)
+    ax.set_yticks([])
+    left, right = _set_mass_axis(ax, [mass for mass in (critical, rotor) if math.isfinite(mass) and mass > 0.0])
+    calm = min(max(critical, left), right)
+    ax.axvspan(left, calm, color=style.GREEN, alpha=0.25, linewidth=0, gid="stable masses")
     ax.axvspan(calm, right, color=style.VERMILLION, alpha=0.25, linewidth=0, gid="whirling masses")
-    middle: style.Look = {"transform": ax.get_xaxis_transform(), "ha": "center", "va": "center", "color": style.INK}
-    if calm > 0.25 * right:
+    ends, mark = _places(ax, (left, calm, right)), _places(ax, (rotor,))[0]
+    middle: style.Look = {"transform": ax.transAxes, "ha": "center", "va": "center", "color": style.INK}
+    if ends[1] > _LEAST_LABEL:
         text = _CALM if math.isinf(critical) else f"stable below\n{critical:.4g} kg"
-        ax.text(_free_middle(0.0, calm, rotor), 0.5, text, fontsize=style.LABEL, **middle)
-    if calm < 0.75 * right:
+        ax.text(_free_middle(0.0, ends[1], mark), 0.5, text, fontsize=style.LABEL, **middle)
+    if ends[1] < 1.0 - _LEAST_LABEL:
         whirl = "" if math.isnan(ratio) else f"\nwhirl ratio {ratio:.3g}"
         text = "whirls at any rotor mass" if critical == 0.0 else f"whirls above {critical:.4g} kg"
-        ax.text(_free_middle(calm, right, rotor), 0.5, text + whirl, fontsize=style.LABEL, **middle)
+        ax.text(_free_middle(ends[1], 1.0, mark), 0.5, text + whirl, fontsize=style.LABEL, **middle)
     if math.isfinite(rotor):
         ax.axvline(rotor, color=style.INK, linewidth=1.6, gid="rotor")
-        ax.text(rotor, 1.03, f"rotor, {rotor:.4g} kg", fontsize=style.TICK, **(middle | {"va": "bottom"}))
-    style.dress(ax, QUANTITIES["rotor_mass"].axis)
-    ax.set_xlim(0.0, right)
-    ax.set_yticks([])
+        ax.text(mark, 1.03, f"rotor, {rotor:.4g} kg", fontsize=style.TICK, **(middle | {"va": "bottom"}))
+
+
+def _set_mass_axis(ax: Axes, masses: list[float]) -> tuple[float, float]:
+    """Limits that show the masses well apart from the ends; a logarithmic axis where they are far apart [kg]."""
+    low, high = min(masses, default=1.0), max(masses, default=1.0)
+    limits = (0.0, 1.6 * high)
+    if high > WIDE * low:
+        ax.set_xscale("log")
+        style.logarithmic(ax.xaxis)
+        beyond = (high / low) ** 0.4
+        limits = (low / beyond, high * beyond)
+    ax.set_xlim(limits)
+    return limits
+
+
+def _places(ax: Axes, masses: tuple[float, ...]) -> tuple[float, ...]:
+    """Where masses are on the axis: 0 at its left end, 1 at its right end."""
+    drawn = ax.get_xaxis_transform().transform([(mass, 0.0) for mass in masses])
+    return tuple(float(place) for place in ax.transAxes.inverted().transform(drawn)[:, 0])
 
 
 def _free_middle(low: float, high: float, mark: float) -> float:
@@ -189,9 +209,10 @@ def _draw_modes(ax: Axes, ds: xr.Dataset) -> None:
     for label, (chosen, marker, colour) in kinds.items():
         if chosen.any():
             ax.plot(hertz[chosen], growth[chosen], marker, color=colour, markersize=7, label=label, zorder=3)
-    size = 1.25 * float(np.nanmax(np.abs(growth))) or 1.0
-    ax.set_ylim(-size, size)
-    ax.axhspan(0.0, size, color=style.VERMILLION, alpha=0.1, linewidth=0)
+    low, high = min(float(np.nanmin(growth)), 0.0), max(float(np.nanmax(growth)), 0.0)
+    spread = high - low or 1.0
+    ax.set_ylim(low - 0.2 * spread, high + 0.2 * spread)
+    ax.axhspan(0.0, high + 0.2 * spread, color=style.VERMILLION, alpha=0.1, linewidth=0)
     ax.axhline(0.0, color=style.GREY, linewidth=0.8)
     speed = number(ds, "speed") * HERTZ
     for order, line, name in ((1.0, "--", "speed"), (0.5, ":", "half the speed")):
@@ -200,8 +221,19 @@ def _draw_modes(ax: Axes, ds: xr.Dataset) -> None:
         )
     style.dress(ax, "damped natural frequency [Hz]", "growth rate [1/s]")
     ax.ticklabel_format(axis="y", scilimits=(-3, 4), useMathText=True)
-    ax.set_xlim(0.0, 1.1 * max(speed, float(np.nanmax(hertz)), 1e-9))
+    _set_frequencies(ax, hertz[np.isfinite(hertz)], speed)
     place: style.Look = {"transform": ax.transAxes, "ha": "right", "fontsize": style.TICK, "color": style.GREY}
     ax.text(0.99, 0.97, "unstable", va="top", **place)
     ax.text(0.99, 0.03, "stable", va="bottom", **place)
     style.legend_below(ax, 3)
+
+
+def _set_frequencies(ax: Axes, hertz: Floats, speed: float) -> None:
+    """Limits that show modes and speed; a logarithmic axis where they are far apart."""
+    low, high = min(float(hertz.min()), 0.5 * speed), max(float(hertz.max()), speed, 1e-9)
+    if low > 0.0 and high > 2.0 * WIDE * low:
+        ax.set_xscale("log")
+        style.logarithmic(ax.xaxis)
+        ax.set_xlim(low / 1.5, high * 1.5)
+    else:
+        ax.set_xlim(0.0, 1.1 * high)

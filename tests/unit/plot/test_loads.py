@@ -312,6 +312,46 @@ def test_one_speed_has_no_empty_panel(mass: float, rotor: float, says: str, text
     assert all(value < right for value in (mass, rotor) if math.isfinite(value))
 
 
+def test_masses_and_frequencies_that_are_far_apart_are_all_seen() -> None:
+    ds = point(critical_mass=40.0, whirl_ratio=0.48, rotor_mass=0.2, speed=8000.0).assign(
+        natural_frequency=("mode", [220.0, 240.0]),
+        mode_growth_rate=("mode", [-5.0, -12.0]),
+        whirl_direction=("mode", [1.0, -1.0]),
+    )
+    masses, modes = plot.stability(ds).axes
+    for ax, values in ((masses, (0.2, 40.0)), (modes, (220.0 / (2.0 * math.pi), 8000.0 / (2.0 * math.pi)))):
+        drawn = ax.transAxes.inverted().transform(ax.transData.transform([(value, -1.0) for value in values]))[:, 0]
+        assert 0.05 < drawn[0] < 0.4
+        assert 0.6 < drawn[1] < 0.95
+    low, high = modes.get_ylim()
+    assert -low > 3.0 * high > 0.0  # modes that all decay leave the unstable half a strip
+
+
+def crossing(direction: float, others: float = 1.0) -> xr.Dataset:
+    """Two branches over two speeds [rad/s], both of which have the frequency of the speed at 150 rad/s."""
+    place = {"eccentricity_x": 0.0, "eccentricity_y": -1e-5, "load_x": 0.0, "load_y": -5.0, "rotor_mass": 1.0}
+    points = [record("stability", critical_mass=3.0, speed=speed, **place) for speed in (100.0, 200.0)]
+    branches = ("point", "mode")
+    return curve_dataset(points).assign(
+        natural_frequency=(branches, [[150.0, 150.0], [150.0, 150.0]]),
+        damping_ratio=(branches, [[0.1, 0.1], [0.1, 0.1]]),
+        whirl_direction=(branches, [[direction, others]] * 2),
+        critical_speed=(branches, [[math.nan, math.nan], [150.0, 150.0]]),
+    )
+
+
+def test_a_backward_mode_at_the_speed_is_no_critical_speed(texts: Texts) -> None:
+    fig = plot.campbell(crossing(-1.0))
+    marks = {item.get_gid(): np.size(item.get_xdata()) for item in fig.axes[0].lines if item.get_gid()}
+    assert marks["critical"] == marks["backward crossing"] == 1
+    assert texts(fig).count("1\u2009432 rpm") == 1  # marks at one place share their label
+    forward, backward = (line for line in fig.axes[0].lines if line.get_label().startswith("cylindrical"))
+    if forward.get_label().endswith("backward"):
+        forward, backward = backward, forward
+    assert forward.get_linewidth() > backward.get_linewidth()
+    assert backward.get_zorder() > forward.get_zorder()
+
+
 def test_natural_modes_of_a_point_are_inside_their_axes(texts: Texts) -> None:
     ds = point(critical_mass=3.0, whirl_ratio=0.48, rotor_mass=2.0).assign(
         natural_frequency=("mode", [2000.0, 300.0]),
