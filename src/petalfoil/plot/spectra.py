@@ -24,6 +24,13 @@ SHADES = 1e-3
 """The same in a waterfall."""
 COLUMNS = 700
 """Frequencies that a waterfall shows at most."""
+FAINTEST = 0.02
+"""A waterfall ends at the largest frequency whose amplitude is more than this over the largest one."""
+DRIFT = 2.0
+"""Frequencies that a piece cannot tell from a drift, over its resolution: half the width of a line under Hann's window,
+whose nulls are no nulls of the motion."""
+COVERED = 0.45
+"""They are covered up to this over the highest speed: half-speed whirl stays in sight of few revolutions."""
 
 
 def orbit_spectrum(ds: xr.Dataset) -> Figure:
@@ -123,7 +130,7 @@ def draw_waterfall(ax: Axes, path: Path) -> None:
     """Draw spectra of short pieces over speed or time."""
     found = waterfall(path)
     over, label, speeds = _heights(path, found)
-    hertz, amplitude = _columns(found, WIDEST * float(path.speed.max()))
+    hertz, amplitude = _columns(found, _widest(found, float(path.speed.max())))
     top = float(amplitude.max()) * MICRO
     norm = LogNorm(SHADES * top, top)
     look: style.Look = {"cmap": style.PRESSURE_MAP, "norm": norm, "shading": "nearest", "rasterized": True}
@@ -135,12 +142,28 @@ def draw_waterfall(ax: Axes, path: Path) -> None:
             text = name if sign > 0.0 else f"−{name}"
             place = (sign * order * float(speeds[-1]) / TURN, float(over[-1]))
             ax.annotate(text, place, (0, 4), textcoords="offset points", ha="center", fontsize=style.TICK)
+    told_apart = min(DRIFT * found.resolution, COVERED * float(path.speed.max()))
+    _mask_drift(ax, told_apart / TURN, 1e3 * TURN / found.resolution)
     style.dress(ax, _frequency_label(), label)
     ax.grid(False)
     ax.set_xlim(float(hertz[0]), float(hertz[-1]))
     ax.set_ylim(float(over[0]), float(over[-1]))
     bar = ax.figure.colorbar(mesh, ax=ax, pad=0.02, aspect=30)
     bar.set_label("amplitude [µm]", fontsize=style.LABEL)
+
+
+def _widest(found: Waterfall, speed: float) -> float:
+    """Largest frequency with an amplitude worth showing, but at least that of the highest speed [rad/s]."""
+    shown = found.amplitude.max(axis=0) > FAINTEST * found.amplitude.max()
+    return min(1.05 * max(speed, float(np.abs(found.frequency[shown]).max())), WIDEST * speed)
+
+
+def _mask_drift(ax: Axes, hertz: float, piece: float) -> None:
+    """Cover the frequencies [Hz] that pieces [ms] are too short for, and say so."""
+    ax.axvspan(-hertz, hertz, facecolor=style.PALE, alpha=0.85, linewidth=0, gid="drift")
+    text = f"below {hertz:.0f} Hz: drift and slow whirl,\nnot told apart by pieces of {piece:.2g} ms"
+    look: style.Look = {"transform": ax.get_xaxis_transform(), "rotation": 90, "ha": "center", "va": "center"}
+    ax.text(0.0, 0.5, text, fontsize=style.TICK, color=style.INK, **look)
 
 
 def _heights(path: Path, found: Waterfall) -> tuple[Floats, str, Floats]:

@@ -220,12 +220,15 @@ class Waterfall:
         Angular frequency, negative for backward whirl [rad/s].
     amplitude : (m, n) array
         Radius of the circle of each frequency [m].
+    resolution : float
+        Distance of two frequencies that a piece tells apart [rad/s].
     """
 
     time: Array
     speed: Array
     frequency: Array
     amplitude: Array
+    resolution: float
 
 
 PIECES = 160
@@ -247,4 +250,5 @@ def waterfall(path: Path) -> Waterfall:
     pieces = [lines_of(step, z[begin : begin + count]) for begin in begins]
     middle = start + (begins + 0.5 * (count - 1)) * step
     speed = np.interp(middle, path.time, path.speed)
-    return Waterfall(middle, speed, pieces[0].frequency, np.array([piece.amplitude for piece in pieces]))
+    amplitude = np.array([piece.amplitude for piece in pieces])
+    return Waterfall(middle, speed, pieces[0].frequency, amplitude, pieces[0].resolution)

@@ -178,6 +178,19 @@ def test_the_waterfall_is_over_a_speed_that_rises(rising: xr.Dataset) -> None:
     assert_allclose(np.asarray(once.get_xdata()) * 60.0, once.get_ydata(), rtol=1e-9)  # 1× is Hz = rpm / 60
 
 
+def test_the_waterfall_ends_where_its_content_does_and_covers_what_its_pieces_do_not_tell(
+    rising: xr.Dataset, texts: Texts
+) -> None:
+    fig = plot.orbit_waterfall(rising)
+    ax = fig.axes[0]
+    fastest = float(rising["shaft_speed"].max()) / (2.0 * math.pi)
+    assert fastest <= ax.get_xlim()[1] < 2.2 * fastest
+    (cover,) = [patch for patch in ax.patches if patch.get_gid() == "drift"]
+    half = cover.get_width() / 2
+    assert 0.0 < half < fastest
+    assert f"below {half:.0f} Hz" in texts(fig)
+
+
 def test_the_waterfall_of_one_speed_is_over_turns(steady: xr.Dataset) -> None:
     assert plot.orbit_waterfall(steady).axes[0].get_ylabel() == "revolutions of the shaft"
 
