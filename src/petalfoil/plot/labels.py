@@ -138,3 +138,8 @@ def grouped(value: float) -> str:
 def signed(value: float) -> str:
     """A whole number with a true minus sign."""
     return f"{round(value) + 0:d}".replace("-", "−")
+
+
+def plain(value: float) -> str:
+    """A number of four digits for a label, without a power of ten up to a million."""
+    return grouped(value) if 1e4 <= abs(value) < 1e6 else f"{value:.4g}".replace("-", "−")

@@ -8,9 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from petalfoil.errors import ConvergenceError
-from petalfoil.plot import style
-
-RPM = 30.0 / np.pi
+from petalfoil.plot import labels, style
+from petalfoil.plot.labels import QUANTITIES, RPM
 
 
 def capacity(ds: xr.Dataset) -> Figure:
@@ -34,7 +33,9 @@ def capacity(ds: xr.Dataset) -> Figure:
     points = ds if "point" in ds.dims else ds.expand_dims("point")
     points = points.isel(point=np.flatnonzero(points["converged"].to_numpy()))
     if not points.sizes["point"]:
-        raise ConvergenceError("there is no load capacity to draw")
+        raise ConvergenceError(
+            "there is no load capacity to draw", advice="give limits that a smaller load reaches, or a higher speed"
+        )
     turned = points.sizes["load_orientation"] > 1
     over_speed = points.sizes["point"] > 1 or not turned
     columns = 2 * over_speed + turned
@@ -49,32 +50,30 @@ def capacity(ds: xr.Dataset) -> Figure:
 
 
 def _over_speed(left: Axes, right: Axes, points: xr.Dataset) -> None:
-    krpm = points["speed"].to_numpy() * RPM * 1e-3
-    left.plot(krpm, points["load_capacity"].to_numpy(), "o-", color=style.BLUE, label="in the direction given")
+    rpm = points["speed"].to_numpy() * RPM
+    left.plot(rpm, points["load_capacity"].to_numpy(), "o-", color=style.BLUE, label="in the direction given")
     if "least_load_capacity" in points:
         least = points["least_load_capacity"].to_numpy()
-        left.plot(krpm, least, "s--", color=style.VERMILLION, label="least of all directions")
-        style.legend(left)
-    right.plot(krpm, points["load_coefficient_imperial"].to_numpy(), "o-", color=style.BLUE)
+        left.plot(rpm, least, "s--", color=style.VERMILLION, label="least of all directions")
+    right.plot(rpm, points["load_coefficient_imperial"].to_numpy(), "o-", color=style.BLUE)
     for ax, label in ((left, "load capacity [N]"), (right, "load coefficient [lbf/(in³ krpm)]")):
-        _finish(ax, "speed [krpm]", label)
+        style.dress(ax, QUANTITIES["speed"].axis, label)
+        ax.set_ylim(0.0, 1.1 * ax.get_ylim()[1])
+        ax.locator_params(axis="x", nbins=6)
+    if "least_load_capacity" in points:
+        style.legend(left, loc="lower right")
 
 
 def _over_direction(ax: Axes, points: xr.Dataset) -> None:
     angle = np.degrees(points["load_orientation"].to_numpy())
     for number in range(points.sizes["point"]):
-        point = points.isel(point=number)
-        label = f"{float(point['speed']) * RPM * 1e-3:.4g} krpm"
-        ax.plot(angle, point["capacity_over_direction"].to_numpy(), "o-", markersize=4, label=label)
-    _finish(ax, "direction of the load, from x toward y [deg]", "load capacity [N]")
-    style.legend(ax)
-
-
-def _finish(ax: Axes, x: str, y: str) -> None:
-    ax.set_xlabel(x, fontsize=style.LABEL)
-    ax.set_ylabel(y, fontsize=style.LABEL)
+        point, place = points.isel(point=number), number % len(style.FAMILY)
+        look: style.Look = {"color": style.FAMILY[place], "marker": style.FAMILY_MARKERS[place], "markersize": 4.5}
+        label = f"{labels.grouped(float(point['speed']) * RPM)} rpm"
+        ax.plot(angle, point["capacity_over_direction"].to_numpy(), label=label, **look)
+    style.dress(ax, "direction of the load, from x toward y [deg]", "load capacity [N]")
     ax.set_ylim(0.0, 1.1 * ax.get_ylim()[1])
-    ax.grid(visible=True, color=style.PALE)
+    style.legend(ax, loc="lower right")
 
 
 def _limits(points: xr.Dataset) -> list[str]:

@@ -9,8 +9,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from petalfoil.plot import style
+from petalfoil.plot.labels import plain
 from petalfoil.plot.study_views import Floats, in_unit, of_cases, parameter, parameters, result
 
 _MARGIN = 0.15
@@ -82,11 +84,12 @@ def _parameters(ax: Axes, ds: xr.Dataset, number: Floats) -> None:
         quantity = parameter(ds, name)
         values = in_unit(ds, name, quantity)
         low, high = float(values.min()), float(values.max())
-        label = f"{quantity.name}: {low:.4g} to {high:.4g} {quantity.unit}".strip()
+        label = f"{quantity.name}: {plain(low)} to {plain(high)} {quantity.unit}".strip()
         part = (values - low) / (high - low) if high > low else np.full_like(values, 0.5)
         look: dict[str, Any] = {"color": style.FAMILY[index % 7], "marker": style.FAMILY_MARKERS[index % 7]}
         ax.plot(number, part, linewidth=0.8, markersize=3.0, label=label, **look)
     style.dress(ax, "design", "parameters over\ntheir span")
+    ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.legend(fontsize=style.TICK - 1.0, frameon=False, loc="upper left", bbox_to_anchor=(0.0, -0.25), ncols=2)
 
 

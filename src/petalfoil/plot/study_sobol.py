@@ -43,14 +43,13 @@ def sobol(ds: xr.Dataset, names: tuple[str, ...] = ()) -> Figure:
     told = json.loads(ds.attrs["sobol"])
     has = [name for name in told if told[name]["parameters"]]
     if not has:
-        raise UsageError("no result of this study has indices: too few cases have an answer")
+        raise UsageError("no result of this study has indices, too few cases have an answer: ask more base samples")
     shown = [name for name in names or shown_results(ds) if name in has] or has[:1]
-    labels = {str(ds[name].attrs["path"]): name for name in parameters(ds)}
-    bars = min(len(labels), _MOST_BARS)
+    bars = min(len(parameters(ds)), _MOST_BARS)
     fig = style.figure(8.0, (0.42 * bars + 0.9) * len(shown) + 0.7)
     axes = fig.subplots(len(shown), 1, squeeze=False, sharex=True).ravel()
     for ax, name in zip(axes, shown, strict=True):
-        _bars(ax, told[name]["parameters"], labels)
+        _bars(ax, told[name]["parameters"])
         ax.set_title(result(ds, name).name, fontsize=style.LABEL, loc="left")
     axes[-1].set_xlabel("part of the variance", fontsize=style.LABEL)
     style.legend_below(axes[0], 2)
@@ -58,7 +57,7 @@ def sobol(ds: xr.Dataset, names: tuple[str, ...] = ()) -> Figure:
     return fig
 
 
-def _bars(ax: Axes, told: dict[str, dict[str, float]], labels: dict[str, str]) -> None:
+def _bars(ax: Axes, told: dict[str, dict[str, float]]) -> None:
     ranked = sorted(told, key=lambda path: -told[path]["ST"])[:_MOST_BARS]
     place = np.arange(len(ranked))
     for key, colour, shift, label in (("S1", style.BLUE, -1, "first order"), ("ST", style.SKY, 1, "total")):
@@ -67,5 +66,5 @@ def _bars(ax: Axes, told: dict[str, dict[str, float]], labels: dict[str, str]) -
         error = {"ecolor": style.INK, "elinewidth": 0.9, "capsize": 2.5}
         ax.barh(place + 0.5 * shift * _THICK, size, _THICK, xerr=bar, color=colour, label=label, error_kw=error)
     style.dress(ax)
-    ax.set_yticks(place, [labels.get(path, path) for path in ranked], fontsize=style.TICK)
+    ax.set_yticks(place, ranked, fontsize=style.TICK)
     ax.invert_yaxis()

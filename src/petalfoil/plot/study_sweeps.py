@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from petalfoil.plot import style
-from petalfoil.plot.labels import PlottedQuantity
+from petalfoil.plot.labels import PlottedQuantity, plain
 from petalfoil.plot.study_views import (
     Floats,
     count_fact,
@@ -207,7 +207,7 @@ def parallel_coordinates(ds: xr.Dataset, names: tuple[str, ...] = ()) -> Figure:
     for number, (told, values) in enumerate(columns):
         ax.axvline(number, color=style.GREY, linewidth=0.8)
         for level, edge in ((np.nanmin(values), -0.04), (np.nanmax(values), 1.02)):
-            ax.text(number, edge, f"{level:.4g}", ha="center", va="top" if edge < 0 else "bottom", fontsize=style.TICK)
+            ax.text(number, edge, plain(level), ha="center", va="top" if edge < 0 else "bottom", fontsize=style.TICK)
         ax.text(number, -0.13, style.folded(told.axis, 18), ha="center", va="top", fontsize=style.TICK)
     ax.set_ylim(-0.02, 1.02)
     ax.set_axis_off()

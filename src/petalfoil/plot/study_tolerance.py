@@ -12,13 +12,15 @@ from matplotlib.figure import Figure
 
 from petalfoil.plot import style
 from petalfoil.plot.labels import PlottedQuantity
-from petalfoil.plot.study_views import Floats, count_fact, in_unit, of_cases, parameters, result, shown_results
+from petalfoil.plot.study_views import Floats, count_fact, in_unit, of_cases, result, shown_results
 
 Told: TypeAlias = dict[str, Any]
 """Numbers of a result or a limit, as the study tells them."""
 
 _MOST_BARS = 12
 """Parameters in one panel of contributions."""
+_WIDTH = 3.5
+"""Standard deviations to each side over which the normal curve is drawn."""
 
 
 def tolerance(ds: xr.Dataset, names: tuple[str, ...] = ()) -> Figure:
@@ -52,7 +54,7 @@ def tolerance(ds: xr.Dataset, names: tuple[str, ...] = ()) -> Figure:
         quantity = result(ds, name)
         limits = [limit for limit in told["limits"] if limit["result"] == name]
         _histogram(left, in_unit(ds, name, quantity), quantity, told["results"][name], limits)
-        _contributions(right, ds, quantity, told["results"][name])
+        _contributions(right, quantity, told["results"][name])
     style.set_title(fig, ds, f"tolerance of {ds.attrs['asked']}", count_fact(ds))
     return fig
 
@@ -64,26 +66,32 @@ def _histogram(ax: Axes, values: Floats, quantity: PlottedQuantity, told: Told, 
     if nominal is not None:
         ax.axvline(nominal * quantity.factor, color=style.INK, linewidth=1.0, label="nominal")
     if nominal is not None and spread:
-        x = np.linspace(*ax.get_xlim(), 200)
-        z = (x - nominal * quantity.factor) / (spread * quantity.factor)
+        reach, middle = _WIDTH * spread * quantity.factor, nominal * quantity.factor
+        low, high = ax.get_xlim()
+        x = np.linspace(min(low, middle - reach), max(high, middle + reach), 400)
+        z = (x - middle) / (spread * quantity.factor)
         curve = np.exp(-0.5 * z**2) / (spread * quantity.factor * np.sqrt(2.0 * np.pi))
-        ax.plot(x, curve, color=style.GREY, linestyle="--", label="first order")
+        ax.plot(x, curve, color=style.GREY, linestyle="--", label="normal, of first order")
     for limit in limits:
         kept = f"{limit['limit']}: {100.0 * limit['probability']:.1f} %"
         bounds = f" ({100.0 * limit['low']:.1f} to {100.0 * limit['high']:.1f} %)"
         ax.axvline(limit["value"] * quantity.factor, color=style.VERMILLION, linewidth=1.6, label=kept + bounds)
-    style.dress(ax, quantity.axis, "probability density")
+    style.dress(ax, quantity.axis, "probability density" + (f" [1/{quantity.unit}]" if quantity.unit else ""))
     ax.legend(fontsize=style.TICK, frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0))
 
 
-def _contributions(ax: Axes, ds: xr.Dataset, quantity: PlottedQuantity, told: Told) -> None:
+def _contributions(ax: Axes, quantity: PlottedQuantity, told: Told) -> None:
     """A bar for the effect of one standard deviation of each parameter, the largest first."""
-    paths = {str(ds[name].attrs["path"]): name for name in parameters(ds)}
-    effects = {path: effect * quantity.factor for path, effect in told["effects"].items() if effect is not None}
+    effects = {path: effect * quantity.factor for path, effect in told["effects"].items() if effect}
+    if not effects:
+        ax.set_axis_off()
+        note = "no parameter has an effect of first order on it"
+        ax.text(0.5, 0.5, note, transform=ax.transAxes, ha="center", fontsize=style.LABEL, color=style.GREY)
+        return
     ranked = sorted(effects, key=lambda path: -abs(effects[path]))[:_MOST_BARS]
     bars = [effects[path] for path in ranked]
     ax.barh(range(len(bars)), bars, color=[style.BLUE if bar > 0.0 else style.ORANGE for bar in bars], height=0.6)
-    ax.set_yticks(range(len(bars)), [paths.get(path, path) for path in ranked], fontsize=style.TICK)
+    ax.set_yticks(range(len(bars)), ranked, fontsize=style.TICK)
     ax.invert_yaxis()
     ax.axvline(0.0, color=style.GREY, linewidth=0.8)
     unit = f" [{quantity.unit}]" if quantity.unit else ""

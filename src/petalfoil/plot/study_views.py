@@ -22,8 +22,8 @@ _LENGTHS = ((1e-3, "µm", 1e6), (1.0, "mm", 1e3))
 _PRESSURES = ((1e4, "Pa", 1.0), (1e6, "kPa", 1e-3), (1e9, "MPa", 1e-6), (np.inf, "GPa", 1e-9))
 _FEW = 4
 """Results that a figure shows unless it is told which."""
-_SAME = 1e-6
-"""Relative difference below which two results are one: cases are solved to 1e-8."""
+_SAME = 1e-3
+"""Difference of two results over their scatter below which they are drawn as one: it would not be seen."""
 _DERIVATIVES = ("liftoff_by_contact_film_thickness", "liftoff_by_contact_fraction")
 """Results that a figure shows when it is told to."""
 
@@ -79,7 +79,8 @@ def _told_once(ds: xr.Dataset, names: Sequence[str]) -> list[str]:
     found: list[str] = []
     for name in names:
         values = ds[name].values
-        copies = (np.allclose(values, ds[other].values, rtol=_SAME, atol=0.0, equal_nan=True) for other in found)
+        least = _SAME * float(np.ptp(values[np.isfinite(values)]))
+        copies = (np.allclose(values, ds[other].values, rtol=0.0, atol=least, equal_nan=True) for other in found)
         if name not in _DERIVATIVES and not any(copies):
             found.append(name)
     return found or list(names)

@@ -1,0 +1,72 @@
+"""Figures of studies from data made up for them: what scatters, what it is called, what it contributes."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.figure import Figure
+from numpy.testing import assert_allclose
+
+from petalfoil import plot
+from petalfoil.plot.study_views import shown_results
+
+Texts = Callable[[Figure], str]
+FORCES = np.linspace(9.0, 11.0, 40)
+
+
+@pytest.fixture
+def scattered() -> xr.Dataset:
+    """Forty bearings: a force that scatters, and lift-off and touchdown speeds that differ by rounding."""
+    told = {
+        "limits": [],
+        "results": {
+            name: {"nominal": nominal, "first_order_standard_deviation": spread, "effects": effects}
+            for name, nominal, spread, effects in (
+                ("bearing_force", 10.0, 2.0, {"petals.thickness[2]": 1.9, "gas.viscosity": -0.6}),
+                ("liftoff_speed", 100.0, 0.0, {"petals.thickness[2]": None, "gas.viscosity": 0.0}),
+            )
+        },
+    }
+    speeds = 10.0 * FORCES
+    return xr.Dataset(
+        {
+            "converged": ("case", np.ones(40, dtype=bool)),
+            "bearing_force": ("case", FORCES, {"units": "N"}),
+            "liftoff_speed": ("case", speeds, {"units": "rad s-1"}),
+            "touchdown_speed": ("case", speeds * (1.0 + 1e-5), {"units": "rad s-1"}),
+        },
+        {"thickness_2": ("case", FORCES, {"path": "petals.thickness[2]", "units": "m"})},
+        {"title": "Scatter", "asked": "balance", "analysis": "tolerance", "tolerance": json.dumps(told)},
+    )
+
+
+def test_contributions_are_named_as_in_the_case(scattered: xr.Dataset) -> None:
+    fig = plot.tolerance(scattered, ("bearing_force",))
+    left, right = fig.axes
+    assert [label.get_text() for label in right.get_yticklabels()] == ["petals.thickness[2]", "gas.viscosity"]
+    assert left.get_ylabel() == "probability density [1/N]"
+
+
+def test_the_normal_curve_is_whole(scattered: xr.Dataset) -> None:
+    left = plot.tolerance(scattered, ("bearing_force",)).axes[0]
+    (curve,) = [line for line in left.lines if line.get_label() == "normal, of first order"]
+    x, density = curve.get_data()
+    assert_allclose(np.trapezoid(density, x), math.erf(3.5 / math.sqrt(2.0)), rtol=1e-4)
+    assert left.get_xlim()[0] <= x[0] < x[-1] <= left.get_xlim()[1]
+
+
+def test_a_result_that_nothing_moves_says_so_in_place_of_empty_axes(scattered: xr.Dataset, texts: Texts) -> None:
+    fig = plot.tolerance(scattered, ("liftoff_speed",))
+    assert not fig.axes[1].axison
+    assert "no parameter has an effect of first order on it" in texts(fig)
+
+
+def test_a_result_that_repeats_another_is_drawn_once(scattered: xr.Dataset) -> None:
+    assert shown_results(scattered) == ["liftoff_speed", "bearing_force"]
+    apart = scattered.assign(touchdown_speed=scattered["touchdown_speed"][::-1])
+    assert "touchdown_speed" in shown_results(apart)
