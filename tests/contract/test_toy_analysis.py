@@ -154,7 +154,7 @@ def test_json_table_file_and_show(cli: Call, tmp_path: Path) -> None:
     out = str(tmp_path / "petroff.nc")
     answer = json.loads(cli("petroff", PATH, "--gap", "20 um", "--json").stdout)
     assert_allclose(answer["petroff_torque"], torque(PLAIN.operation.speed, 20e-6), rtol=1e-12)
-    for options in (["--gap", "20 um"], ["--speeds", "100 : 300 : 3"]):
+    for options in (["--gap", "20 um"], ["--speeds", "100 rad/s : 300 rad/s : 3"]):
         for flags in ([], ["--json"]):
             run, again = cli("petroff", PATH, *options, *flags, "--out", out), cli("show", out, *flags)
             assert (run.exit_code, run.stderr) == (0, "")
@@ -178,7 +178,7 @@ def test_it_is_drawn(cli: Call, tmp_path: Path) -> None:
 def test_an_interrupt_keeps_what_is_finished(cli: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tests.contract.test_toy_analysis.STOP_AT", [2])
     out = tmp_path / "petroff.nc"
-    result = cli("petroff", PATH, "--speeds", "100 : 300 : 3", "--json", "--out", str(out))
+    result = cli("petroff", PATH, "--speeds", "100 rad/s : 300 rad/s : 3", "--json", "--out", str(out))
     assert result.exit_code == 130
     assert result.stderr == "interrupted: 2 of 3 points are finished and kept\n"
     assert (len(json.loads(result.stdout)["points"]), load_result(out).sizes["point"]) == (2, 2)

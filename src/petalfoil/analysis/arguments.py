@@ -18,10 +18,10 @@ from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, TypeGuard
 
-from petalfoil.case.number_fields import Range
+from petalfoil.case.number_fields import Range, load_along_minus_y
 from petalfoil.errors import UnitError, UsageError
 from petalfoil.units import format_quantity, parse_pair, parse_quantity, parse_ramp, parse_range
-from petalfoil.units.reading import shown
+from petalfoil.units.reading import is_bare, shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -93,7 +93,9 @@ class Measured(Range, Argument, ABC):
     def checked(self, value: float, given: object) -> float:
         """A value, if it is inside its range."""
         if not self.holds(value):
-            raise UsageError(f"{shown(given)} is outside its range; allowed: {self.bounds(self.unit)}")
+            is_bare_text = isinstance(given, str) and is_bare(given) and self.unit != "1"
+            bare = f" (a bare number is read in {self.unit})" if is_bare_text else ""
+            raise UsageError(f"{shown(given)}{bare} is outside its range; allowed: {self.bounds(self.unit)}")
         return value
 
     def with_unit(self, value: float) -> str:
@@ -162,7 +164,9 @@ class Pair(Argument):
         if isinstance(given, str):
             return self.word if self.word and given.strip() == self.word else parse_pair(given, self.unit)
         if not _is_sequence(given) or len(given) != 2:
-            raise UsageError(f"{shown(given)} is not a pair (x, y)")
+            raise UsageError(
+                f"{shown(given)} is not a pair (x, y); write both, such as '0 {self.unit}, -1 {self.unit}'"
+            )
         return parse_quantity(given[0], self.unit), parse_quantity(given[1], self.unit)
 
     def text(self, value: Any) -> str:
@@ -189,7 +193,7 @@ class LoadVector(Argument):
         if isinstance(given, str) and "," in given:
             return parse_pair(given, "N")
         if not _is_sequence(given):
-            return 0.0, -parse_quantity(given, "N")
+            return load_along_minus_y(given)
         if len(given) != 2:
             raise UsageError(f"{shown(given)} is neither a value nor a pair (x, y)")
         return parse_quantity(given[0], "N"), parse_quantity(given[1], "N")

@@ -15,8 +15,8 @@ from typing import Any, cast
 from pydantic import GetCoreSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from petalfoil.errors import UnitError
-from petalfoil.units import parse_quantity
+from petalfoil.errors import UnitError, UsageError
+from petalfoil.units import format_quantity, parse_quantity
 from petalfoil.units.reading import is_bare, shown
 
 UNIT_PROBLEM = "unit_problem"  # pydantic error types of ours; `problems.py` tells them apart
@@ -266,11 +266,33 @@ def as_load(value: object) -> object:
     """Let pairs through, and make a single quantity a load along -y: ``"10 N"`` becomes (0, -10) N."""
     if as_sequence(value) is not None:
         return as_pair(value)
+    allowed = "two forces, [x, y], or one along -y"
     try:
-        return 0.0, -parse_quantity(value, "N")
+        return load_along_minus_y(value)
     except UnitError as error:
-        allowed = f"two forces, [x, y], or one along -y, {error.allowed}"
-        raise refuse(UNIT_PROBLEM, str(error), allowed) from None
+        raise refuse(UNIT_PROBLEM, str(error), f"{allowed}, {error.allowed}") from None
+    except UsageError as error:
+        raise refuse(VALUE_PROBLEM, str(error), allowed) from None
+
+
+def load_along_minus_y(value: object) -> tuple[float, float]:
+    """The load (x, y) that a single quantity stands for, its magnitude along -y [N].
+
+    Raises
+    ------
+    UnitError
+        It is no force.
+    UsageError
+        It is negative: whether the sign means the direction or is that of a component along y cannot be told.
+    """
+    force = parse_quantity(value, "N")
+    if force < 0.0:
+        up, down = format_quantity(-force, "N"), format_quantity(force, "N")
+        raise UsageError(
+            f"{shown(value)} is negative, and a single load is a magnitude along -y, downward: write '{up}' for that, "
+            f"or both components, '0 N, {down}' downward and '0 N, {up}' upward"
+        )
+    return 0.0, -force
 
 
 def as_sequence(value: object) -> Sequence[object] | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated, Any
@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import typer
 
 from petalfoil.analysis import known_verbs
-from petalfoil.analysis.arguments import Argument, Flag, StoredResult
+from petalfoil.analysis.arguments import Argument, Flag, LoadVector, Measured, NumbersWithUnit, Pair, StoredResult
 from petalfoil.analysis.declaration import RESUME, Analysis
 from petalfoil.analysis.progress_bar import bar
 from petalfoil.case import Case
@@ -19,8 +19,9 @@ from petalfoil.cli.exports import chosen, export_options
 from petalfoil.cli.failures import handled
 from petalfoil.cli.keeping import Autosave, earlier_set_aside, follow
 from petalfoil.cli.outputs import Outputs
-from petalfoil.cli.streams import be_verbose
+from petalfoil.cli.streams import be_verbose, say
 from petalfoil.errors import UsageError
+from petalfoil.units.reading import note_on_bare
 
 KEYWORD = inspect.Parameter.KEYWORD_ONLY
 REQUIRED = inspect.Parameter.empty
@@ -85,6 +86,7 @@ def call(analysis: Analysis, given: dict[str, Any]) -> None:
         _refuse_overwriting(analysis, given, out)
         values = analysis.read({name: given[name] for name in known_as}, known_as)
         values = _fit_exports(analysis, given, values, known_as)
+        note_bare_numbers(analysis, given, known_as)
         case = Case.load(path)
         with ExitStack() as ending:
             with bar(analysis.verb) as report:
@@ -129,6 +131,20 @@ def _refuse_overwriting(analysis: Analysis, given: dict[str, Any], out: Path | N
                 raise UsageError(
                     f"--out: {out} is what {argument.option_name(name)} reads; give another name, or it would be lost"
                 )
+
+
+def note_bare_numbers(analysis: Analysis, given: Mapping[str, Any], known_as: Mapping[str, str]) -> None:
+    """Say of each option with a number without a unit how it was read: a speed of 60000 is in rad/s, not in rpm."""
+    for name, argument in analysis.arguments.items():
+        if isinstance(argument, Measured | Pair | LoadVector):
+            whirl = isinstance(argument, NumbersWithUnit) and argument.whirl
+            note_bare_number(known_as[name], given.get(name), argument.unit, whirl=whirl)
+
+
+def note_bare_number(option: str, given: object, unit: str, *, whirl: bool = False) -> None:
+    """Say how the text of one option was read, where it has a number without a unit."""
+    if isinstance(given, str) and (note := note_on_bare(given, unit, whirl=whirl)):
+        say(f"Note: {option}: {note}")
 
 
 def _fit_exports(

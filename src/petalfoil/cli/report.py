@@ -54,9 +54,12 @@ def report(  # noqa: PLR0913 - the options of the command
         check_folder(out)
 
         from petalfoil.case import Case
+        from petalfoil.cli.commands import note_bare_number
         from petalfoil.report import case_report
 
         request = case_report.request_of(Case.load(case), load=load, mass=mass, error=error, names=("--load", "--mass"))
+        for option, text, unit in (("--load", load, "N"), ("--mass", mass, "kg")):
+            note_bare_number(option, text, unit)
         with bar("report") as progress:
             parts, page = case_report.report(request, out, print_it=pdf, progress=progress)
         found = {"page": str(page), **case_report.summary(parts)}

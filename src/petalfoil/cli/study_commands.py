@@ -15,7 +15,7 @@ import typer
 from petalfoil.analysis.declaration import Analysis
 from petalfoil.analysis.progress_bar import bar
 from petalfoil.case import Case
-from petalfoil.cli.commands import CASE_FILE, JSON, KEYWORD, argument_options, command
+from petalfoil.cli.commands import CASE_FILE, JSON, KEYWORD, argument_options, command, note_bare_numbers
 from petalfoil.cli.failures import handled
 from petalfoil.cli.signals import exit_code_of
 from petalfoil.cli.streams import say
@@ -268,6 +268,7 @@ def call(declared: StudyCommand, analysis: Analysis, given: dict[str, Any]) -> N
         if required:
             raise UsageError(f"{known_as[required[0]]} is missing: {analysis.verb} needs it")
         question = Question.read(analysis.verb, {k: v for k, v in arguments.items() if v is not None}, known_as)
+        note_bare_numbers(analysis, arguments, known_as)
         study = declared.define(Case.load(given["case"]), question, given)
         run_and_tell(study, out, given)
 

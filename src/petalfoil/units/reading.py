@@ -10,6 +10,7 @@ from numbers import Real
 
 from petalfoil.errors import UnitError, UsageError
 from petalfoil.units.grammar import UnitTextError, convert
+from petalfoil.units.writing import format_quantity
 
 MAX_TEXT = 120  # longer texts are no quantities; the bound keeps the reader's work and depth small
 MAX_POINTS = 10_000  # more points than this in one range is a typing mistake
@@ -79,6 +80,33 @@ def parse_quantity(value: object, unit: str, *, whirl: bool = False) -> float:
 def is_bare(value: object) -> bool:
     """Whether `value` is a number without a unit, which is read as SI."""
     return not isinstance(value, str) or _NUMBER.fullmatch(_plain(value)) is not None
+
+
+def note_on_bare(text: str, unit: str, *, whirl: bool = False) -> str:
+    """How numbers without a unit in a text were read, and what to write; empty where each has one.
+
+    Parameters
+    ----------
+    text : str
+        A quantity, a list or a range of them.
+    unit : str
+        SI unit that bare numbers are read in.
+    whirl : bool
+        They are whirl frequencies.
+
+    Examples
+    --------
+    >>> note_on_bare("60000", "rad/s")
+    "'60000' has no unit and is read in rad/s (572960 rpm); write the unit, such as '60000 rpm'"
+    """
+    parts = text.split(":")[:2] if ":" in text else text.split(",")
+    bare = [float(_plain(part)) for part in parts if is_bare(part) and float(_plain(part)) != 0.0]
+    if unit == "1" or not bare:
+        return ""
+    example = "600 Hz" if whirl else _measure(unit)[1]
+    familiar = f"{bare[0] / (2.0 * math.pi):.5g} Hz" if whirl else format_quantity(bare[0], unit, digits=5)
+    also = "" if familiar == f"{bare[0]:g} {unit}" else f" ({familiar})"
+    return f"{shown(text)} has no unit and is read in {unit}{also}; write the unit, such as '{example}'"
 
 
 def parse_pair(text: str, unit: str) -> tuple[float, float]:

@@ -129,9 +129,9 @@ VERBS = {
     "liftoff": ("liftoff", "--load", "10 N, 200 N"),
     "runup": ("runup", "--load", "20 N", "--to", "300 rpm", "--points", "3"),
     "coefficients": ("coefficients", "--frequency", "10 rad/s, 20 rad/s"),
-    "coefficients over speeds": ("coefficients", "--speeds", "100, 200, 300"),
+    "coefficients over speeds": ("coefficients", "--speeds", "100 rad/s, 200 rad/s, 300 rad/s"),
     "stability": ("stability", "--load", "20 N", "--mass", "2 kg"),
-    "stability chart": ("stability", "--loads", "10 N, 20 N", "--speeds", "100, 200, 300"),
+    "stability chart": ("stability", "--loads", "10 N, 20 N", "--speeds", "100 rad/s, 200 rad/s, 300 rad/s"),
 }
 
 
@@ -159,13 +159,39 @@ def test_json_is_one_line_and_show_repeats_what_the_run_printed(cli, loads, case
 
 @pytest.mark.parametrize(
     ("text", "force"),
-    [("50 N", (0.0, -50.0)), ("0 N, -50 N", (0.0, -50.0)), ("3 N, 0.05 kN", (3.0, 50.0)), ("-5 N", (0.0, 5.0))],
+    [("50 N", (0.0, -50.0)), ("0 N, -50 N", (0.0, -50.0)), ("3 N, 0.05 kN", (3.0, 50.0)), ("0 N, 5 N", (0.0, 5.0))],
 )
 def test_a_single_load_acts_along_minus_y(cli, loads, case, text: str, force: tuple[float, float]) -> None:
     assert cli("balance", case, "--load", text, "--speed", "60 rpm").exit_code == 0
     ((_, given),) = loads.calls
     assert_allclose(given["load"], force, rtol=1e-15, atol=0.0)
     assert_allclose(given["speed"], 2.0 * math.pi, rtol=1e-15, atol=0.0)
+
+
+def test_a_single_load_with_a_sign_is_refused_with_both_ways_to_write_it(cli, loads, case) -> None:
+    refused = cli("balance", case, "--load=-5 N")
+    assert refused.exit_code == 2
+    assert "--load: '-5 N' is negative" in refused.stderr
+    assert "'0 N, -5 N' downward and '0 N, 5 N' upward" in refused.stderr
+    assert not loads.calls
+
+
+@pytest.mark.parametrize(
+    ("options", "noted"),
+    [
+        (("--speed", "60000"), "--speed: '60000' has no unit and is read in rad/s (572960 rpm)"),
+        (("--load", "20"), "--load: '20' has no unit and is read in N;"),
+        (("--load", "0, -20"), "--load: '0, -20' has no unit and is read in N;"),
+    ],
+)
+def test_a_number_without_a_unit_is_noted_with_how_it_was_read(cli, loads, case, options, noted: str) -> None:
+    answer = cli("balance", case, *options, "--json")
+    assert f"Note: {noted}" in answer.stderr
+    assert json.loads(answer.stdout)["load_y"] == -50.0
+
+
+def test_numbers_with_units_and_zeros_are_not_noted(cli, loads, case) -> None:
+    assert "Note" not in cli("balance", case, "--load", "0, -20 N", "--speed", "60 rpm").stderr
 
 
 def test_balance_leaves_the_load_to_the_case(cli, loads, case) -> None:
@@ -290,7 +316,10 @@ def test_csv_has_its_units_in_the_header(cli, loads, case, tmp_path: Path) -> No
     assert [float(x) for x in lines[-1][4:]] == [220e6, 221e6, 222e6, 223e6, 220.0, 221.0, 222.0, 223.0]
 
 
-AXES = ("--speeds", "500, 100, 200, 300, 400", "--frequency", "50, 10, 20, 30, 40")
+AXES = (
+    "--speeds", "500 rad/s, 100 rad/s, 200 rad/s, 300 rad/s, 400 rad/s",
+    "--frequency", "50 rad/s, 10 rad/s, 20 rad/s, 30 rad/s, 40 rad/s",
+)  # fmt: skip
 
 
 # ---------------------------------------------------------------------------------------------- stability

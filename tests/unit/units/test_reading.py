@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from petalfoil.errors import PetalfoilError, UnitError, UsageError
 from petalfoil.units import parse_pair, parse_quantity, parse_range
-from petalfoil.units.reading import is_bare, shown
+from petalfoil.units.reading import is_bare, note_on_bare, shown
 
 
 @pytest.mark.parametrize(
@@ -77,6 +77,27 @@ def test_whirl_frequencies_are_read_in_hertz_too(text: str) -> None:
 def test_what_has_no_unit_is_bare() -> None:
     assert all(is_bare(value) for value in (5, "5", " −1e-3 "))
     assert not any(is_bare(value) for value in ("5 mm", "5 %", "five"))
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "note"),
+    [
+        ("5", "m", "'5' has no unit and is read in m; write the unit, such as '25 um'"),
+        ("0 : 100 : 11", "m", "'0 : 100 : 11' has no unit and is read in m; write the unit, such as '25 um'"),
+        ("45", "rad", "'45' has no unit and is read in rad (2578.3°); write the unit, such as '45 deg'"),
+        ("0, -100 um", "m", ""),
+        ("0", "m", ""),
+        ("0.01", "1", ""),
+        ("balance", "m", ""),
+    ],
+)
+def test_bare_numbers_are_told_with_their_unit(text: str, unit: str, note: str) -> None:
+    assert note_on_bare(text, unit) == note
+
+
+def test_bare_whirl_frequencies_are_told_in_hertz() -> None:
+    noted = note_on_bare("1000, 2000", "rad/s", whirl=True)
+    assert noted == "'1000, 2000' has no unit and is read in rad/s (159.15 Hz); write the unit, such as '600 Hz'"
 
 
 def test_angles() -> None:
