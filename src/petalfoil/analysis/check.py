@@ -60,7 +60,9 @@ def check(case: Case) -> Record:
         answer = rest(build_problem(slow))
     if answer is None:
         raise ConvergenceError(
-            "no equilibrium of the foil pack at zero speed was found", history=run.history, advice="check its geometry"
+            "no equilibrium of the foil pack at zero speed was found",
+            history=run.history,
+            advice="lower the preload (a larger petals.bend_radius, thinner petals) or change model.cells_per_pitch",
         )
     found = Evaluation.of(slow, answer)
     section = kind.cross_section(slow, state_of_wall(found.state).deflection)

@@ -192,7 +192,7 @@ class Analysis:
             run.asked = asked_for(case, defaults | asked)
         if resume is not None:
             if not isinstance(run, Points) or not callable(run.source):
-                raise UsageError(f"{self.verb} with these arguments is no series of points that could go on")
+                raise UsageError(f"{self.verb} with these arguments is no series that could go on: leave resume out")
             run.done.extend(points_done(resume, self.layout_of(resume), self.verb, run.asked))
         accuracy = values.get(ACCURACY)
         if not values.get(ERROR, False) and accuracy is None:

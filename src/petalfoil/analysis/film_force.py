@@ -100,7 +100,8 @@ class Film:
         newton_only(case)
         if case.surface.petal_friction > 0.0 or case.heat is not None:
             raise UsageError(
-                "forces for other programs are those of petals without friction and of a film without heat"
+                "forces for other programs are those of petals without friction and of a film without heat: set "
+                "surface.petal_friction to 0 and leave [heat] out, or follow the rotor with `orbit`"
             )
         self.case, self.tilts = case, tilts
         self._run: RunContext = new_run()

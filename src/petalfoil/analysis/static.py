@@ -93,7 +93,7 @@ def static(
                 'surface.journal_rubbing = "torque", or ask `runup`, whose path ends with a journal that does'
             )
         if loop and len(cases) < 2:
-            raise UsageError("a loop needs at least two displacements")
+            raise UsageError("a loop needs at least two displacements, such as '0 um : 200 um : 5'")
         way = legs(cases, loop)
         return Points(partial(_with_friction, way, progress), len(way))
     if loop:

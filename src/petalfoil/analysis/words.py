@@ -40,7 +40,9 @@ class Names(Argument):
         """The names in order."""
         entries = given.split(",") if isinstance(given, str) else given
         if not isinstance(entries, Sequence) or not all(isinstance(entry, str) for entry in entries):
-            raise UsageError(f"{shown(given)} is no list of names")
+            raise UsageError(
+                f"{shown(given)} is no list of names; write them with commas between, or as a list of texts"
+            )
         names = [entry.strip() for entry in entries]
         if not names or not all(names):
             raise UsageError(f"{shown(given)} names nothing between two commas: give at least one name")

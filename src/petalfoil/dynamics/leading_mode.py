@@ -63,7 +63,9 @@ class LeadingMode:
         """
         start = leading_eigenvalue(solution)
         if not np.isfinite(start):
-            raise ConvergenceError("no growth rate to differentiate: the shaft does not turn")
+            raise ConvergenceError(
+                "no growth rate to differentiate: the shaft does not turn", advice="give a speed above zero"
+            )
         constraints = held_contacts(solution)
         J, M = matrices(solution, constraints)
         shift = start + OFF * abs(start) * (1.0 + 1.0j if start.imag else 1.0)

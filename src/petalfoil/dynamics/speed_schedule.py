@@ -37,14 +37,15 @@ class Schedule:
             Time goes back or stands still, a speed is negative or not a number, or there is no point.
         """
         if not points:
-            raise UsageError("a speed schedule needs at least one point")
+            raise UsageError("a speed schedule needs at least one point, a pair (time, speed)")
         times, speeds = np.array(points, dtype=np.float64).T
         if not (np.all(np.isfinite(times)) and np.all(np.isfinite(speeds))):
-            raise UsageError("a speed schedule needs finite times and speeds")
+            raise UsageError(f"a speed schedule needs finite times and speeds, got {times.tolist()}, {speeds.tolist()}")
         if np.any(np.diff(times) <= 0.0):
             late = int(np.argmax(np.diff(times) <= 0.0))
             raise UsageError(
-                f"the speed schedule goes back in time: {times[late + 1]:g} s comes after {times[late]:g} s"
+                f"the speed schedule goes back in time: {times[late + 1]:g} s comes after {times[late]:g} s; give "
+                "each time once, the later after the earlier"
             )
         if np.any(speeds < 0.0):
             raise UsageError(f"the speed schedule has a negative speed, {speeds.min():g} rad/s; allowed: 0 or more")

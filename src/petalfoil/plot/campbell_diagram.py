@@ -10,10 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from petalfoil.errors import UsageError
 from petalfoil.plot import labels, style
 from petalfoil.plot.labels import HERTZ, QUANTITIES, RPM
-from petalfoil.plot.views import Floats, array, unconverged
+from petalfoil.plot.views import Floats, array, needs_result_of, unconverged
 
 CONICAL = 0.5
 """Part of the tilt in a motion from which a mode is called conical."""
@@ -44,7 +43,7 @@ def campbell(ds: xr.Dataset) -> Figure:
         The dataset holds no modes over speed.
     """
     if "natural_frequency" not in ds or "point" not in ds.dims:
-        raise UsageError("this figure needs the result of `stability` with several speeds and a mass")
+        raise needs_result_of("stability", ds, " with several speeds and a mass")
     if not np.isfinite(array(ds, "natural_frequency")).any():
         raise unconverged(str(np.ravel(ds["status"].values)[-1]))
     fig = style.figure(8.6, 8.2)

@@ -10,10 +10,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from petalfoil.errors import UsageError
 from petalfoil.plot import labels, style
 from petalfoil.plot.labels import HERTZ, QUANTITIES, RPM
-from petalfoil.plot.views import Floats, array, number, unconverged
+from petalfoil.plot.views import Floats, array, needs_result_of, number, unconverged
 
 _ENTRIES = {"xx": (0, 0), "xy": (0, 1), "yx": (1, 0), "yy": (1, 1)}
 _MATRICES = {"stiffness": ("K", "N/m"), "damping": ("C", "N·s/m")}
@@ -44,7 +43,7 @@ def coefficients(ds: xr.Dataset) -> Figure:
         The dataset has no coefficients.
     """
     if "stiffness" not in ds:
-        raise UsageError("this figure needs the result of `coefficients`")
+        raise needs_result_of("coefficients", ds)
     points = _points(ds)
     frequencies = array(points[0], "whirl_frequency")
     if len(points) == 1:

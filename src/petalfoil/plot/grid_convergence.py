@@ -9,10 +9,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from petalfoil.errors import ConvergenceError, UsageError
+from petalfoil.errors import ConvergenceError
 from petalfoil.plot import labels, style
 from petalfoil.plot.labels import QUANTITIES
-from petalfoil.plot.views import Floats, array, number
+from petalfoil.plot.views import Floats, array, needs_result_of, number
 
 _DECLARED_ORDER = 2.0
 """Slope of the line that guides the eye."""
@@ -52,7 +52,7 @@ def convergence(ds: xr.Dataset) -> Figure:
         The dataset is not a grid study.
     """
     if "grid" not in ds.dims:
-        raise UsageError("this figure needs the result of `converge`")
+        raise needs_result_of("converge", ds)
     names = [name for name in _SHOWN if f"{name}_limit" in ds and _is_more_than_its_bar(ds, name)]
     if not names:
         raise ConvergenceError("every quantity of the study is smaller than its error bar", advice="choose finer grids")

@@ -11,7 +11,7 @@ from petalfoil.case import Case
 from petalfoil.errors import DefinitionError, UsageError
 from petalfoil.plot import labels
 from petalfoil.plot.labels import MICRO, RPM
-from petalfoil.plot.views import Floats, array, number
+from petalfoil.plot.views import Floats, array, needs_result_of, number
 from petalfoil.results.motion import TURN, Path
 
 
@@ -24,7 +24,7 @@ def path_of(ds: xr.Dataset) -> Path:
         The dataset holds no motion, or only its start.
     """
     if "x" not in ds or ds["x"].dims != ("time",):
-        raise UsageError("this figure needs the result of `orbit`")
+        raise needs_result_of("orbit", ds)
     if ds.sizes["time"] < 2:
         raise UsageError("this motion has no step yet, so there is nothing to draw")
     names = ("x", "y", "velocity_x", "velocity_y", "shaft_angle", "shaft_speed")

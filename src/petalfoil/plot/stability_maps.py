@@ -10,11 +10,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from petalfoil.errors import UsageError
 from petalfoil.plot import labels, style
 from petalfoil.plot.campbell_diagram import campbell
 from petalfoil.plot.labels import HERTZ, QUANTITIES, RPM
-from petalfoil.plot.views import Floats, array, number, unconverged
+from petalfoil.plot.views import Floats, array, needs_result_of, number, unconverged
 
 WIDE = 5.0
 """Factor between masses past which they are drawn on a logarithmic axis."""
@@ -48,7 +47,7 @@ def stability(ds: xr.Dataset) -> Figure:
         The dataset is of another verb.
     """
     if "critical_mass" not in ds:
-        raise UsageError("this figure needs the result of `stability`")
+        raise needs_result_of("stability", ds)
     if "point" in ds.dims:
         return campbell(ds)
     mass = array(ds, "critical_mass")

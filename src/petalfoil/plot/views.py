@@ -51,6 +51,11 @@ def one_point(ds: xr.Dataset) -> xr.Dataset:
     return ds
 
 
+def needs_result_of(verb: str, ds: xr.Dataset, what: str = "") -> UsageError:
+    """The refusal to draw the result of another analysis, which is named."""
+    return UsageError(f"this figure needs the result of `{verb}`{what}, this is one of `{ds.attrs.get('analysis')}`")
+
+
 def unconverged(status: str) -> ConvergenceError:
     """The refusal to draw, with the status of the run."""
     return ConvergenceError(

@@ -188,7 +188,11 @@ def _points(ds: xr.Dataset, path: str | Path) -> list[xr.Dataset]:
     """
     points = sorted(converged_points(ds), key=lambda point: float(point["speed"]))
     if len(points) < ds.sizes.get("point", 1):
-        raise StoreError(f"{path} is not written: ROSS needs coefficients at every speed, and some have none")
+        without = ds.sizes.get("point", 1) - len(points)
+        raise StoreError(
+            f"{path} is not written: ROSS needs coefficients at every speed, and some have none: leave these "
+            f"{without} out"
+        )
     return points
 
 

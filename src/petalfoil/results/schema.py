@@ -141,9 +141,15 @@ HISTORIES: dict[str, Variable] = {
     "frame_radius": Variable(("frame", *_PETAL), "m", "radius of the deformed mid-surface of the petal", "r"),
     "frame_x": Variable(("frame",), "m", "displacement of the journal's centre along x", "e_x"),
     "frame_y": Variable(("frame",), "m", "displacement of the journal's centre along y", "e_y"),
-    "last_state": Variable(("unknown",), "1", "deflections and pressures at the end, in the units of the problem", "X"),
-    "last_reactions": Variable(("gap",), "1", "contact reactions at the end, in the units of the problem", "lambda"),
-    "last_friction": Variable(("slide",), "1", "friction of the petals at the end, in the units of the problem", "T"),
+    "last_state": Variable(
+        ("unknown",), "1", "deflections and pressures at the end, in the units of the coupled system", "X"
+    ),
+    "last_reactions": Variable(
+        ("gap",), "1", "contact reactions at the end, in the units of the coupled system", "lambda"
+    ),
+    "last_friction": Variable(
+        ("slide",), "1", "friction of the petals at the end, in the units of the coupled system", "T"
+    ),
     "last_position": Variable(("axis",), "m", "displacement of the journal's centre at the end", "e"),
     "last_velocity": Variable(("axis",), "m s-1", "velocity of the journal's centre at the end", "v"),
 }
