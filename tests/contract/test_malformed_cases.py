@@ -232,6 +232,12 @@ def test_the_same_words_from_a_file(name: str, tmp_path: Path) -> None:
         assert part in str(caught.value)
 
 
+@pytest.mark.parametrize("table", ["shaft", "bushing"])
+def test_numbers_that_would_follow_from_a_refused_metal_are_not_refused_too(table: str) -> None:
+    with pytest.raises(DefinitionError, match=f"^{table}.material: 'unobtainium' is not in the table of metals"):
+        Case.load(EXAMPLES / "plain_journal.toml").replace(**{table: {"material": "unobtainium"}})
+
+
 def test_an_arc_that_turns_back() -> None:
     data = put(put(tables(PETALS), "petals.bend_radius", "8 mm"), "petals.root_tilt", "10 deg")
     with pytest.raises(PackError, match=r"petals\.root_tilt: an arc .* turns back at .* rad short"):

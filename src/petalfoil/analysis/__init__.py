@@ -21,6 +21,7 @@ How they are declared:
 =====================  ===================================================================
 `declaration.py`       the decorator, and what follows from a declaration
 `file_exports.py`      files for other programs that an analysis can write
+`rotor_files.py`       those of `coefficients`: tables, XLTRC2, ROSS
 `arguments.py`         kinds of arguments with unit, range and help; those that are shared
 `words.py`             arguments that are words: one of several, lists of names
 `known_verbs.py`       the analyses by name

@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
-from petalfoil.analysis.arguments import Flag, Load, Name, NumbersWithUnit, NumberWithUnit, Speed, Speeds, Whole
+from petalfoil.analysis.arguments import Flag, Load, NumbersWithUnit, NumberWithUnit, Speed, Speeds
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.contact_model import ContactModel
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.evaluation import Evaluation
-from petalfoil.analysis.file_exports import Export
 from petalfoil.analysis.friction_told import FrictionTold
 from petalfoil.analysis.heat_results import heat_results
 from petalfoil.analysis.impedance import Array, cycle_impedance, elastic_and_sliding, impedances
 from petalfoil.analysis.operating_point import OperatingPoint, Vector, at, operating_point
 from petalfoil.analysis.other_bearing import bearing_of, rotor_parts
 from petalfoil.analysis.records import effort, failed_record, geometry, position, record_of
+from petalfoil.analysis.rotor_files import EXPORTS
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
 from petalfoil.analysis.tilt_coefficients import ENTRIES, TILTING, blocks
@@ -31,7 +31,6 @@ from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.layout import ArrayTable, Cell, Series, SinglePoint, at_speed
 from petalfoil.results.parts import AppliedLoad, RunOutcome
 from petalfoil.results.record import Record
-from petalfoil.results.ross import LEAST_POINTS, ross_frequencies
 from petalfoil.results.summary import ABSENT, cell, number
 from petalfoil.results.variable import Variable
 from petalfoil.walls import Capability, required, wall_kind
@@ -125,80 +124,6 @@ ERROR_BARS = {
     "stiffness_error": Variable(ENTRIES, "N m-1", "error bar of the stiffness, from a grid study", "dK"),
     "damping_error": Variable(ENTRIES, "N s m-1", "error bar of the damping, from a grid study", "dC"),
 }
-
-
-def check_ross(values: Mapping[str, Any], known_as: Mapping[str, str]) -> None:
-    """Refuse speeds and frequencies that make no table for ROSS."""
-    for name in ("speeds", "frequencies"):
-        axis = values.get(name) or []
-        if len(set(axis)) < max(len(axis), LEAST_POINTS):
-            raise UsageError(
-                f"a table for ROSS needs {LEAST_POINTS} different values of {known_as[name]} or more, "
-                f"got {len(set(axis))}"
-            )
-
-
-def check_ross_synchronous(values: Mapping[str, Any], known_as: Mapping[str, str]) -> None:
-    """Refuse speeds that make no table for ROSS 2, and frequencies without the speeds."""
-    speeds = values.get("speeds") or []
-    check_ross({"speeds": speeds, "frequencies": speeds}, known_as)
-    if any(speed not in values.get("frequencies", speeds) for speed in speeds):
-        raise UsageError(
-            f"a synchronous table needs every speed among the frequencies: leave {known_as['frequencies']} out"
-        )
-
-
-def fill_ross(values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Whirl frequencies that tell the stability of a rotor in ROSS, where none are given."""
-    speeds = values.get("speeds") or []
-    if values.get("frequencies") is not None or not speeds or not min(speeds) > 0.0:
-        return values
-    return {**values, "frequencies": ross_frequencies(speeds)}
-
-
-ROSS = {
-    "node": Whole(
-        metavar="NUMBER", help="Node of the rotor in ROSS that carries the bearing; 0 by default.", at_least=0
-    ),
-    "tag": Name(metavar="NAME", help="Name of the bearing in ROSS; that of the file by default."),
-}
-"""Settings of the exports for ROSS."""
-
-EXPORTS = (
-    Export(
-        option="csv",
-        metavar="FILE.csv",
-        help="Write the coefficients as a table, units in its header.",
-        suffixes=(".csv",),
-        writer="petalfoil.results.export:write_csv",
-    ),
-    Export(
-        option="xltrc",
-        metavar="FILE.txt",
-        help="Write the coefficients of synchronous whirl over speed for XLTRC2: for unbalance, not for stability.",
-        suffixes=(".txt", ".csv"),
-        writer="petalfoil.results.export:write_xltrc",
-    ),
-    Export(
-        option="ross",
-        metavar="FILE.toml",
-        help="Write the coefficients for ROSS 3 over speed (5 or more) and whirl frequency: .toml or .json.",
-        suffixes=(".toml", ".json"),
-        writer="petalfoil.results.ross:write_ross",
-        check=check_ross,
-        fill=fill_ross,
-        settings=ROSS,
-    ),
-    Export(
-        option="ross2",
-        metavar="FILE.toml",
-        help="Write the coefficients of synchronous whirl for ROSS 2: for unbalance, not for stability.",
-        suffixes=(".toml", ".json"),
-        writer="petalfoil.results.ross:write_ross_synchronous",
-        check=check_ross_synchronous,
-        settings=ROSS,
-    ),
-)
 
 
 @analysis(

@@ -7,10 +7,8 @@ from collections.abc import Iterator
 from enum import StrEnum
 from typing import Annotated, ClassVar
 
-from pydantic import field_validator
-
 from petalfoil.case.definition import Definition
-from petalfoil.case.metals import Metal, metal_of
+from petalfoil.case.metals import Metal, MetalName, metal_of
 from petalfoil.case.number_fields import Quantity
 from petalfoil.case.problems import Problem
 from petalfoil.case.wall_tables import WallTable
@@ -67,7 +65,7 @@ class Springs(Definition):
         ]
         | None
     ) = None
-    material: str | None = None
+    material: MetalName = None
     """Metal of the strip by name, in place of its modulus and Poisson's ratio. Only the stiffness of a strip, and a top
     foil that bends, need one."""
     metal_temperature: Annotated[
@@ -110,11 +108,6 @@ class Springs(Definition):
         """Bending stiffness of foil of a thickness, `E_y t^3 / (12 (1 - nu^2))` [N m]; nan without its metal."""
         modulus, poisson_ratio = self.elastic
         return modulus * thickness**3 / (12.0 * (1.0 - poisson_ratio**2))
-
-    @field_validator("material")
-    @classmethod
-    def _is_known(cls, material: str | None) -> str | None:
-        return None if material is None else metal_of(material).name
 
     def problems(self) -> Iterator[Problem]:
         """Yield what keeps the stiffness of the springs from being known, or gives it twice."""

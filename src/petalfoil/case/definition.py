@@ -5,8 +5,11 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, SerializerFunctionWrapHandler, ValidationError, model_serializer
+from pydantic_core import PydanticCustomError
 
+from petalfoil.case.number_fields import VALUE_PROBLEM, Quantity, refuse
 from petalfoil.case.problems import definition_error
+from petalfoil.units.reading import shown
 
 
 class Definition(BaseModel):
@@ -43,6 +46,19 @@ class LookedUp(Definition):
     def entries(self) -> dict[str, object]:
         """Entries that make this definition again, by name, without those that were looked up."""
         return {name: value for name, value in super().entries().items() if self.is_written(name)}
+
+    @classmethod
+    def missing(cls, field: str, name: str, example: str) -> PydanticCustomError:
+        """The refusal of a number that is not given, nor the name that it would follow from."""
+        declared = next(part for part in cls.model_fields[field].metadata if isinstance(part, Quantity))
+        allowed = f"{declared.allowed}, or {cls.section}.{name}, such as '{example}'"
+        return refuse(VALUE_PROBLEM, f"is missing; expected {allowed}", allowed)
+
+    @classmethod
+    def given_twice(cls, given: object, name: str, value: object) -> PydanticCustomError:
+        """The refusal of a number beside a name that it follows from."""
+        text = f"{shown(given)} is given beside {cls.section}.{name} = {shown(value)}; allowed: one of them, not both"
+        return refuse(VALUE_PROBLEM, text, f"a {name} or numbers")
 
     @model_serializer(mode="wrap")
     def _as_given(self, handler: SerializerFunctionWrapHandler) -> dict[str, object]:

@@ -9,8 +9,7 @@ from pydantic import Field, ValidationInfo, field_validator
 
 from petalfoil.case import gas_properties
 from petalfoil.case.definition import LookedUp
-from petalfoil.case.number_fields import UNSET, VALUE_PROBLEM, Quantity, refuse
-from petalfoil.units.reading import shown
+from petalfoil.case.number_fields import UNSET, Quantity
 
 REFUSED = 1.0
 """Stands for a number of a gas that is refused for another of its fields; nobody sees it."""
@@ -95,8 +94,7 @@ class Gas(LookedUp):
         if name is None:
             return given if given is not UNSET else cls._without_name(field, refused="name" not in known)
         if given is not UNSET:
-            text = f"{shown(given)} is given beside gas.name = {shown(name)}; allowed: a name or numbers, not both"
-            raise refuse(VALUE_PROBLEM, text, "a name or numbers")
+            raise cls.given_twice(given, "name", name)
         if not {"temperature", "ambient_pressure"} <= known.keys():
             return REFUSED
         if field == "gas_constant":
@@ -109,6 +107,4 @@ class Gas(LookedUp):
             return REFUSED
         if field == "gas_constant":
             return AIR
-        declared = next(part for part in cls.model_fields[field].metadata if isinstance(part, Quantity))
-        allowed = f"{declared.allowed}, or gas.name, such as 'air'"
-        raise refuse(VALUE_PROBLEM, f"is missing; expected {allowed}", allowed)
+        raise cls.missing(field, "name", "air")

@@ -18,17 +18,16 @@ from typing import Annotated, ClassVar
 from pydantic import Field, ValidationInfo, field_validator
 
 from petalfoil.case.definition import LookedUp
-from petalfoil.case.metals import metal_of
-from petalfoil.case.number_fields import UNSET, VALUE_PROBLEM, Quantity, refuse
+from petalfoil.case.metals import MetalName, metal_of
+from petalfoil.case.number_fields import UNSET, Quantity
 from petalfoil.case.problems import Problem
 from petalfoil.case.sections import Bearing
 from petalfoil.units import format_quantity
-from petalfoil.units.reading import shown
 
 REFERENCE_TEMPERATURE = 293.15
 """Temperature at which the dimensions of drawings hold: 20 °C (ISO 1:2022) [K]."""
 
-REFUSED = 0.3
+REFUSED = 1e-3
 """Stands for a number of a material that is refused; nobody sees it."""
 
 _Expansion = Annotated[
@@ -45,7 +44,7 @@ class MetalPart(LookedUp):
     """Fields that a material gives."""
 
     # before the numbers that a material gives
-    material: str | None = None
+    material: MetalName = None
     """Metal whose constants are looked up, such as `inconel 718`."""
     temperature: _Temperature = REFERENCE_TEMPERATURE
     """Mean over the section; with a heat network it follows, and is left out."""
@@ -53,11 +52,6 @@ class MetalPart(LookedUp):
     def is_written(self, field: str) -> bool:
         """Not what the material gives."""
         return self.material is None or field not in self.by_material
-
-    @field_validator("material")
-    @classmethod
-    def _is_known(cls, material: str | None) -> str | None:
-        return None if material is None else metal_of(material).name
 
     @classmethod
     def resolved(cls, given: object, info: ValidationInfo) -> object:
@@ -67,14 +61,11 @@ class MetalPart(LookedUp):
             return REFUSED
         material = known["material"]
         if material is None and given is UNSET:
-            declared = next(part for part in cls.model_fields[field].metadata if isinstance(part, Quantity))
-            allowed = f"{declared.allowed}, or {cls.section}.material, such as 'inconel 718'"
-            raise refuse(VALUE_PROBLEM, f"is missing; expected {allowed}", allowed)
+            raise cls.missing(field, "material", "inconel 718")
         if material is None:
             return given
         if given is not UNSET:
-            text = f"{shown(given)} is given beside {cls.section}.material = {shown(material)}; allowed: one of them"
-            raise refuse(VALUE_PROBLEM, text, "a material or numbers")
+            raise cls.given_twice(given, "material", material)
         metal = metal_of(material)
         if field == "youngs_modulus":
             return metal.youngs_modulus(known.get("temperature", REFERENCE_TEMPERATURE))

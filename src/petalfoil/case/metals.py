@@ -7,8 +7,10 @@ typical: a strip's own certificate is better. A yield strength stands only where
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated, TypeAlias
 
 import numpy as np
+from pydantic import AfterValidator
 
 from petalfoil.case.hints import nearest
 from petalfoil.case.number_fields import VALUE_PROBLEM, refuse
@@ -204,3 +206,11 @@ def metal_of(name: str) -> Metal:
         hint = nearest(plain, [*METALS, *SHORT])
         raise refuse(VALUE_PROBLEM, f"{name!r} is not in the table of metals; known: {allowed}.{hint}", allowed)
     return METALS[plain]
+
+
+def _name_in_table(name: str | None) -> str | None:
+    return None if name is None else metal_of(name).name
+
+
+MetalName: TypeAlias = Annotated[str | None, AfterValidator(_name_in_table)]
+"""Field for the name of a metal, as the table writes it."""

@@ -13,11 +13,10 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
 from petalfoil.case.definition import LookedUp
-from petalfoil.case.metals import Metal, metal_of
+from petalfoil.case.metals import Metal, MetalName, metal_of
 from petalfoil.case.number_fields import UNSET, VALUE_PROBLEM, Count, PerPetal, PerPetalOrWord, Quantity, refuse
 from petalfoil.case.shape_file import as_shape
 from petalfoil.case.wall_tables import WallTable
-from petalfoil.units.reading import shown
 
 MIN_ROWS = 3  # of a measured free shape: fewer say nothing of a curvature
 MAX_ROWS = 10_000  # more than a coordinate measuring machine takes of a petal, and read in a second or two
@@ -148,7 +147,7 @@ class Petals(LookedUp, WallTable):
     """`shell`, unless given, in 3-D and in 2-D where petals have friction: they slide along themselves and stretch.
     Without friction both are the same in 2-D. On backing springs and by the paper's method petals bend only."""
     # before the numbers that a material gives
-    material: str | None = None
+    material: MetalName = None
     """Metal whose modulus, Poisson's ratio and yield strength are looked up, such as `inconel x-750`."""
     metal_temperature: Annotated[
         float, Quantity(unit="K", meaning="temperature of the petals' metal", symbol="T_m", above=0.0, at_most=2000.0)
@@ -223,11 +222,6 @@ class Petals(LookedUp, WallTable):
             )
         return value
 
-    @field_validator("material")
-    @classmethod
-    def _is_known(cls, material: str | None) -> str | None:
-        return None if material is None else metal_of(material).name
-
     @field_validator(*BY_MATERIAL, mode="before")
     @classmethod
     def _resolved(cls, given: object, info: ValidationInfo) -> object:
@@ -240,8 +234,7 @@ class Petals(LookedUp, WallTable):
         if field == "yield_strength":
             return metal.yield_strength if given is None else given
         if given is not UNSET:
-            text = f"{shown(given)} is given beside petals.material = {shown(material)}; allowed: one of them"
-            raise refuse(VALUE_PROBLEM, text, "a material or numbers")
+            raise cls.given_twice(given, "material", material)
         temperature = known.get("metal_temperature", 293.15)  # a refused one is told already
         return metal.poisson_ratio if field == "poisson_ratio" else metal.youngs_modulus(temperature)
 
@@ -251,9 +244,7 @@ class Petals(LookedUp, WallTable):
             return given
         if "material" not in known:  # it is refused itself
             return REFUSED[field]
-        declared = next(part for part in cls.model_fields[field].metadata if isinstance(part, Quantity))
-        allowed = f"{declared.allowed}, or petals.material, such as 'inconel x-750'"
-        raise refuse(VALUE_PROBLEM, f"is missing; expected {allowed}", allowed)
+        raise cls.missing(field, "material", "inconel x-750")
 
     @field_validator("free_shape")
     @classmethod
