@@ -5,7 +5,6 @@ F_film + F_contact + load = c (e - e_before) ,      K w - ... = - c_w (w - w_bef
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,8 +13,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.under_load import LoadedEquations
-from petalfoil.solvers.problem import ContactProblem, Linearized
-from petalfoil.sparsity import SparseRows
+from petalfoil.solvers.problem import ContactProblem, Linearized, WithMoreForces
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.unknowns import DEFLECTION
 
@@ -31,7 +29,7 @@ class Medium:
 
 
 @dataclass(frozen=True)
-class PetalsInMedium:
+class PetalsInMedium(WithMoreForces):
     """Film and wall whose deflections are held back from where they were (M7).
 
     Attributes
@@ -47,39 +45,6 @@ class PetalsInMedium:
     base: CoupledProblem
     start: Array
     resistance: float
-
-    @property
-    def G(self) -> SparseRows:
-        """Derivative of the gaps."""
-        return self.base.G
-
-    @property
-    def acting(self) -> SparseRows:
-        """Forces of unit reactions."""
-        return self.base.acting
-
-    @property
-    def weight(self) -> Array:
-        """Weights of the gaps."""
-        return self.base.weight
-
-    @property
-    def positive(self) -> slice:
-        """The pressures."""
-        return self.base.positive
-
-    @property
-    def elimination_key(self) -> Hashable | None:
-        """That of film and wall."""
-        return self.base.elimination_key
-
-    def gaps(self, x: Array) -> Array:
-        """Gaps over the reference length, (m,)."""
-        return self.base.gaps(x)
-
-    def admits(self, x: Array) -> bool:
-        """The film is open everywhere."""
-        return self.base.admits(x)
 
     def linearize(self, x: Array, shift: Array | None = None) -> LinearizedInMedium:
         """Residual and tangent at `x`."""

@@ -79,6 +79,52 @@ class ContactProblem(Protocol):
 
 
 @dataclass(frozen=True)
+class WithMoreForces:
+    """A contact problem whose unknowns feel further forces: gaps, their weights and the bounds stay those of `base`.
+
+    Attributes
+    ----------
+    base : ContactProblem
+        The problem without these forces.
+    """
+
+    base: ContactProblem
+
+    @property
+    def G(self) -> SparseRows:
+        """Derivative of the gaps, (m, n)."""
+        return self.base.G
+
+    @property
+    def acting(self) -> SparseRows:
+        """Forces of unit reactions, (m, n)."""
+        return self.base.acting
+
+    @property
+    def weight(self) -> Array:
+        """Weights of the gaps, (m,)."""
+        return self.base.weight
+
+    @property
+    def elimination_key(self) -> Hashable | None:
+        """That of the base, whose elimination order serves."""
+        return self.base.elimination_key
+
+    @property
+    def positive(self) -> slice:
+        """Unknowns that must stay positive."""
+        return self.base.positive
+
+    def gaps(self, x: Array) -> Array:
+        """Gaps at `x`, (m,)."""
+        return self.base.gaps(x)
+
+    def admits(self, x: Array) -> bool:
+        """The equations can be evaluated at `x`."""
+        return self.base.admits(x)
+
+
+@dataclass(frozen=True)
 class Border:
     """How `d` unknowns `b` beside `x` enter: the gaps read `A b`, and the rows of `b` read `R x` and `A^T lam`.
 

@@ -7,7 +7,6 @@ The reactions that limit friction are those of a correction before; the solver g
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -19,8 +18,7 @@ from numpy.typing import NDArray
 from petalfoil.case import Case, PetalTheory
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.physics.gap_curves import ContactPoints
-from petalfoil.solvers.problem import ContactProblem, Linearized
-from petalfoil.sparsity import SparseRows
+from petalfoil.solvers.problem import Linearized, WithMoreForces
 from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.point_layout import PointLayout
 from petalfoil.walls.pack_slip import slip_compliance, slip_rows
@@ -139,52 +137,16 @@ class FrictionStep:
 
 
 @dataclass(frozen=True)
-class FrictionProblem:
-    """A contact problem with friction.
+class FrictionProblem(WithMoreForces):
+    """A contact problem with friction; the first unknowns of its base are the deflections.
 
     Attributes
     ----------
-    base : ContactProblem
-        The problem without friction; its first unknowns are the deflections.
     step : FrictionStep
         Friction in this step.
     """
 
-    base: ContactProblem
     step: FrictionStep
-
-    @property
-    def G(self) -> SparseRows:
-        """Derivative of the gaps, (m, n)."""
-        return self.base.G
-
-    @property
-    def acting(self) -> SparseRows:
-        """Forces of unit reactions, (m, n)."""
-        return self.base.acting
-
-    @property
-    def weight(self) -> Array:
-        """Weights of the gaps, (m,)."""
-        return self.base.weight
-
-    @property
-    def elimination_key(self) -> Hashable | None:
-        """That of the problem without friction."""
-        return self.base.elimination_key
-
-    @property
-    def positive(self) -> slice:
-        """Unknowns that must stay positive."""
-        return self.base.positive
-
-    def gaps(self, x: Array) -> Array:
-        """Gaps at `x`, (m,)."""
-        return self.base.gaps(x)
-
-    def admits(self, x: Array) -> bool:
-        """The equations can be evaluated at `x`."""
-        return self.base.admits(x)
 
     def linearize(self, x: Array, shift: Array | None = None) -> FrictionLinearization:
         """The equations at `x`."""
