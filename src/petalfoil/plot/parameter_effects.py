@@ -78,8 +78,9 @@ def _draw(ax: Axes, of: tuple[str, str], ds: xr.Dataset) -> None:
     ax.barh(place, drawn[1], height=0.62, color=style.BLUE, label="change as stated", gid="effect")
     for y, value, size in zip(place, effect, sizes, strict=True):
         text = f"{value:+.3g}".replace("-", "−") + (" (bar cut)" if size > reach else "")
-        far = min(size, reach), y
-        ax.annotate(text, far, (4, 0), textcoords="offset points", va="center", fontsize=style.TICK)
+        end, side = (float(np.clip(value, -reach, reach)), y), 1.0 if value >= 0.0 else -1.0
+        look: style.Look = {"ha": "left" if side > 0.0 else "right", "va": "center", "fontsize": style.TICK}
+        ax.annotate(text, end, (4.0 * side, 0.0), textcoords="offset points", **look)
     changes = zip(ds["parameter"].values, ds["parameter_text"].values, ds["change_text"].values, strict=True)
     ax.set_yticks(place, [for_figure(f"{path} = {value}, {_signed(change)}") for path, value, change in changes])
     ax.axvline(0.0, color=style.GREY, linewidth=0.8)
@@ -88,7 +89,8 @@ def _draw(ax: Axes, of: tuple[str, str], ds: xr.Dataset) -> None:
     style.dress(ax, f"change of the {label}{at} [{unit}]")
     ax.grid(False, axis="y")
     cut = bool(np.any(sizes > reach))
-    ax.set_xlim(-1.1 * reach, (1.55 if cut else 1.3) * reach)
+    beyond = (1.55 if cut else 1.3) * reach
+    ax.set_xlim(-beyond, beyond)
 
 
 def _reach(sizes: Floats) -> float:
