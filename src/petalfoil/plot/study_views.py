@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -38,6 +39,8 @@ def parameter(ds: xr.Dataset, name: str) -> PlottedQuantity:
     """How a parameter is shown: its meaning, and a unit in which its values are readable."""
     attributes = ds[name].attrs
     meaning, units = for_figure(str(attributes.get("long_name", name))), str(attributes.get("units", ""))
+    if of_one := re.search(r"\[(\d+)\]$", str(attributes.get("path", ""))):
+        meaning += f", petal {of_one[1]}"
     largest = float(np.max(np.abs(ds[name].values))) if ds[name].size else 0.0
     if units == "rad s-1":
         return PlottedQuantity(meaning, "rpm", RPM)

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from numpy.testing import assert_allclose
 
 from petalfoil import plot
-from petalfoil.plot.study_views import shown_results
+from petalfoil.plot.study_views import parameter, parameters, shown_results
 
 Texts = Callable[[Figure], str]
 FORCES = np.linspace(9.0, 11.0, 40)
@@ -33,6 +33,7 @@ def scattered() -> xr.Dataset:
         },
     }
     speeds = 10.0 * FORCES
+    of_petal = {"path": "petals.thickness[2]", "long_name": "metal thickness", "units": "m"}
     return xr.Dataset(
         {
             "converged": ("case", np.ones(40, dtype=bool)),
@@ -40,7 +41,7 @@ def scattered() -> xr.Dataset:
             "liftoff_speed": ("case", speeds, {"units": "rad s-1"}),
             "touchdown_speed": ("case", speeds * (1.0 + 1e-5), {"units": "rad s-1"}),
         },
-        {"thickness_2": ("case", FORCES, {"path": "petals.thickness[2]", "units": "m"})},
+        {"thickness_2": ("case", 2e-5 * FORCES, of_petal)},
         {"title": "Scatter", "asked": "balance", "analysis": "tolerance", "tolerance": json.dumps(told)},
     )
 
@@ -50,6 +51,11 @@ def test_contributions_are_named_as_in_the_case(scattered: xr.Dataset) -> None:
     left, right = fig.axes
     assert [label.get_text() for label in right.get_yticklabels()] == ["petals.thickness[2]", "gas.viscosity"]
     assert left.get_ylabel() == "probability density [1/N]"
+
+
+def test_a_parameter_of_one_petal_says_of_which(scattered: xr.Dataset) -> None:
+    (name,) = parameters(scattered)
+    assert parameter(scattered, name).axis == "metal thickness, petal 2 [µm]"
 
 
 def test_the_normal_curve_is_whole(scattered: xr.Dataset) -> None:
