@@ -69,7 +69,7 @@ def _headed(content: TextTable) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for column in content.columns:
         heading = f"{column.heading}\n{column.unit}".rstrip()
-        table.add_column(heading, justify="right" if column.of_numbers else "left")
+        table.add_column(heading, justify="right" if column.of_numbers else "left", overflow="fold")
     if content.title:
         table.title, table.title_justify, table.title_style = content.title, "left", ""
     for line in content.lines:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rich.console import Console
 
-from petalfoil.cli.printed_tables import _rows
-from petalfoil.results.tables import TextTable
+from petalfoil.cli.printed_tables import _headed, _rows
+from petalfoil.results.tables import TextColumn, TextTable
 
 LINES = [
     ("status", "converged", ""),
@@ -35,6 +35,16 @@ def test_a_long_text_folds_below_its_beginning() -> None:
     assert len(friction) == 2
     assert friction[1].startswith(" " * 16)
     assert " ".join(" ".join(friction).split()) == " ".join(LINES[2][:2])
+
+
+def test_a_name_that_is_wider_than_its_column_is_folded_not_cut() -> None:
+    content = TextTable((TextColumn("parameter"), TextColumn("effect")), [("petals.bend_radius", "-3.852")])
+    console = Console(width=20, markup=False, highlight=False)
+    with console.capture() as capture:
+        console.print(_headed(content))
+    said = capture.get()
+    assert "…" not in said
+    assert "petals.bend_radius" in "".join(line.split("  ")[0].strip() for line in said.splitlines()[3:])
 
 
 def test_error_bars_stand_between_value_and_unit() -> None:
