@@ -140,3 +140,27 @@ def test_contact_fraction_of_the_rig_converges() -> None:
 
     coarse, middle, fine = (fraction(cells) for cells in (64, 96, 192))
     assert abs(middle - fine) < abs(coarse - middle) < 0.06 * fine
+
+
+def test_the_result_tells_how_far_the_force_is_from_that_with_contacts_at_nodes(
+    nodal: Solution, lines: LineContacts
+) -> None:
+    with running():
+        told = with_lines(nodal)
+    at_nodes = nodal.problem.journal_force(nodal.x, nodal.lam)
+    apart = np.linalg.norm(lines.force - at_nodes) / np.linalg.norm(at_nodes)
+    assert told.nodal_force_difference == pytest.approx(apart, rel=1e-6)
+    assert 1e-4 < apart < 0.1
+
+
+@pytest.mark.slow
+def test_under_a_load_it_is_that_of_the_load_over_the_way_between() -> None:
+    """Held at the position of the lines, contacts at nodes carry about so much more or less."""
+    grid = {"model.cells_per_pitch": 16, "model.axial_cells": 12}
+    loaded = bearing(**grid, **{"operation.load": (0.0, -20.0)})
+    found = petalfoil.balance.record(loaded).scalars
+    place = (found["eccentricity_x"], found["eccentricity_y"])
+    held = bearing(**grid, **{"operation.load": None, "operation.eccentricity": place, "model.contacts": "nodes"})
+    force = petalfoil.solve.record(held).scalars
+    apart = np.hypot(force["force_x"] - found["force_x"], force["force_y"] - found["force_y"]) / 20.0
+    assert found["nodal_force_difference"] == pytest.approx(apart, rel=0.5)

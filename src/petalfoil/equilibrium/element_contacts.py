@@ -147,6 +147,12 @@ def force_apart(found: ElementEquilibrium, solution: Solution) -> float:
     apart = equations.force - force
     if found.gradient is not None and found.gradient.size:
         apart = found.gradient @ (equations.problem.displacement - problem.displacement)
+    return over_normal_forces(apart, force, solution)
+
+
+def over_normal_forces(apart: Array, force: Array, solution: Solution) -> float:
+    """A difference (n_position,) of forces over the `force`, or over a part of all normal forces if that is more."""
+    problem = solution.problem
     pushes = np.sum(np.abs(problem.border.row_derivative) @ np.abs(solution.x[problem.positive] - 1.0))
     reactions = float(np.sum(solution.lam[problem.layout.wall.contacts.journal]))
     least = max(LEAST_FORCE, LEAST_PART * (float(pushes) + reactions))

@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.equilibrium.element_contacts import over_normal_forces
 from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError, stepped
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
@@ -46,7 +47,26 @@ def with_lines(solution: Solution) -> Solution:
     """The solution with the equilibrium whose contact lines cross the stations between nodes, if there is one."""
     if solution.elements_sought:
         return solution
-    return replace(solution, lines=between_nodes(solution), elements_sought=True)
+    found = between_nodes(solution)
+    apart = None if found is None else force_apart(found, solution)
+    return replace(solution, lines=found, elements_sought=True, nodal_force_difference=apart)
+
+
+def force_apart(found: LineContacts, solution: Solution) -> float | None:
+    """Difference of the force from that with contacts at nodes, over that force [1]; see `element_contacts`.
+
+    On coarse grids several equilibria with contact lines lie near one with contacts at nodes: it tells how far this one
+    may be from another. Under a load both carry the load: the difference is that of the load over the way between, by
+    the stiffness with contacts at nodes; None where the interior point had the last word.
+    """
+    problem = solution.problem
+    force = problem.journal_force(solution.x, solution.lam)
+    if solution.load is None:
+        return over_normal_forces(found.force - force, force, solution)
+    if solution.contacts is None:
+        return None
+    way = found.problem.displacement - problem.displacement
+    return over_normal_forces(solution.contacts.tangent.gradient @ way, force, solution)
 
 
 def between_nodes(solution: Solution) -> LineContacts | None:
