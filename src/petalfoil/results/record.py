@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
@@ -91,7 +92,7 @@ class Record:
 
 
 def warnings_of_all(records: Sequence[Record]) -> tuple[str, ...]:
-    """Warnings of records, one for each key or quantity: the first, and how many more points have one.
+    """Warnings of records, one for each doubt of a key or quantity: the first, and how many more points have it.
 
     Parameters
     ----------
@@ -101,16 +102,23 @@ def warnings_of_all(records: Sequence[Record]) -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        One line each.
+        One line each. A record that has two doubts of one key, such as a Mach and a Reynolds number, tells both.
     """
-    by_key: dict[str, list[str]] = {}
+    by_doubt: dict[tuple[str, int], list[str]] = {}
     for record in records:
+        told: Counter[str] = Counter()
         for warning in record.warnings:
-            by_key.setdefault(warning.partition(":")[0], []).append(warning)
-    return tuple(
-        first if not more or all(text == first for text in more) else f"{first} ({len(more)} more points alike)"
-        for first, *more in by_key.values()
-    )
+            key = warning.partition(":")[0]
+            by_doubt.setdefault((key, told[key]), []).append(warning)
+            told[key] += 1
+    return tuple(_with_number(first, more) for first, *more in by_doubt.values())
+
+
+def _with_number(first: str, more: Sequence[str]) -> str:
+    """A warning with the number of further points that have it in other words."""
+    if all(text == first for text in more):
+        return first
+    return f"{first} ({len(more)} more point{'s' if len(more) > 1 else ''} alike)"
 
 
 def _plain(name: str, value: Scalar, converged: bool) -> Scalar:

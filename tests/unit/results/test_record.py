@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from petalfoil.results import Record
+from petalfoil.results.record import warnings_of_all
 from tests.unit.results import factory
 
 
@@ -71,3 +72,12 @@ def test_figures_of_a_state_that_did_not_converge_are_withheld() -> None:
     assert reported["status"] == "the step length fell below its limit"
     assert reported["iterations"] == 18
     assert reported["journal_radius"] == 25e-3
+
+
+def test_two_doubts_of_one_key_are_both_told() -> None:
+    """At 570 000 rpm the Mach number of the surface and the Reynolds number of the film are both too high."""
+    fast = ("operation.speed: Mach 4.4", "operation.speed: Reynolds number 2000")
+    faster = ("operation.speed: Mach 5", "operation.speed: Reynolds number 3000")
+    records = [Record(analysis="solve", scalars={}, warnings=warnings) for warnings in (fast, faster)]
+    assert warnings_of_all(records[:1]) == fast
+    assert warnings_of_all(records) == tuple(f"{text} (1 more point alike)" for text in fast)
