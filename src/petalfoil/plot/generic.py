@@ -11,6 +11,7 @@ from petalfoil.plot import style
 from petalfoil.plot.labels import QUANTITIES, PlottedQuantity, quantity
 from petalfoil.plot.views import Floats, array, one_point, unconverged
 from petalfoil.results.schema import COORDINATES, SCALARS
+from petalfoil.results.summary import values_without_rounding
 from petalfoil.results.variable import Role
 from petalfoil.text import for_terminal
 
@@ -139,7 +140,7 @@ def _table(ds: xr.Dataset) -> Figure:
     told = [name for name in names if _is_told(ds, name, Role.ANSWER)] or [
         name for name in names if _is_told(ds, name, Role.GEOMETRY)
     ]
-    lines = [(quantity(ds, name), _scalar(ds, name)) for name in told]
+    lines = [(quantity(ds, name), float(values_without_rounding(ds, name))) for name in told]
     if not lines:
         raise UsageError("this result holds no quantity that a figure could show")
     lines = lines[:_MOST_LINES]
@@ -147,7 +148,7 @@ def _table(ds: xr.Dataset) -> Figure:
     ax = fig.subplots()
     ax.set_axis_off()
     cells = [[shown.name, _written(shown, value), shown.unit] for shown, value in lines]
-    table = ax.table(cells, colWidths=[0.72, 0.16, 0.12], loc="center", edges="horizontal")
+    table = ax.table(cells, colWidths=[0.62, 0.14, 0.24], loc="center", edges="horizontal")
     table.auto_set_font_size(False)
     table.set_fontsize(style.TICK)
     for (_, column), cell in table.get_celld().items():
@@ -161,10 +162,6 @@ def _is_told(ds: xr.Dataset, name: str, role: Role) -> bool:
     of_role = SCALARS[name].role is role if name in SCALARS else role is Role.ANSWER
     numeric = ds[name].ndim == 0 and ds[name].dtype.kind in "fi" and name not in COORDINATES
     return of_role and numeric and bool(np.isfinite(float(ds[name])))
-
-
-def _scalar(ds: xr.Dataset, name: str) -> float:
-    return float(ds[name])
 
 
 def _written(shown: PlottedQuantity, value: float) -> str:

@@ -9,7 +9,11 @@ from matplotlib.figure import Figure
 
 from petalfoil.errors import ConvergenceError
 from petalfoil.plot import labels, style
+from petalfoil.plot.generic import quantities
 from petalfoil.plot.labels import QUANTITIES, RPM
+
+_MAIN = ("load_capacity", "load_coefficient", "load_coefficient_imperial")
+"""Results that a table of one point begins with."""
 
 
 def capacity(ds: xr.Dataset) -> Figure:
@@ -23,7 +27,7 @@ def capacity(ds: xr.Dataset) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Up to three axes: what there is only one value of is left out.
+        Up to three axes: what there is only one value of is left out. Of one speed and direction a table.
 
     Raises
     ------
@@ -37,7 +41,10 @@ def capacity(ds: xr.Dataset) -> Figure:
             "there is no load capacity to draw", advice="give limits that a smaller load reaches, or a higher speed"
         )
     turned = points.sizes["load_orientation"] > 1
-    over_speed = points.sizes["point"] > 1 or not turned
+    over_speed = points.sizes["point"] > 1
+    if not turned and not over_speed:
+        first = points.isel(point=0)
+        return quantities(first[[*_MAIN, *(name for name in first.data_vars if name not in _MAIN)]])
     columns = 2 * over_speed + turned
     fig = style.figure(5.0 * columns, 4.4)
     axes = list(np.atleast_1d(fig.subplots(1, columns)))

@@ -76,3 +76,18 @@ def test_a_result_that_repeats_another_is_drawn_once(scattered: xr.Dataset) -> N
     assert shown_results(scattered) == ["liftoff_speed", "bearing_force"]
     apart = scattered.assign(touchdown_speed=scattered["touchdown_speed"][::-1])
     assert "touchdown_speed" in shown_results(apart)
+
+
+def test_a_capacity_at_one_speed_and_direction_is_a_table_that_begins_with_it() -> None:
+    told = {"force_x": 3e-14, "bearing_force": 32.0, "load_capacity": 32.0, "load_coefficient": 41.0}
+    values = {name: ((), value) for name, value in (told | {"load_coefficient_imperial": 0.016}).items()}
+    geometry = {"ambient_pressure": 1e5, "journal_radius": 0.025, "length": 0.05, "speed": 6000.0}
+    ds = xr.Dataset(
+        values | {name: ((), value) for name, value in geometry.items()} | {"converged": ((), True)},
+        {"load_orientation": [-1.57]},
+        {"title": "One", "analysis": "capacity"},
+    )
+    (ax,) = plot.capacity(ds).axes
+    cells = {key: cell.get_text().get_text() for key, cell in ax.tables[0].get_celld().items()}
+    assert (cells[0, 0], cells[0, 1]) == ("load capacity", "32")
+    assert "0" in [cells[row, 1] for row in range(5)]  # a force that is rounding
