@@ -92,10 +92,10 @@ def from_ross() -> FreeRotor:
 
 
 def loaded(modes: Modes, case: petalfoil.Case) -> list[petalfoil.Film]:
-    """The films in equilibrium under the weight of the rotor."""
-    films = []
+    """The films in equilibrium under the weight of the rotor: contacts of a film in motion are at nodes."""
+    films, at_nodes = [], case.replace(**{"model.contacts": "nodes"})
     for load in modes.loads():
-        placed = petalfoil.balance(case, float(load))
+        placed = petalfoil.balance(at_nodes, float(load))
         e = tuple(float(placed[f"eccentricity_{axis}"]) for axis in "xy")
         films.append(petalfoil.Film(case.replace(**{"operation.eccentricity": e})))
     return films

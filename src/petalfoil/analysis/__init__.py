@@ -42,6 +42,7 @@ What they share:
 `capacity_search.py`   the largest loads over direction and speed
 `load_limit.py`        the largest load in one direction that keeps to limits
 `load_ray.py`          balances of loads of one direction, and how far they are from limits
+`foretold_balance.py`  balances a little farther, by a tangent alone
 `crossings.py`         speeds at which the contact fraction crosses a limit
 `varied_case.py`         a case at values of one of its parameters
 `derivatives.py`       exact derivatives of the results of an equilibrium

@@ -32,12 +32,15 @@ from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.layout import ArrayTable, Series, SinglePoint, at_speed
 from petalfoil.results.parts import Branch, RunOutcome
 from petalfoil.results.record import Array, Record
+from petalfoil.results.summary import ABSENT
 from petalfoil.results.variable import DataType, Role, TableLabel, Variable
 from petalfoil.units.writing import format_percent
 from petalfoil.walls import wall_kind
 
 DOWN = -math.pi / 2.0
 """Direction of a weight, along -y [rad]."""
+FOLLOWED_ON = "followed from the capacity at the speed or in the direction before, on its branch"
+"""Solution path of a load to which the branch of the capacity before leads."""
 SOUGHT_ANEW = "sought anew: not followed from the speed before, where the load or its contacts jump"
 """Solution path of a load that no path of equilibria joins to that of the speed before."""
 LBF, INCH, KRPM = 4.4482216152605, 0.0254, 1e3 * math.pi / 30.0
@@ -117,17 +120,18 @@ COLUMNS = {
 }
 
 
-def of_direction(record: Record, name: str, k: int) -> float:
-    """An array over the direction at an index; nan where a stored result does not have it."""
-    return float(record.fields[name][k]) if name in record.fields else math.nan
+def of_direction(record: Record, name: str, k: int, factor: float = 1.0) -> float | str:
+    """An array over the direction at an index, times a factor; absent where there is none."""
+    value = float(record.fields[name][k]) if name in record.fields else math.nan
+    return ABSENT if math.isnan(value) else factor * value
 
 
 TABLE = ArrayTable(
     dim="load_orientation",
     columns={
         "direction\ndeg": lambda record, k: math.degrees(float(record.coords["load_orientation"][k])),
-        "load capacity\nN": lambda record, k: float(record.fields["capacity_over_direction"][k]),
-        "film under the\nsmallest load µm": lambda record, k: 1e6 * of_direction(record, "film_under_smallest_load", k),
+        "load capacity\nN": lambda record, k: of_direction(record, "capacity_over_direction", k),
+        "film under the\nsmallest load µm": lambda record, k: of_direction(record, "film_under_smallest_load", k, 1e6),
     },
 )
 OVER = ("load_orientation", "capacity_over_direction", "film_under_smallest_load")
@@ -301,6 +305,13 @@ def point(search: CapacitySearch, speed: float) -> Record:
     )
 
 
+def solution_path(capacity: Capacity, of_state: str) -> str:
+    """How a load was reached: from the capacity before, else as its state tells."""
+    if capacity.sought_anew:
+        return SOUGHT_ANEW
+    return FOLLOWED_ON if capacity.followed_on else of_state
+
+
 def thin(found: Capacity) -> float:
     """Minimum film thickness under the smallest load [m]; nan where a load keeps to the limits, or without balance."""
     return math.nan if found.smallest is None else found.smallest.found.film().min_film_thickness
@@ -345,7 +356,7 @@ def carried(case: Case, capacity: Capacity) -> tuple[object, ...]:
         *rotor_parts(case, found.answer),
         carrier(found.contact_fraction),
         Branch(
-            solution_path=SOUGHT_ANEW if capacity.sought_anew else found.answer.solution_path,
+            solution_path=solution_path(capacity, found.answer.solution_path),
             jump=capacity.sought_anew,
         ),
         Carried(

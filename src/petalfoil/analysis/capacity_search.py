@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field, replace
 
 from petalfoil.analysis.load_limit import NONE_KEPT, Capacity, largest_load
-from petalfoil.analysis.load_ray import Limits, LoadRay
+from petalfoil.analysis.load_ray import LEAST, Limits, LoadRay
 from petalfoil.analysis.operating_point import at
 from petalfoil.case import Case
 from petalfoil.equilibrium.solution import Solution
@@ -17,6 +17,8 @@ FIRST = 0.1
 """First load that is looked at, over ambient pressure times length times diameter."""
 STILL_BEYOND = "is beyond its limit under the load that came nearest to it at the speed before"
 """What is said of a speed at which no load keeps to the limits, after one where none does either."""
+SMALLEST = 1.0 + 1e-9
+"""Load over the smallest one that is looked at, up to which it is that one: it is followed to rounding."""
 STEEPEST = 2.0
 """Largest power of the speed by which a first load at another speed is foretold."""
 
@@ -91,7 +93,7 @@ class CapacitySearch:
             return None
         size, state = self.beyond.pop(angle)
         ray.start_from(state)
-        nearest = ray.under_known_load() or ray.at(size)
+        nearest = ray.under_known_load() or ray.at(size, by_nodes=True)
         if isinstance(nearest, str):
             return None
         if nearest.margin >= 0.0:  # from there the search begins
@@ -99,7 +101,8 @@ class CapacitySearch:
             self.loads[angle] = [(ray.case.operation.speed, size, math.nan)]
             return None
         self.beyond[angle] = size, nearest.found.answer
-        return Capacity(None, f"{NONE_KEPT}: {nearest.limit} {STILL_BEYOND}")
+        least = nearest if size <= SMALLEST * LEAST * ray.unit else None
+        return Capacity(None, f"{NONE_KEPT}: {nearest.limit} {STILL_BEYOND}", smallest=least)
 
     def guess(self, angle: float, speed: float) -> float:
         """The capacity at a speed by the power law of the last one, which changes as between the last two [N]."""

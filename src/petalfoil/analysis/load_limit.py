@@ -31,6 +31,12 @@ BALANCES = 60
 """Most balances of one search."""
 IN_A_JUMP = "passes its limit there in a jump"
 """How a result is beyond its limit, where none is met exactly."""
+ENDS_IN_A_SNAP = "converged; the balance ends there, and the bearing snaps to another state"
+"""What bounds the load where the branch that leads to the limit has a largest load before it."""
+BRANCHES = 4
+"""Most attempts of one search to follow a branch to the limit."""
+CLOSE = 1.1
+"""Ratio of a load beyond the limit to one that keeps to it, from which another attempt is worth its tangents."""
 NONE_KEPT = "no load keeps to the limits"
 NONE_FOUND = "undecided: no balance was found under hardly any load, and none that keeps to the limits under more"
 UNLOADED = ("passes its limit there in a jump", "is beyond its limit under hardly any load")
@@ -49,6 +55,8 @@ class Capacity:
         ``"converged"``, or what bounds the load instead of a limit.
     sought_anew : bool
         Whether it could not be followed from the speed before.
+    followed_on : bool
+        Whether it was, or from the direction before.
     smallest : Loaded or None
         The balance under the smallest load, which does not keep to the limits; None where one keeps to them.
     """
@@ -56,25 +64,43 @@ class Capacity:
     at: Loaded | None
     status: str = "converged"
     sought_anew: bool = False
+    followed_on: bool = False
     smallest: Loaded | None = None
 
 
 def largest_load(ray: LoadRay, guess: float) -> Capacity:
     """The largest load of a ray that keeps to its limits, from a `guess` [N]."""
+    if found := ray.along_branch():
+        return replace(of_branch(found), followed_on=True)
+    capacity = searched(ray, guess)
+    while capacity.at is not None and capacity.status == ENDS_IN_A_SNAP:
+        past = ray.past(capacity.at)
+        if not isinstance(past, Loaded) or past.margin <= 0.0:
+            break
+        farther = searched(ray, past.size)
+        if farther.at is None or farther.at.size <= capacity.at.size:
+            break
+        capacity = farther
+    return capacity
+
+
+def of_branch(found: Loaded) -> Capacity:
+    """The largest load of the branch that was followed: at the limit, or where the branch turns back."""
+    return Capacity(found) if abs(found.margin) <= 2.0 * REACHED else Capacity(found, ENDS_IN_A_SNAP)
+
+
+def searched(ray: LoadRay, guess: float) -> Capacity:
+    """The largest load of a branch that keeps to the limits, by looking at one load after the other."""
     size = min(max(guess, LEAST * ray.unit), MOST * ray.unit)
     kept: Loaded | None = None
     last: Loaded | None = None
-    beyond, reason, nearest, rises = math.inf, "", math.inf, RISES
-    if found := ray.to_limit():
-        return Capacity(found)
+    beyond, reason, nearest, rises, branches = math.inf, "", math.inf, RISES, BRANCHES
     for _ in range(BALANCES):
-        here = ray.at(size, cold=kept is None)
-        if isinstance(here, Loaded) and abs(here.margin) <= REACHED:
-            return Capacity(here)
-        if isinstance(here, Loaded) and abs(here.margin) < min(NEAR, NEARER * nearest):
-            nearest = abs(here.margin)
-            if found := ray.to_limit():
-                return Capacity(found)
+        here = ray.at(size, cold=kept is None, by_nodes=kept is None)
+        if found := limit_beside(ray, here, nearest):
+            return Capacity(found)
+        if isinstance(here, Loaded) and 0.0 < -here.margin < NEARER * nearest:
+            nearest = -here.margin
         if isinstance(here, Loaded) and here.margin > 0.0:
             kept = here
         elif rises and kept is None and math.isinf(beyond) and isinstance(here, Loaded) and ray.slope(here) > 0.0:
@@ -83,6 +109,10 @@ def largest_load(ray: LoadRay, guess: float) -> Capacity:
         else:
             beyond = size
             reason = here if isinstance(here, str) else f"{here.limit} {IN_A_JUMP}"
+        if kept is not None and branches and (near(kept, here) or reason == NO_BALANCE or beyond <= CLOSE * kept.size):
+            branches, ray.known = branches - 1, kept.found.answer
+            if found := ray.along_branch():
+                return of_branch(found)
         if ended := bounded(ray, kept, (beyond, reason)):
             return replace(ended, smallest=here) if ended.at is None and isinstance(here, Loaded) else ended
         size = following(ray, (last, here), kept, beyond)
@@ -90,6 +120,23 @@ def largest_load(ray: LoadRay, guess: float) -> Capacity:
         if kept is not None:  # beyond the limit, another branch may go on below it
             ray.known = kept.found.answer
     return Capacity(kept, "bounded from below: the search for the limit ran out of balances")
+
+
+def near(kept: Loaded, here: Loaded | str) -> bool:
+    """Whether the load that was looked at last is kept, and near a limit."""
+    return kept is here and kept.margin < NEAR
+
+
+def limit_beside(ray: LoadRay, here: Loaded | str, nearest: float) -> Loaded | None:
+    """The balance at the limit, if that is the one `here` or is found from there; from kept loads the branch leads on.
+
+    `nearest` is the distance of the last attempt.
+    """
+    if isinstance(here, str):
+        return None
+    if abs(here.margin) <= REACHED:
+        return here
+    return ray.to_limit() if 0.0 < -here.margin < min(NEAR, NEARER * nearest) else None
 
 
 def bounded(ray: LoadRay, kept: Loaded | None, over: tuple[float, str]) -> Capacity | None:

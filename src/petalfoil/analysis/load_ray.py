@@ -13,13 +13,15 @@ from numpy.typing import NDArray
 from petalfoil.analysis.contact_model import reported
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.fields import all_fields
+from petalfoil.analysis.foretold_balance import foretold
 from petalfoil.analysis.heat_results import with_heat
 from petalfoil.analysis.other_bearing import bearing_of
 from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.case import Case
-from petalfoil.equilibrium.at_limit import LoadLimit, followed_to
+from petalfoil.equilibrium.at_limit import LoadedState, LoadLimit, followed_to
 from petalfoil.equilibrium.element_contacts import clear_of_journal
-from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError
+from petalfoil.equilibrium.element_tangent import NoPointsError
+from petalfoil.equilibrium.largest_load import Branch
 from petalfoil.equilibrium.nodal_state import sampled_solution
 from petalfoil.equilibrium.point_contacts import PointContacts, followed
 from petalfoil.equilibrium.run_context import current_run
@@ -35,14 +37,19 @@ from petalfoil.walls import wall_kind
 
 Array = NDArray[np.float64]
 
-CLEAR = 0.3
-"""Distance beyond a limit (a film a quarter too thin) that contacts at nodes settle: points would not bring it back."""
 FOLLOWED = 0.1
 """Relative change of the load over which contact points are followed by themselves: farther they are lost."""
 PROBE = 1e-5
 """Relative change of the load by which the tangent foretells the slope of a limit."""
 LEAST, MOST = 1e-6, 20.0
 """Loads that are looked at, over ambient pressure times length times diameter."""
+SMALL = 1e-3
+"""Load that hardly moves the journal, likewise: smaller ones grow to it in one step."""
+CLEAR = 0.3
+"""Distance beyond a limit (a film a quarter too thin) from which contacts at nodes lead on to a smaller load: points
+take a hundred factorisations under heavy contact. Once a load is kept, all others are judged with points."""
+PAST_TURN = 1.001
+"""Load over the largest one of a branch, at which it is looked where the bearing snaps to."""
 NO_BALANCE = "no balance was found beyond it"
 BOTTOMED_OUT = "the pack is bottomed out beyond it"
 """Why a load is not carried, beside a limit."""
@@ -163,17 +170,23 @@ class LoadRay:
         x, y = self.direction
         return load_of(self.case, (size * x, size * y), self.base.layout)
 
-    def at(self, size: float, *, cold: bool = False) -> Loaded | str:
+    def at(self, size: float, *, cold: bool = False, by_nodes: bool = False) -> Loaded | str:
         """The balance under a load [N], or why there is none that a bearing can run with.
 
-        Where the known one does not lead to it, it is sought from nothing if `cold` is set.
+        Where the known one does not lead to it, it is sought from nothing if `cold` is set. With `by_nodes` it may be
+        that with contacts at nodes, where that is far beyond a limit.
         """
-        found = self._balanced(size, cold=cold)
+        found = self._balanced(size, cold=cold, by_nodes=by_nodes and size > LEAST * self.unit)
         if isinstance(found, Loaded) and (self.nearest is None or found.margin >= self.nearest.margin):
             self.nearest = found
         return found
 
-    def _balanced(self, size: float, *, cold: bool) -> Loaded | str:
+    def past(self, turn: Loaded) -> Loaded | str:
+        """The balance, from nothing, under a little more than the load at which a branch turns back."""
+        self.known = None
+        return self.at(PAST_TURN * turn.size, cold=True)
+
+    def _balanced(self, size: float, *, cold: bool, by_nodes: bool) -> Loaded | str:
         known = self.known
         if found := self._followed(size):
             return found
@@ -185,7 +198,7 @@ class LoadRay:
             return NO_BALANCE
         if answer.bottomed_out or (answer.other is not None and answer.other.bottomed_out):
             return BOTTOMED_OUT
-        if answer.other is None and (size <= LEAST * self.unit or self._judged(size, answer).margin > -CLEAR):
+        if answer.other is None and not (by_nodes and self._judged(size, answer).margin <= -CLEAR):
             answer = reported(self.case, answer, known)
         self.known = answer
         return self._judged(size, answer)
@@ -202,8 +215,16 @@ class LoadRay:
 
     def to_limit(self) -> Loaded | None:
         """The balance at the limit, followed from the known one with the load as an unknown; None if it is lost."""
-        unit, known = self.load(1.0), self.known
-        found = self._led(lambda found, size: self._judged(size, sampled_solution(found, size * unit)).margin)
+        return self._led(lambda known: followed_to(self.base, known, self._known_size, self._limit, self.hand))
+
+    def along_branch(self) -> Loaded | None:
+        """The balance of the largest load between the known one and the limit, followed likewise; None if it is lost.
+
+        It is at the limit, or where the branch of the known one turns back.
+        """
+        known = self.known
+        branch = Branch(self.base, self._limit, self.hand)
+        found = self._led(lambda near: branch.largest(near, self._known_size).at)
         if found is None and self._has_elements and known is not None:
             self.lost |= known.problem.bearing_number != self.base.bearing_number
         return found
@@ -211,15 +232,26 @@ class LoadRay:
     def under_known_load(self) -> Loaded | None:
         """The balance at this speed under the load of the known one, followed from it; None if it is lost."""
         size = self._known_size
-        return self._led(lambda found, here: math.log(size / here))
+        same = LoadLimit(self.load(1.0), lambda found, here: math.log(size / here))
+        return self._led(lambda known: followed_to(self.base, known, size, same, self.hand))
 
-    def _led(self, distance: Callable[[ElementEquilibrium, float], float]) -> Loaded | None:
-        """The balance at which a distance vanishes, followed from the known one with the load as an unknown."""
+    @property
+    def _limit(self) -> LoadLimit:
+        """The nearest limit of a state under a load of this direction."""
+        unit = self.load(1.0)
+        return LoadLimit(
+            unit,
+            lambda found, size: self._judged(size, sampled_solution(found, size * unit)).margin,
+            small=SMALL * self.unit,
+        )
+
+    def _led(self, follow: Callable[[ElementEquilibrium], LoadedState]) -> Loaded | None:
+        """The balance to which the known one is followed with the load as an unknown; None if it is lost."""
         known, unit = self.known, self.load(1.0)
         if not self._has_elements or known is None or known.elements is None:
             return None
         try:
-            found = followed_to(self.base, known.elements, self._known_size, LoadLimit(unit, distance), self.hand)
+            found = follow(known.elements)
             self.known = sampled_solution(clear_of_journal(found.positioned), found.size * unit)
         except NoPointsError as failure:
             current_run().note("limit", outcome=str(failure))
@@ -303,37 +335,3 @@ class LoadRay:
             other = Evaluation.of(self._rotor(size).untold(answer.other), answer.other)
             margin, limit = min((margin, limit), self.limits.margin(other))
         return Loaded(size, found, margin, limit)
-
-
-def foretold(answer: Solution, more: Array, faster: float = 0.0) -> Solution:
-    """The balance under `more` load (n_position,) than that of `answer`, and a part `faster`, by its tangent alone."""
-    if answer.elements is not None:
-        return replace(answer, elements=foretold_on_elements(answer.elements, more, faster))
-    if answer.lines is not None:
-        return replace(answer, lines=answer.lines.foretold(more, faster))
-    if answer.contacts is None:
-        raise ValueError("an equilibrium of the interior point alone has no tangent")
-    tangent, problem = answer.contacts.tangent, answer.problem
-    there = problem.at(bearing_number=problem.bearing_number * (1.0 + faster))
-    forcing = there.linearize(answer.x).residual - problem.linearize(answer.x).residual
-    closing = there.gaps(answer.x) - problem.gaps(answer.x)
-    move = np.linalg.solve(tangent.gradient, -more - tangent.border.rows(*tangent.respond(forcing, closing)))
-    change, reactions = tangent.respond(
-        forcing + tangent.forcing @ move, closing + tangent.border.gap_derivative @ move
-    )
-    moved = there.at(displacement=problem.displacement + move)
-    return replace(answer, problem=moved, state=replace(answer.state, x=answer.x + change, lam=answer.lam + reactions))
-
-
-def foretold_on_elements(found: ElementEquilibrium, more: Array, faster: float) -> ElementEquilibrium:
-    """The same of petals with continuous slopes; one factorisation."""
-    equations = found.equations
-    problem, whole = equations.problem, equations.problem.layout.elements
-    if whole is None:
-        raise ValueError("this bearing has no petals with continuous slopes")
-    there = problem.at(bearing_number=problem.bearing_number * (1.0 + faster))
-    ahead = found.under(whole, there)
-    tangent = ElementTangent.at(equations, -equations.force, current_run().probe_solver)
-    forcing = ahead.equations.newton_residual - equations.newton_residual
-    change, move = tangent.correction(forcing, ahead.equations.force - equations.force + more)
-    return ahead.moved(there.at(displacement=problem.displacement + move), change)

@@ -23,7 +23,7 @@ from petalfoil.analysis.rotor_verdict import MassMargin, RotorVerdict, is_stable
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
 from petalfoil.analysis.speeds import SpeedLine
-from petalfoil.analysis.threshold import AtOwnSpeed, beyond_the_model, rotor_mass, threshold_speed
+from petalfoil.analysis.threshold import AtOwnSpeed, rotor_mass, threshold_speed, told_with_mach
 from petalfoil.case import Case
 from petalfoil.dynamics.critical_mass import EVEN_FILM, Whirl
 from petalfoil.dynamics.film_stability import leading_eigenvalue
@@ -215,8 +215,7 @@ def point(
             threshold, ended = threshold_speed(rotor, load, AtOwnSpeed(found.answer, impedance.motion, whirl))
         else:
             threshold, ended = math.nan, AT_AMPLITUDE
-        if beyond := beyond_the_model(case, threshold):
-            ended = "; ".join(filter(None, (ended, f"threshold speed: {beyond}")))
+        ended = told_with_mach(case, threshold, ended)
         parts = (
             *(() if amplitude is not None else (RotorVerdict.of(case, whirl, rotor.mass, modes),)),
             RotorThreshold(rotor.mass, threshold),

@@ -105,6 +105,14 @@ def beyond_the_model(case: Case, speed: float) -> str:
     return f"the journal's surface moves at Mach {mach:.2g} there, and the film is modelled up to {MAX_MACH:g}"
 
 
+def told_with_mach(case: Case, speed: float, ended: str) -> str:
+    """What is said of a threshold speed [rad/s], how the search `ended` and whether it is beyond the model, as one."""
+    beyond = beyond_the_model(case, speed)
+    if not beyond:
+        return ended
+    return f"{ended}, and {beyond}" if ended else f"threshold speed: {beyond}"
+
+
 def neutral_speed(
     margin_at: Callable[[float], float], known: tuple[float, float], ahead: tuple[float, float]
 ) -> Threshold:

@@ -27,6 +27,7 @@
 `point_contacts.py`        equilibria with contact points as unknowns
 `asperity_contacts.py`     equilibria with contact pressures over low asperities
 `at_limit.py`              the load at which a result reaches its limit, followed with these contacts
+`largest_load.py`          the largest load of a branch, there or where the branch turns back
 `element_contacts.py`      which of the two is near an equilibrium with contacts at nodes
 `element_rates.py`         how such an equilibrium follows a parameter of its case
 `line_contacts.py`         3-D equilibria whose contact lines cross stations between nodes: equations, Newton's step

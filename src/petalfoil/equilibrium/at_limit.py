@@ -62,7 +62,7 @@ FARTHEST_TRAVEL = 3.0
 """Farthest that a contact point travels in a step, in elements: from speed to speed points travel by one or two."""
 
 MOST_LOAD = 0.5
-"""Largest relative change of the load in a step."""
+"""Largest relative change of the load in a step, but for small loads."""
 
 CHORD = 0.5
 """Error after a step over that before it, up to which the factor at hand serves on: 0.2 took a quarter more of them."""
@@ -195,10 +195,16 @@ class LoadLimit:
         Load of size one over the unit of force [1].
     distance : callable
         Distance of a state from the limit, relative to it, negative beyond it; by contacts and size of the load.
+    small : float
+        A load that hardly moves the journal: so much is added to a load at once, however small that is.
+    turns : bool
+        Whether more load may lead away from the limit, as behind the largest load of a branch.
     """
 
     direction: Array
     distance: Callable[[ElementEquilibrium, float], float]
+    small: float = 0.0
+    turns: bool = False
 
     def of(self, at: LoadedState) -> float:
         """Distance of a state from the limit."""
@@ -241,7 +247,7 @@ class LimitTangent:
         Raises
         ------
         NoPointsError
-            A larger load does not lead nearer to the limit, or the contacts do not determine the petals.
+            A larger load does not lead to the limit, where it must, or the contacts do not determine the petals.
         """
         solver, matrix, layout = current_run().film_solver, at.equations.steady, at.equations.problem.layout
         common = len(at.equations.deflection) + len(at.equations.pressures)
@@ -265,7 +271,7 @@ class LimitTangent:
         move = np.asarray(np.linalg.solve(tangent.gradient, -load), dtype=np.float64)
         by_load = tangent.units @ move, move
         slope = limit.along(at, distance, by_load, 1.0)
-        if not slope < 0.0:
+        if not (slope < 0.0 or (limit.turns and slope > 0.0)):
             raise NoPointsError("more load does not lead nearer to the limit")
         return cls(tangent, by_load, slope)
 
@@ -274,7 +280,7 @@ class LimitTangent:
         tangent, (dX, move) = self.tangent, self.by_load
         own = tangent.correction(at.equations.newton_residual, unbalanced(at.equations, at.size * limit.direction))
         more = -(distance + limit.along(at, distance, own)) / self.slope
-        more = min(max(more, -MOST_LOAD), MOST_LOAD)
+        more = min(max(more, -MOST_LOAD), max(MOST_LOAD, limit.small / at.size))
         change = own[0] + more * dX, own[1] + more * move
         return at.moved(change, more, at.admitted(change))
 

@@ -224,6 +224,8 @@ def without_rounding(record: Record) -> dict[str, Scalar]:
         here = [float(reported[name]) for name in names if name in reported]
         least = ROUNDING * max(scale, math.hypot(*here))
         reported |= {name: 0.0 for name in names if name in reported and abs(float(reported[name])) < least}
+    if float(reported.get("max_membrane_stress", math.inf)) < ROUNDING * float(reported.get("max_bending_stress", 0.0)):
+        reported["max_membrane_stress"] = 0.0
     return reported
 
 

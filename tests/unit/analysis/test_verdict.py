@@ -7,7 +7,7 @@ import math
 import pytest
 
 from petalfoil.analysis.rotor_verdict import MassMargin, RotorVerdict
-from petalfoil.analysis.threshold import beyond_the_model
+from petalfoil.analysis.threshold import beyond_the_model, told_with_mach
 from petalfoil.dynamics.critical_mass import Whirl
 from petalfoil.dynamics.natural_modes import Mode
 from tests.cases import case
@@ -59,3 +59,7 @@ def test_speeds_past_the_model_are_told() -> None:
     assert beyond_the_model(PLAIN, 0.69 * sound / radius) == ""
     assert "Mach 3.6 there" in beyond_the_model(PLAIN, 3.6 * sound / radius)
     assert beyond_the_model(PLAIN, math.nan) == ""
+    fast = 3.6 * sound / radius
+    assert told_with_mach(PLAIN, fast, "") == f"threshold speed: {beyond_the_model(PLAIN, fast)}"
+    assert told_with_mach(PLAIN, fast, "the mass jumps") == f"the mass jumps, and {beyond_the_model(PLAIN, fast)}"
+    assert told_with_mach(PLAIN, math.nan, "no threshold speed") == "no threshold speed"

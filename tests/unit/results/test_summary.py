@@ -129,3 +129,13 @@ def test_rounding_is_shown_as_zero(scalars: dict[str, float], shown: list[str]) 
 
 def test_the_compressibility_number_says_on_which_length() -> None:
     assert "radial clearance" in summary.cell("compressibility_number", 5.55).label
+
+
+def test_membrane_stress_of_petals_that_nothing_stretches_is_shown_as_zero() -> None:
+    shown = [
+        summary.without_rounding(
+            Record(analysis="balance", scalars={"max_bending_stress": 2e8, "max_membrane_stress": value})
+        )["max_membrane_stress"]
+        for value in (4.5e-5, 1.0)
+    ]
+    assert shown == [0.0, 1.0]
