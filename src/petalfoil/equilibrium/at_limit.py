@@ -45,8 +45,7 @@ REACHED = 1e-6
 """Relative distance from a limit at which it counts as reached."""
 
 TANGENTS = 16
-"""Most tangents of one search: three or four between speeds 3 % apart, twelve where a petal comes to lie on another one
-between them."""
+"""Most tangents of one search: three or four between speeds 3 % apart, twelve where a petal comes to lie on another."""
 
 LEAST_PART = 0.125
 """Least part of the way between two speeds that is taken at once: what is lost over an eighth of it jumps."""
@@ -56,7 +55,7 @@ STEPS = 60
 
 FARTHEST_MOVE = 4.0
 """Longest move of the journal in a step, in units of the reference film (40 um): with 10 the first step between speeds
-a sixth apart leads astray, and 13 factorisations follow in place of 3."""
+a sixth apart leads astray."""
 
 FARTHEST_TRAVEL = 3.0
 """Farthest that a contact point travels in a step, in elements: from speed to speed points travel by one or two."""
