@@ -102,6 +102,13 @@ def test_a_journal_that_is_held_comes_to_its_equilibrium() -> None:
     assert told["contact_fraction"] == 0.0
 
 
+def test_the_minimum_film_of_petals_is_that_of_contacts_at_nodes() -> None:
+    """A motion keeps contacts at nodes, and its minimum film is that of every verb with contacts there."""
+    there = petalfoil.solve(PETALS.replace(**{"model.contacts": "nodes"}))
+    told = petalfoil.Film(PETALS).results()
+    assert told["min_film_thickness"] == pytest.approx(float(there["min_film_thickness"]), rel=1e-9)
+
+
 @pytest.mark.slow
 def test_the_gas_that_is_gained_has_come_in() -> None:
     film, speed = petalfoil.Film(PLAIN), PLAIN.operation.speed
