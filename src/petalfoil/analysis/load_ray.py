@@ -21,7 +21,7 @@ from petalfoil.case import Case
 from petalfoil.equilibrium.at_limit import LoadedState, LoadLimit, followed_to
 from petalfoil.equilibrium.element_contacts import clear_of_journal
 from petalfoil.equilibrium.element_tangent import NoPointsError
-from petalfoil.equilibrium.largest_load import Branch
+from petalfoil.equilibrium.largest_load import LoadBranch
 from petalfoil.equilibrium.nodal_state import sampled_solution
 from petalfoil.equilibrium.point_contacts import PointContacts, followed
 from petalfoil.equilibrium.run_context import current_run
@@ -223,7 +223,7 @@ class LoadRay:
         It is at the limit, or where the branch of the known one turns back.
         """
         known = self.known
-        branch = Branch(self.base, self._limit, self.hand)
+        branch = LoadBranch(self.base, self._limit, self.hand)
         found = self._led(lambda near: branch.largest(near, self._known_size).at)
         if found is None and self._has_elements and known is not None:
             self.lost |= known.problem.bearing_number != self.base.bearing_number

@@ -45,7 +45,7 @@ class BranchState:
 
 
 @dataclass
-class Branch:
+class LoadBranch:
     """A branch under one direction of the load, followed by the distance from a limit.
 
     Attributes
