@@ -235,6 +235,16 @@ def test_little_friction_is_none() -> None:
     assert with_it[1] > without[1]
 
 
+def test_petals_that_nothing_touches_do_not_rub() -> None:
+    """Short hinged petals lie on the bushing; it ended in a ValueError of NumPy, for want of a contact."""
+    changes = {"petals.arc_length": "22.4 mm", "petals.bend_radius": "26.5 mm", "model.cells_per_pitch": 8}
+    loose = case("paper_n8", **changes, **{"model.contacts": "nodes"})
+    for coefficient in (0.0, 0.1):
+        records = list(static.records(loose.replace(**{"surface.petal_friction": coefficient}), (0.0, 10e-6)))
+        assert [record.scalars["status"] for record in records] == ["converged", "converged"]
+        assert [record.scalars["contact_normal_force"] for record in records] == [0.0, 0.0]
+
+
 def test_a_loop_without_friction_is_refused() -> None:
     with pytest.raises(UsageError, match="petal_friction"):
         static.records(case("paper_n8"), (0.0, 50e-6), loop=True)

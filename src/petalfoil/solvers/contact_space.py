@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -73,6 +73,11 @@ class KnownState:
     slip: Array
 
 
+def columns(vectors: Sequence[Array], length: int) -> Array:
+    """The matrix with these columns, (length, number of vectors): also of none, where no contact is near."""
+    return np.column_stack(vectors) if vectors else np.zeros((length, 0))
+
+
 @dataclass(frozen=True)
 class UnitResponses:
     """Changes of the unknowns by a unit of each opening, reaction and friction force.
@@ -119,9 +124,10 @@ class UnitResponses:
                 units.append((change, reactions))
         units += [tangent.respond(slips[[place]].toarray()[0]) for place in range(len(at))]
         moved = [answered(Unit(change, reactions, 0.0)) for change, reactions in units]
-        change = np.column_stack([unit.change for unit in moved])
-        reactions = np.column_stack([unit.reactions[contacts] for unit in moved])
-        gaps = rows @ change + np.column_stack([np.broadcast_to(unit.gaps, len(held))[contacts] for unit in moved])
+        change = columns([unit.change for unit in moved], G.shape[1])
+        reactions = columns([unit.reactions[contacts] for unit in moved], len(contacts))
+        own = columns([np.broadcast_to(unit.gaps, len(held))[contacts] for unit in moved], len(contacts))
+        gaps = rows @ change + own
         place_of = np.full(len(held), -1)
         place_of[contacts] = np.arange(len(contacts))
         answer = np.where(held[contacts][:, None], reactions, gaps)
