@@ -45,7 +45,7 @@ def solve_cold(problem: CoupledProblem, barriers: tuple[float, ...] = BARRIERS) 
     """
     answer = by_barriers(problem, barriers) or by_slower_ways(problem)
     if answer is None:
-        raise nothing_found()
+        raise nothing_found(endless=problem.endless)
     return answer
 
 
@@ -121,12 +121,22 @@ def slower_ways(
             yield end, "followed the central path through its folds"
 
 
-def nothing_found() -> ConvergenceError:
-    """The error of a search that came to nothing, with its history."""
+LIMIT_OF_LENGTH = (
+    "the limit of a long bearing (2-D, continuous edges) need not have an equilibrium that this search reaches: "
+    "`solve` also follows bearings that grow longer, at one position; or take the length into account, "
+    'model.kind = "3d", or vent the petals\' edges, model.edges = "ambient"'
+)
+"""Advice of analyses under a load and along curves where the film has no ends: only `solve` lengthens (F6c)."""
+
+
+def nothing_found(*, endless: bool = False) -> ConvergenceError:
+    """The error of a search that came to nothing, with its history; `endless` where the film has no ends."""
     return ConvergenceError(
         "no equilibrium found: film, petals and contacts did not converge from any start",
         history=current_run().history,
-        advice="refine the grid, lower the eccentricity or approach it along a curve; extreme preload (thick or short "
+        advice=LIMIT_OF_LENGTH
+        if endless
+        else "refine the grid, lower the eccentricity or approach it along a curve; extreme preload (thick or short "
         "petals, a clamped mount with a steep root) makes equilibria that switch from node to node",
     )
 

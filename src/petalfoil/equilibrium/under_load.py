@@ -76,7 +76,7 @@ def balance_cold(problem: CoupledProblem, load: Array) -> Solution:
     """
     found = from_nothing(problem, load) or loaded_gradually(problem, load) or by_slower_ways(problem, load)
     if found is None:
-        raise nothing_found()
+        raise nothing_found(endless=problem.endless)
     return found
 
 

@@ -86,6 +86,11 @@ class CoupledProblem:
         return self.layout.acting if self.turns else self.layout.G
 
     @property
+    def endless(self) -> bool:
+        """Whether petals bound a film that has no ends: the limit of a long bearing (F6)."""
+        return self.layout.film_rows.inventory is not None and self.layout.n_wall > 0
+
+    @property
     def turns(self) -> bool:
         """Whether dry friction of the journal has its full force: in equilibria at zero speed, too, it is about to."""
         return True

@@ -9,9 +9,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from petalfoil.analysis.contact_model import ContactModel
+from petalfoil.equilibrium import under_load
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.run_context import RunContext
 from petalfoil.equilibrium.under_load import MOST_FILMS, LoadedEquations, balance_cold, newton, rebalance
+from petalfoil.errors import ConvergenceError
 from petalfoil.solvers.contact_equations import Correction
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
@@ -107,3 +109,15 @@ def test_the_journal_moves_by_a_few_films_at_most() -> None:
     assert equations.step_length(state.state, far) == pytest.approx(MOST_FILMS / 50.0)
     near = Correction(np.zeros(problem.layout.n), np.array([0.3, 0.4]), np.zeros(0))
     assert equations.step_length(state.state, near) == 1.0
+
+
+@pytest.mark.parametrize("edges", ["continuous", "ambient"])
+def test_advice_of_a_film_without_ends_names_its_length(edges: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only `solve` makes a bearing longer and longer."""
+    for search in ("from_nothing", "loaded_gradually", "by_slower_ways"):
+        monkeypatch.setattr(under_load, search, lambda *_: None)
+    problem = build_problem(PETALS.replace(**{"model.edges": edges}))
+    with pytest.raises(ConvergenceError) as failure:
+        balance_cold(problem, np.array([0.0, -1.0]))
+    assert ("`solve`" in failure.value.advice) == (edges == "continuous")
+    assert ("refine the grid" in failure.value.advice) == (edges == "ambient")
