@@ -7,6 +7,7 @@ import pytest
 
 from petalfoil.analysis.curve import curve
 from petalfoil.analysis.operating_point import coarse
+from petalfoil.analysis.solve import solve
 from petalfoil.analysis.stability import stability
 from petalfoil.case import Case
 from petalfoil.equilibrium.branches import probe
@@ -55,6 +56,8 @@ def test_cold_starts_on_the_finest_grid() -> None:
     assert np.median(fine) <= 1.5 * np.median(cold(32))
     assert np.sort(fine)[-2] <= 30
 
+
+COSTS = ("factorizations", "pack_iterations", "probe_factorizations")
 
 SPEED, LOW_SPEED = 8000.0, 2000.0
 """Speeds of the curves [rad/s]."""
@@ -130,6 +133,16 @@ def test_other_equilibria_are_looked_for_along_one_path_of_the_pack() -> None:
     with running() as run:
         assert probe(build_problem(coarse(random_case(np.random.default_rng(1))))) == 1
     assert run.probes.factorizations <= 42
+
+
+@pytest.mark.slow
+def test_a_cold_start_with_all_that_is_asked_about_it() -> None:
+    """Film, pack, growth rate and other equilibria of random packs; medians with contacts at nodes."""
+    rng, counts = np.random.default_rng(2024), []
+    for _ in range(40):
+        s = solve.record(random_case(rng, **{"model.contacts": "nodes"})).scalars
+        counts.append(sum(int(s[key]) for key in COSTS))  # type: ignore[call-overload]
+    assert np.median(counts) <= 20
 
 
 @pytest.mark.slow

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,12 +14,13 @@ from petalfoil.analysis.curve import curve
 from petalfoil.analysis.solve import solve
 from petalfoil.case import Case
 from petalfoil.dynamics.film_stability import leading_eigenvalue
-from petalfoil.equilibrium.branches import fingerprint
-from petalfoil.equilibrium.cold_start import solve_cold
+from petalfoil.equilibrium.branches import STRETCH, fingerprint, longest_contact, may_have_others
+from petalfoil.equilibrium.cold_start import BARRIERS, attempt, solve_cold
 from petalfoil.equilibrium.continuation import settle
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 from petalfoil.solvers.constraints import constrain
+from petalfoil.solvers.interior_point import InteriorOptions
 from petalfoil.system.build import build_problem
 from tests.cases import case
 from tests.random_packs import random_case
@@ -81,6 +83,27 @@ def test_an_unstable_equilibrium_is_left_for_a_stable_one() -> None:
     assert leading_eigenvalue(rested).real < 0.0
     before, after = fingerprint(unstable), fingerprint(rested)
     assert np.max(np.abs(after - before)) > 1e-3 * before[0]
+
+
+@pytest.mark.parametrize(("number", "several"), [(2, False), (67, True)])
+def test_others_are_looked_for_where_petals_touch_along_stretches(number: int, several: bool) -> None:
+    """A growth rate alone takes one factorisation. Case 67 has two stable equilibria, and contacts of half a pitch."""
+    first = attempt(build_problem(drawn(number)), BARRIERS[0])
+    assert first is not None
+    assert (longest_contact(first) >= STRETCH) is several
+    s = solve.record(drawn(number).replace(**{"model.contacts": "nodes"})).scalars
+    assert (s["known_equilibria"] >= 2) is several  # type: ignore[operator]
+    assert (s["probe_factorizations"] > 1) is several  # type: ignore[operator]
+
+
+def test_others_are_looked_for_where_the_path_was_left() -> None:
+    """A short step says so, and so does an answer that was not reached from the assembled pack."""
+    first = attempt(build_problem(drawn(2)), BARRIERS[0])
+    assert first is not None
+    assert first.shortest_step is not None
+    assert first.shortest_step > InteriorOptions.short
+    asked = [replace(first, shortest_step=length) for length in (first.shortest_step, 0.1, None)]
+    assert [may_have_others(answer) for answer in asked] == [False, True, True]
 
 
 @pytest.mark.slow

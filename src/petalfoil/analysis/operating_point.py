@@ -21,7 +21,7 @@ from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.analysis.thermal_limit import beyond_thermal_limit
 from petalfoil.case import Case, ModelKind
 from petalfoil.dynamics.film_stability import leading_eigenvalue
-from petalfoil.equilibrium.branches import distinct, probe
+from petalfoil.equilibrium.branches import distinct, may_have_others, probe
 from petalfoil.equilibrium.cold_start import BARRIERS, by_barriers, by_slower_ways, solve_cold
 from petalfoil.equilibrium.continuation import ascend, settle
 from petalfoil.equilibrium.heated import ThermalRunawayError
@@ -253,7 +253,8 @@ def at_position(case: Case) -> OperatingPoint:
     found = list(filter(None, [first or by_barriers(problem, BARRIERS[1:])]))
     rates = [leading_eigenvalue(answer) if first is None else rate for answer in found]
     several = wall_kind(case).can(Capability.SEVERAL_EQUILIBRIA)
-    known = probe(build_problem(coarse(case))) if several else 1
+    doubtful = first is None or rate.real > 0.0 or may_have_others(first)
+    known = probe(build_problem(coarse(case))) if several and doubtful else 1
     path = ""
     alone = known == 1 and first is not None and not rate.real > 0.0
     if first is not None:

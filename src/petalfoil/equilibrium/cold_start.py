@@ -166,9 +166,11 @@ def finish(
 ) -> Solution | None:
     """Drive the barrier down from `start`; read the active contacts as soon as they show, and solve on them exactly."""
     point, numbers, run = start, options or InteriorOptions(), current_run()
+    lengths: list[float] = []
     for goal in GOALS:
         numbers = replace(numbers, least_barrier=0.1 * goal)
-        point, found = interior_point(problem, point, run.film_solver, numbers, run.watch("film", reached(goal)))
+        watch = run.watch("film", reached(goal, lengths))
+        point, found = interior_point(problem, point, run.film_solver, numbers, watch)
         numbers = replace(numbers, march=False)
         if not found:
             return None
@@ -177,8 +179,10 @@ def finish(
         run.note("contacts", outcome=outcome.value, touching=int(touching.sum()))
         answer = from_contacts(problem, contacts, path) or without_pulls(problem, contacts, path)
         if answer is not None:
-            return answer
-    return from_point(problem, point, path)
+            break
+    else:
+        answer = from_point(problem, point, path)
+    return None if answer is None else replace(answer, shortest_step=min(lengths))
 
 
 def without_pulls(problem: CoupledProblem, contacts: ActiveContacts | None, path: str) -> Solution | None:
@@ -197,10 +201,12 @@ def without_pulls(problem: CoupledProblem, contacts: ActiveContacts | None, path
     return from_contacts(problem, released, path)
 
 
-def reached(goal: float) -> Callable[[InteriorStep], bool]:
-    """A stopping criterion: the barrier `goal`, with residuals to match."""
+def reached(goal: float, lengths: list[float] | None = None) -> Callable[[InteriorStep], bool]:
+    """A stopping criterion: the barrier `goal`, with residuals to match. Lengths of steps are added to `lengths`."""
 
     def look(step: InteriorStep) -> bool:
+        if lengths is not None:
+            lengths.append(step.length)
         residual = max(1e2 * goal, 0.5 * RESIDUAL_TOLERANCE)
         return step.barrier < goal and step.residual < residual and step.infeasibility < residual
 

@@ -108,6 +108,8 @@ class Solution:
         Force and moment left over on that rotor, over its load [1].
     friction : FrictionPath or None
         Friction forces between petals, where they were followed along a path; None of equilibria without them.
+    shortest_step : float or None
+        Shortest step of the interior point that led to it, over Newton's [1]; None of solutions reached otherwise.
     """
 
     problem: CoupledProblem
@@ -123,6 +125,7 @@ class Solution:
     nodal_force_difference: float | None = None
     lines: LineEquilibrium | None = field(default=None, repr=False)
     friction: FrictionPath | None = field(default=None, repr=False)
+    shortest_step: float | None = None
 
     @property
     def position(self) -> Array:

@@ -44,7 +44,9 @@ def first_attempt(problem: CoupledProblem) -> Solution | None:
     half = half_of(problem)
     known = None if half is None else attempt(half, BARRIERS[0])
     found = None if known is None else from_half(known, problem)
-    return found or attempt(problem, BARRIERS[0])
+    if known is None or found is None:
+        return attempt(problem, BARRIERS[0])
+    return replace(found, shortest_step=known.shortest_step)
 
 
 def from_half(known: Solution, problem: CoupledProblem) -> Solution | None:
