@@ -31,8 +31,8 @@ the tolerance of a solution. Stiff packs have some that differ by 1e-4, in which
 
 
 STRETCH = 0.09
-"""Length of a contact, over the pitch, from which on other equilibria are looked for. Of 400 random packs 12 with a cold
-start have others; their longest contacts are 0.099 to 0.9 of the pitch, those of 58 % of all packs are shorter."""
+"""Length of a contact, over the pitch, from which on other equilibria are looked for. Of 400 random packs 12 with a
+cold start have others; their longest contacts are 0.099 to 0.9 of the pitch, those of 58 % of all packs are shorter."""
 
 
 def may_have_others(answer: Solution) -> bool:
