@@ -297,8 +297,7 @@ class Case(Definition):
         """Whether contacts are looked for between nodes: of petals in 2-D on a rigid bushing."""
         model, on_bushing = self.model, self.petals is not None and self.backing is None
         newton_2d = model.kind is ModelKind.TWO_D and model.method is Method.NEWTON
-        points = model.contacts is ContactDiscretization.POINTS and not self.rubbing_pulls
-        return on_bushing and newton_2d and points
+        return on_bushing and newton_2d and model.contacts is ContactDiscretization.POINTS
 
     @property
     def has_contact_lines(self) -> bool:

@@ -67,8 +67,8 @@ class Surface(Definition):
     ] = 0.3
     journal_rubbing: JournalRubbing = JournalRubbing.TORQUE
     """What dry friction of the turning journal does where it touches: `torque` resists its turning alone; `force` also
-    drags the petals along the journal's motion, and holds the rotor back (D6), (D7). Contacts are then at nodes. At
-    zero speed an equilibrium is that of a journal about to turn."""
+    drags the petals along the journal's motion, and holds the rotor back (D6), (D7). In 3-D contacts are then at nodes.
+    At zero speed an equilibrium is that of a journal about to turn."""
     petal_friction: Annotated[
         float,
         Quantity(

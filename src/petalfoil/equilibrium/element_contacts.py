@@ -90,7 +90,8 @@ def ways(
     yield "contact points", partial(with_points, whole, problem, state, load)
     if neighbour is not None and neighbour.contact_model == AT_POINTS:
         yield "contact points", partial(neighbour.at, placed(problem, neighbour, load), load)
-    yield "asperities", partial(with_asperities, whole, problem, state, load)
+    if not whole.journal_friction:  # asperities push along the gaps alone
+        yield "asperities", partial(with_asperities, whole, problem, state, load)
 
 
 def placed(problem: CoupledProblem, neighbour: ElementEquilibrium, load: Array | None) -> CoupledProblem:

@@ -101,6 +101,14 @@ def face_slip(faces: Faces, at: FacePlaces, angle: Array) -> sp.csr_array:
     return sp.csr_array(sp.diags_array(arm) @ turned + sp.diags_array(along) @ integral)
 
 
+def face_slip_by_place(faces: Faces, at: FacePlaces, angle: Array) -> sp.csr_array:
+    """Derivative of `face_slip` by the place in the element, (f, 2 n_node)."""
+    value, bend = (hermite.rows(at.element, at.place, angle, derivative) for derivative in (0, 2))
+    own = angle[at.element]
+    along = -(faces.metric_radius / faces.bend_radius)[at.petal] * faces.share(at.petal, at.side) * own
+    return sp.csr_array(sp.diags_array(faces.arm[at.petal] / own) @ bend + sp.diags_array(along) @ value)
+
+
 def face_compliance(faces: Faces, at: FacePlaces, angle: Array, length: float) -> Array:
     """Slip that friction forces on faces take back by stretching their petals (M2), (f, f) [m/N]."""
     nodes = np.append(0.0, np.cumsum(angle))

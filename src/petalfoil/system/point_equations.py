@@ -8,8 +8,9 @@ those that travel. With `n`, `n'` the derivative of gap and slope at a point by 
     points   p + sum_d C b lam_d = 0                                                                   (C7)
     ends     p' + sum_d C b_s lam_d = 0    at points that travel, not at the end of a curve             (C8)
 
-Without stretches these are the stationary points of `E(w) - sum lam p - 1/2 sum lam lam_d C b` beside the film. The
-tangent has exact second derivatives, `-lam n'` among them: it is that of the equilibrium itself.
+Where the turning journal drags petals along, `n + mu_f D` acts in place of `n` (D6), and it is held back (D7).
+Without that and without stretches these are the stationary points of `E(w) - sum lam p - 1/2 sum lam lam_d C b` beside
+the film. The tangent has exact second derivatives, `-lam n'` among them: it is that of the equilibrium itself.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from petalfoil.sparsity import added_blocks, columns_times, rows_times
 from petalfoil.system.coupled import WALL_ROUNDING, CoupledProblem
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.point_layout import PointLayout
+from petalfoil.walls.pack_slip import dragged_faces
 
 Array = NDArray[np.float64]
 
@@ -147,11 +149,23 @@ class PointEquations:
         return value, slope
 
     @cached_property
+    def acting(self) -> tuple[sp.csr_array, sp.csr_array]:
+        """Forces of unit reactions on the petals, (j, n_wall), and their derivative by the places (D6)."""
+        friction = self.whole.journal_friction
+        if not friction:
+            return self.by_w
+        dragged = dragged_faces(self.whole.pack, self.state.points)
+        value, by_place = (sp.csr_array(n + friction * along) for n, along in zip(self.by_w, dragged, strict=True))
+        return value, by_place
+
+    @cached_property
     def residual(self) -> tuple[Array, Array, Array, Array]:
         """Wall, film, gaps of all points, slopes of the travelling ones."""
-        points, state, gaps, curves = self.state.points, self.state, self.gaps, self.whole.curves
+        points, state, gaps = self.state.points, self.state, self.gaps
         elastic = self.whole.elastic(state.w) - self.whole.push @ (state.P - 1.0)
-        wall = elastic - curves.by_w.T @ self._nodal_loads
+        wall = elastic - self.whole.curves.by_w.T @ self._nodal_loads
+        if friction := self.whole.journal_friction:
+            wall -= friction * (dragged_faces(self.whole.pack, points)[0].T @ points.reaction)
         value = np.where(self.idle > 0.0, points.reaction, gaps.value)
         return wall, self.film.residual, value, gaps.slope[points.ends] * self.travels
 
@@ -163,9 +177,9 @@ class PointEquations:
     @property
     def wall_forces(self) -> tuple[Array, Array, Array]:
         """Generalised forces on the petals: elastic, by pressure and contacts, and magnitudes of these, (n_wall,)."""
-        (n, _), reaction, over = self.by_w, self.state.points.reaction, self.state.P - 1.0
-        loads = self.whole.push @ over + n.T @ reaction
-        return self.whole.elastic(self.state.w), loads, abs(self.whole.push) @ np.abs(over) + abs(n.T) @ reaction
+        (acts, _), reaction, over = self.acting, self.state.points.reaction, self.state.P - 1.0
+        loads = self.whole.push @ over + acts.T @ reaction
+        return self.whole.elastic(self.state.w), loads, abs(self.whole.push) @ np.abs(over) + abs(acts.T) @ reaction
 
     @cached_property
     def scaled(self) -> Array:
@@ -187,7 +201,7 @@ class PointEquations:
     def steady(self) -> sp.csc_array:
         """The tangent."""
         (n, n_slope), gaps, points, whole = self.by_w, self.gaps, self.state.points, self.whole
-        acts, free, ends = 1.0 - self.idle, self.travels, points.ends
+        (pull, pull_by_place), acts, free, ends = self.acting, 1.0 - self.idle, self.travels, points.ends
         travel = columns_times(points.spread, free)  # positions of all points by those that travel
         by_P, by_w = self._film_tangent
         film = whole.n_wall
@@ -196,8 +210,8 @@ class PointEquations:
         blocks = [
             (0, 0, whole.stiffness),
             (0, film, -whole.push),
-            (0, lam, -n.T),
-            (0, place, -(rows_times(n_slope, points.reaction).T @ travel)),
+            (0, lam, -pull.T),
+            (0, place, -(rows_times(pull_by_place, points.reaction).T @ travel)),
             (film, 0, by_w),
             (film, film, by_P),
             (lam, 0, rows_times(n, acts)),
@@ -243,7 +257,8 @@ class PointEquations:
     @property
     def force_rows(self) -> Array:
         """Derivative of the force on the journal by the unknowns, (d, n)."""
-        (value, slope), points = self.by_e, self.state.points
+        points = self.state.points
+        value, slope = (weights @ self.whole.reaction_on_journal for weights in self._weights)
         film = self.whole.layout.border.row_derivative
         travel = ((slope.T * points.reaction) @ points.spread) * self.travels
         return np.concatenate([np.zeros((len(film), self.whole.n_wall)), film, value.T, travel], axis=1)
@@ -258,7 +273,7 @@ class PointEquations:
     def force(self) -> Array:
         """Force of film and contacts on the journal over the unit of force, (d,)."""
         film: Array = self.whole.layout.border.row_derivative @ (self.state.P - 1.0)
-        return film + self.whole.curves.by_e.T @ self._nodal_loads
+        return film + self.whole.reaction_on_journal.T @ self._nodal_loads
 
     @property
     def newton_force(self) -> Array:

@@ -81,6 +81,20 @@ class PointLayout:
         """Nodal (value, slope) of the gaps toward the journal, which come first."""
         return 2 * int(self.curves.first[self.pack.mesh.count])
 
+    @property
+    def journal_friction(self) -> float:
+        """`mu_f` of a journal that drags petals along, and is held back; 0 where its rubbing is torque alone [1]."""
+        case = self.layout.case
+        return case.surface.friction_coefficient if case.drags_petals else 0.0
+
+    @cached_property
+    def reaction_on_journal(self) -> Array:
+        """Force on the journal by unit loads on the nodal gaps, with its dry friction (D7), (2 n_node, d)."""
+        normal = self.curves.by_e
+        along = np.zeros_like(normal)
+        along[:, 0::2], along[:, 1::2] = -normal[:, 1::2], normal[:, 0::2]
+        return np.asarray(normal + self.journal_friction * along)
+
     @cached_property
     def film_by_w(self) -> SparseRows:
         """Derivative of the film thickness by the petals' unknowns, (film nodes, n_wall)."""

@@ -7,16 +7,28 @@ has the outer face alone. With the unknowns of the pack and the friction forces 
 
 A friction force loads the petals by `- B^T T`. Every contact has an outer face at a place of its own: `C` is positive
 definite, and petals that stick are as stiff as their membranes, not stiffer.
+
+A journal that turns drags the inner faces that it touches along. What it does to the petals is known from the motion
+`D w` of these faces (D6).
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.physics.gap_curves import ContactPoints, Facing
-from petalfoil.physics.petal_sliding import INNER, OUTER, FacePlaces, face_compliance, face_slip
+from petalfoil.physics.petal_sliding import (
+    INNER,
+    OUTER,
+    FacePlaces,
+    face_compliance,
+    face_slip,
+    face_slip_by_place,
+)
 from petalfoil.walls.element_pack import ElementPack
 
 Array = NDArray[np.float64]
@@ -43,7 +55,32 @@ def touching_faces(pack: ElementPack, points: ContactPoints) -> tuple[Index, Fac
 def slip_rows(pack: ElementPack, points: ContactPoints) -> sp.csr_array:
     """`B`: slip at all contact points from the unknowns, (j, n) [1]; rows of contacts on the journal are empty."""
     contact, at = touching_faces(pack, points)
-    own = face_slip(pack.faces, at, pack.elements.element_angle).tocoo()
+    return from_unknowns(pack, face_slip(pack.faces, at, pack.elements.element_angle), (contact, at), points)
+
+
+def dragged_faces(pack: ElementPack, points: ContactPoints) -> tuple[sp.csr_array, sp.csr_array]:
+    """`D`: motion of the inner faces along the journal at all contact points, from the unknowns, (j, n) [1] (D6).
+
+    And its derivative by the place in the element. Rows of contacts elsewhere are empty. Petals that do not slide by
+    themselves move along themselves as they bend.
+    """
+    n, curves = pack.mesh.count, pack.curves
+    contact = np.flatnonzero(points.every_curve < n)
+    curve = points.every_curve[contact]
+    element, place = curves.locate(curve, points.every_position[contact])
+    start = pack.nodes[Facing.JOURNAL].start
+    at = FacePlaces(curve, start + element - curves.first[curve], place, np.full(len(contact), INNER))
+    faces, angle = replace(pack.faces, slides=True), pack.elements.element_angle
+    own = face_slip(faces, at, angle), face_slip_by_place(faces, at, angle)
+    value, by_place = (from_unknowns(pack, rows, (contact, at), points) for rows in own)
+    return value, by_place
+
+
+def from_unknowns(
+    pack: ElementPack, of_faces: sp.csr_array, where: tuple[Index, FacePlaces], points: ContactPoints
+) -> sp.csr_array:
+    """Rows of faces (f, 2 n_node), each of its own petal, summed at their contacts from the unknowns, (j, n)."""
+    (contact, at), own = where, of_faces.tocoo()
     columns = 2 * len(pack.elements.phi) * at.petal[own.row] + own.col
     shape = (len(points.reaction), pack.nodal.shape[0])
     return sp.csr_array(sp.coo_array((own.data, (contact[own.row], columns)), shape=shape).tocsr() @ pack.nodal)
