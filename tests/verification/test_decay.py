@@ -1,0 +1,189 @@
+"""A journal that is led to and fro, and rotors whose swings die out: damping against that of harmonic balance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from numpy.typing import NDArray
+
+from petalfoil.analysis.impedance import cycle_impedance, elastic, elastic_and_sliding, sliding_at
+from petalfoil.analysis.operating_point import operating_point
+from petalfoil.analysis.orbit import orbit
+from petalfoil.analysis.orbit_motion import Orbit
+from petalfoil.analysis.release import OrbitRequest, released
+from petalfoil.case import Case, Rotor
+from petalfoil.dynamics.adaptive_steps import MarchOptions, march
+from petalfoil.dynamics.critical_mass import whirl_impedance
+from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
+from petalfoil.dynamics.natural_modes import natural_modes
+from petalfoil.dynamics.rotor_motion import Inertia, RotorMotion
+from petalfoil.dynamics.rubbing_modes import RubbingRotor
+from petalfoil.dynamics.rubbing_whirl import RubbingWhirl
+from petalfoil.equilibrium.linear_response import SmallMotion
+from petalfoil.equilibrium.run_context import current_run, running
+from petalfoil.equilibrium.small_motion import Motion
+from petalfoil.equilibrium.solution import Solution
+from tests.cases import case
+from tests.verification.test_sliding_histories import swings
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+LOAD, MASS = 20.0, 0.1
+"""Load on the journal [N] and mass of the rotor [kg]."""
+
+HEAVY = 1e7
+"""Inertia of a led journal over that which moves as the unit of force moves it: it does not feel the bearing."""
+
+
+def rubbing(name: str, friction: float, cells: int) -> Case:
+    """One of the examples under the load, with friction between petals."""
+    return case(name, **{
+        "model.cells_per_pitch": cells, "surface.petal_friction": friction, "surface.friction_width": 1e-11,
+        "operation.load": (0.0, -LOAD),
+    })  # fmt: skip
+
+
+# ------------------------------------------------------------------------------------------ a led journal
+
+
+@dataclass(frozen=True)
+class LedRotor(RotorMotion):
+    """A rotor that nothing but a force `-M a nu^2 cos(nu tau)` moves."""
+
+    amplitude: Array
+    ratio: float
+
+    @classmethod
+    def along(cls, rotor: RotorMotion, amplitude: Array, ratio: float) -> LedRotor:
+        """From `amplitude` (d,) [1] at a frequency [1 / unit of time]."""
+        own = {name: getattr(rotor, name) for name in ("load", "unbalance", "rotating", "schedule", "clock")}
+        d = len(amplitude)
+        return cls(HEAVY / ratio**2 * np.eye(d), np.zeros((d, d)), **own, amplitude=amplitude, ratio=ratio)
+
+    def outside(self, tau: float) -> Array:
+        """The force, (d,) [1]."""
+        return np.asarray(-self.inertia @ self.amplitude * self.ratio**2 * np.cos(self.ratio * tau))
+
+
+def led(bearing: Case, amplitude: float, ratio: float, steps: int) -> tuple[complex, complex]:
+    """`K + i Omega C` [N/m] along x of the second cycle of a journal that is led along x, and that of harmonic balance.
+
+    Contacts of both are at the same nodes.
+    """
+    with running():
+        answer = operating_point(bearing, None).answer
+        sliding, scales, speed = sliding_at(bearing, answer), answer.problem.layout.scales, bearing.operation.speed
+        assert sliding is not None
+        K, C = cycle_impedance(SmallMotion.at_nodes(answer), ratio * speed, speed, (sliding, amplitude))
+        x, y = answer.problem.displacement * scales.length
+        begun = Orbit.begin(
+            bearing.replace(rotor=Rotor(mass=MASS)), OrbitRequest(duration=1.0, initial=(x + amplitude, y))
+        )
+        rotor = LedRotor.along(begun.system.rotor, np.array([amplitude / scales.length, 0.0]), ratio)
+        system, start, period = replace(begun.system, rotor=rotor), begun.start, 2.0 * np.pi / ratio
+        start = released(
+            system, 0.0, (start.x, start.lam, start.active), (start.moving.e, np.zeros_like(start.moving.e))
+        )
+        options = MarchOptions(tolerance=1e-5, first=period / steps, longest=period / steps, fixed=True)
+        times, force = [], []
+        for stepped in march(system, start, 2.0 * period, options):
+            there = stepped.end
+            problem = system.problem.at(displacement=there.e, bearing_number=rotor.bearing_number(there.tau))
+            times.append(there.tau)
+            force.append(problem.journal_force(there.x, there.lam)[0] * scales.force)
+    tau, F = np.array(times[-steps - 1 :]), np.array(force[-steps - 1 :])
+    first = 2.0 / period * np.trapezoid(F * np.exp(-1j * ratio * tau), tau)
+    return complex(-first / amplitude), complex(K[0, 0], ratio * speed * C[0, 0])
+
+
+@pytest.mark.slow
+def test_a_led_journal_loses_what_harmonic_balance_says() -> None:
+    """Eight petals: within 3 %, and by as much at every amplitude as long as friction is in proportion to it.
+
+    Then normal forces, film and contacts change little, and all that is left is that slips of contacts are no sines.
+    """
+    apart = []
+    for amplitude in (2e-6, 8e-6):
+        loop, harmonic = led(rubbing("paper_n8", amplitude * 312.5, 24), amplitude, 0.7, 60)
+        assert loop.imag == pytest.approx(harmonic.imag, rel=0.03)
+        assert loop.real == pytest.approx(harmonic.real, rel=0.03)
+        apart.append(loop.imag / harmonic.imag)
+    assert apart[0] == pytest.approx(apart[1], abs=1e-3)
+    assert abs(apart[0] - 1.0) > 0.01
+
+
+# ------------------------------------------------------------------------------------------ swings that die out
+
+
+def passing(motion: Motion, sliding: SlidingContacts, amplitude: float, guess: complex) -> complex:
+    """`s` [rad/s] with which a rotor swings along x past an amplitude [m]: `m s^2 + Z(s, a) = 0`, by secants."""
+    scales, speed = motion.problem.layout.scales, motion.problem.layout.case.operation.speed
+
+    def left(s: complex) -> complex:
+        response = motion.growing(s / speed, current_run().probe_solver)
+        gradient = FrictionCycle(sliding, response, amplitude / scales.length).force_gradient()[0, 0]
+        return complex(MASS * s**2 - gradient * scales.force / scales.length)
+
+    last, s = guess, 1.001 * guess
+    while abs(s - last) > 1e-7 * abs(s):
+        last, s = s, s - left(s) * (s - last) / (left(s) - left(last))
+    return s
+
+
+def swung(bearing: Case, released: float, turns: float) -> tuple[Solution, list[tuple[float, complex]]]:
+    """The balance, and amplitude [m] and `s` [rad/s] of each swing along x of a rotor released beside it."""
+    answer = operating_point(bearing, None).answer
+    x, y = answer.problem.displacement * answer.problem.layout.scales.length
+    rotor = bearing.replace(rotor=Rotor(mass=MASS))
+    record = orbit.record(rotor, revolutions=turns, initial=(x + released, y), tolerance=1e-4)
+    sizes, times = swings(record.coords["time"].astype(float), np.asarray(record.fields["x"], dtype=float))
+    found = []
+    for k in range(len(sizes) - 1):
+        frequency = 2.0 * np.pi / (times[k] + times[k + 1])
+        rate = np.log(sizes[k] / sizes[k + 1]) * frequency / np.pi
+        found.append((float(np.sqrt(sizes[k] * sizes[k + 1])), complex(-rate, frequency)))
+    return answer, found
+
+
+def damping_ratio(s: complex) -> float:
+    """`-Re s / |s|`."""
+    return -s.real / abs(s)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [0.02, 0.1])
+def test_a_rotor_on_the_rig_decays_as_harmonic_balance_says(friction: float) -> None:
+    """Swings of 5 to 9 um: damping ratios within 5 %, with contacts at the same nodes and with contact points."""
+    bearing = rubbing("rig", friction, 24)
+    with running():
+        answer, decay = swung(bearing, 10e-6, 0.8)
+        points, at_points = elastic_and_sliding(bearing, answer)
+        nodes = SmallMotion.at_nodes(answer), sliding_at(bearing, answer)
+        for motion, sliding in (nodes, (points.frictionless, at_points)):
+            assert sliding is not None
+            for amplitude, s in decay[:3]:
+                expected = damping_ratio(passing(motion, sliding, amplitude, s))
+                assert damping_ratio(s) == pytest.approx(expected, rel=0.05)
+
+
+@pytest.mark.long
+def test_a_rotor_decays_as_the_mode_of_its_amplitude_on_the_default_grid() -> None:
+    """Eight petals, swings of 41 and 33 um: the mode (E19) that moves along x, within 5 %."""
+    bearing = rubbing("paper_n8", 0.0125, 128)
+    speed = bearing.operation.speed
+    with running():
+        answer, decay = swung(bearing, 50e-6, 13.0)
+        motion = elastic(bearing, answer)
+        start = natural_modes(whirl_impedance(motion.frictionless), Inertia.of_mass(MASS), speed)
+        assert start
+        for amplitude, s in decay[:2]:
+            rotor = RubbingRotor(RubbingWhirl.of(motion, amplitude), Inertia.of_mass(MASS), speed)
+            mode = rotor.near((s / speed, np.array([1.0, 0.0], dtype=complex)))
+            assert mode is not None
+            assert abs(mode.v[1]) < 0.1 * abs(mode.v[0])
+            assert damping_ratio(s) == pytest.approx(damping_ratio(mode.number), rel=0.05)
+            assert_allclose(s.imag, mode.number.imag * speed, rtol=0.05)
