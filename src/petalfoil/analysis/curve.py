@@ -123,4 +123,4 @@ def point_after(case: Case, problem: CoupledProblem, before: Solution | None) ->
     answer, jump = advance(before, problem.at(temperatures=before.problem.temperatures))
     answer = reported(case, with_heat(case, answer), before)
     rate = leading_eigenvalue(answer)
-    return OperatingPoint(answer, branch(rate, case, 2 if jump else 1, answer.solution_path, jump))
+    return OperatingPoint(answer, branch(rate, case, 2 if jump else None, answer.solution_path, jump))

@@ -101,7 +101,7 @@ def with_reported(case: Case, found: OperatingPoint) -> OperatingPoint:
     if answer.elements is None:  # in 3-D the growth rate stays that of contacts at nodes
         return replace(found, answer=answer)
     known = found.branch
-    rate = branch(leading_eigenvalue(answer), case, known.known_equilibria or 1, known.solution_path, known.jump)
+    rate = branch(leading_eigenvalue(answer), case, known.known_equilibria, known.solution_path, known.jump)
     return replace(found, answer=answer, branch=rate)
 
 
@@ -141,7 +141,7 @@ def under_load(case: Case, load: Vector) -> tuple[Solution, Branch]:
     if case.heat is not None:
         found = in_heat(case, found, load)
         rate = leading_eigenvalue(found)
-    alone = branch(rate, case, 1, found.solution_path)
+    alone = branch(rate, case, None, found.solution_path)
     if not rate.real > 0.0:
         return found, alone
     try:
@@ -185,7 +185,7 @@ def on_shaft(case: Case, load: Vector) -> tuple[Solution, Branch]:
     except ThermalRunawayError as failure:
         raise beyond_thermal_limit(case, load, failure) from failure
     rates = [leading_eigenvalue(one) for one in (found, found.other) if one is not None]
-    return found, branch(max(rates, key=lambda rate: rate.real), case, 1, found.solution_path)
+    return found, branch(max(rates, key=lambda rate: rate.real), case, None, found.solution_path)
 
 
 def in_heat(case: Case, found: Solution, load: Vector | None) -> Solution:
@@ -297,7 +297,7 @@ def relaxed(case: Case, problem: CoupledProblem, neighbour: Solution | None = No
         A number of steps was used up.
     """
     answer = by_classic(problem, neighbour)
-    return OperatingPoint(answer, branch(leading_eigenvalue(answer), case, 1, answer.solution_path))
+    return OperatingPoint(answer, branch(leading_eigenvalue(answer), case, None, answer.solution_path))
 
 
 def settled(found: list[Solution], rates: list[complex], path: str) -> tuple[list[Solution], list[complex], str]:

@@ -124,8 +124,11 @@ def effort(wall_time: float | None = None, run: RunContext | None = None) -> Eff
     )
 
 
-def branch(rate: complex, case: Case, known: int, path: str, jump: bool | None = None) -> Branch:
-    """Branch and stability, from the leading eigenvalue; a shaft at rest has no film that could grow."""
+def branch(rate: complex, case: Case, known: int | None, path: str, jump: bool | None = None) -> Branch:
+    """Branch and stability, from the leading eigenvalue; a shaft at rest has no film that could grow.
+
+    As long as others were not looked for and none is met, the number `known` is None.
+    """
     omega = case.operation.speed
     return Branch(
         stable=not rate.real > 0.0,

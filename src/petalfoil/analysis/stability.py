@@ -329,5 +329,5 @@ def _followed(line: SpeedLine, case: Case, rotor: RotorOnBearings) -> tuple[Oper
     answer = line.at(case.operation.speed)
     impedance = rotor.impedance(answer)
     whirl = rotor.whirl(impedance, case.operation.speed)
-    known = branch(leading_eigenvalue(answer), case, 1, answer.solution_path)
+    known = branch(leading_eigenvalue(answer), case, None, answer.solution_path)
     return OperatingPoint(answer, known, (AppliedLoad.of(line.load),)), whirl, impedance

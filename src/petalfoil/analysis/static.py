@@ -161,7 +161,7 @@ def static_record(case: Case, answer: Solution, *parts: object) -> Record:
         forces,
         Torque(torque, torque),
         wall_kind(case).scalars(fields),
-        Branch(solution_path=answer.solution_path, stable=True, known_equilibria=1),
+        Branch(solution_path=answer.solution_path, stable=True),
         RunOutcome(residual=answer.reported_residual),
         *parts,
         fields=dict(fields),

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from petalfoil.results import view  # noqa: F401 - gives datasets `petalfoil`, the tables of the result
-from petalfoil.results.record import Array, Record, Scalar, blank
+from petalfoil.results.record import NO_COUNT, Array, Record, Scalar, blank
 from petalfoil.results.schema import COORDINATES, FIELDS, SCALARS
 from petalfoil.results.variable import DataType, Role, Variable
 
@@ -73,7 +73,7 @@ def curve_dataset(records: Sequence[Record], analysis: str = "curve") -> xr.Data
     Raises
     ------
     ValueError
-        No record; or the records differ in geometry or grid, or converged ones in their flags or counts.
+        No record; or the records differ in geometry or grid, or converged ones in their flags.
     """
     if not records:
         raise ValueError("a curve needs at least one record")
@@ -149,9 +149,9 @@ def _curve_fields(records: Sequence[Record], coords: Mapping[str, Array]) -> dic
 def _value(name: str, point: Mapping[str, Scalar], record: Record) -> Scalar:
     if name in point:
         return point[name]
-    if record.converged and SCALARS[name].kind in (DataType.BOOL, DataType.INT):
+    if record.converged and SCALARS[name].kind is DataType.BOOL:
         raise ValueError(f"a converged point of the curve lacks {name!r}, which others have")
-    return -1 if SCALARS[name].kind is DataType.INT else blank(SCALARS[name])
+    return blank(SCALARS[name])
 
 
 def _shared(name: str, reported: Sequence[Mapping[str, Scalar]]) -> Scalar:
@@ -193,7 +193,7 @@ def _labelled(variable: Variable, values: object, dims: tuple[str, ...] | None =
     if variable.kind is DataType.BOOL:
         attributes |= {"flag_values": np.array([0, 1], dtype=np.int8), "flag_meanings": "false true"}
     if variable.kind is DataType.INT and dims == ("point",):
-        attributes["comment"] = "-1 where a point that did not converge has none"
+        attributes["comment"] = f"{NO_COUNT} where a point has none"
     return variable.dims if dims is None else dims, np.array(values, dtype=_DTYPES[variable.kind]), attributes
 
 

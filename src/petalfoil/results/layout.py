@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 from petalfoil.results.estimate import Estimate
-from petalfoil.results.record import Record, Scalar
+from petalfoil.results.record import NO_COUNT, Record, Scalar
 from petalfoil.results.schema import SCALARS
 from petalfoil.results.summary import TableRow, as_json, without_rounding
 from petalfoil.results.variable import DataType
@@ -274,7 +274,4 @@ def scalars_of_point(point: xr.Dataset) -> dict[str, Scalar]:
     """The scalars of one point that the schema knows."""
     here = {name: variable for name, variable in SCALARS.items() if name in point and not point[name].dims}
     known = {name: _PLAIN[variable.kind](point[name].item()) for name, variable in here.items()}
-    if known.get("converged", True):
-        return known
-    # A count that a failed point does not have is -1 in the file, for whole numbers know no NaN.
-    return {name: value for name, value in known.items() if SCALARS[name].kind is not DataType.INT or value != -1}
+    return {name: value for name, value in known.items() if SCALARS[name].kind is not DataType.INT or value != NO_COUNT}

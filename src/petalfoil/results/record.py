@@ -130,7 +130,11 @@ def _plain(name: str, value: Scalar, converged: bool) -> Scalar:
     return result
 
 
-def blank(variable: Variable) -> float | bool | str:
+NO_COUNT = -1
+"""What stands for a count that is not there: whole numbers know no NaN."""
+
+
+def blank(variable: Variable) -> Scalar:
     """What stands for a figure that is not there."""
     match variable.kind:
         case DataType.FLOAT:
@@ -140,7 +144,7 @@ def blank(variable: Variable) -> float | bool | str:
         case DataType.STR:
             return ""
         case DataType.INT:
-            raise ValueError("a whole number has no value that means absent: declare the variable as a float")
+            return NO_COUNT
 
 
 def _refuse_unknown(what: str, given: Mapping[str, object], declared: Mapping[str, Variable]) -> None:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from petalfoil import __version__
 from petalfoil.results.atomic import replacing
 from petalfoil.results.dataset import CONVENTIONS
-from petalfoil.results.record import Scalar, blank
+from petalfoil.results.record import blank
 from petalfoil.results.schema import SCALARS
 from petalfoil.results.variable import DataType, Role, Variable
 from petalfoil.studies.plan import Plan
@@ -102,7 +102,7 @@ def _names(found: Sequence[CaseOutcome | None]) -> list[str]:
 
 def _values(variable: Variable, name: str, found: Sequence[CaseOutcome | None], points: int) -> NDArray[Any]:
     """Values of one result, shape (cases, points)."""
-    absent: Scalar = -1 if variable.kind is DataType.INT else blank(variable)
+    absent = blank(variable)
     rows = []
     for outcome in found:
         records = outcome.records if outcome else []

@@ -5,6 +5,7 @@ import pytest
 
 from petalfoil.results import Record
 from petalfoil.results.dataset import curve_dataset, to_dataset
+from petalfoil.results.layout import scalars_of_point
 from petalfoil.results.schema import VARIABLES
 from tests.unit.results import factory
 
@@ -93,7 +94,7 @@ def test_points_of_different_grids_or_geometries_do_not_line_up() -> None:
         curve_dataset([])
 
 
-def test_a_count_or_flag_is_never_made_up_for_a_converged_point() -> None:
+def test_a_flag_is_never_made_up_for_a_converged_point() -> None:
     good = factory.solved()
     flagged = Record(**{**vars(good), "scalars": {**good.scalars, "stable": True}})
     with pytest.raises(ValueError, match="lacks 'stable'"):
@@ -105,3 +106,12 @@ def test_a_count_missing_from_a_failed_point_is_marked() -> None:
     ds = curve_dataset([factory.solved(), Record(analysis="solve", scalars=scalars)])
     assert ds["iterations"].values.tolist() == [18, -1]
     assert "-1" in ds["iterations"].attrs["comment"]
+
+
+def test_a_count_of_some_points_only_is_left_out_of_the_others() -> None:
+    """Equilibria are counted where others were looked for, or met in a jump."""
+    first = factory.solved()
+    followed = Record(**{**vars(first), "scalars": {k: v for k, v in first.scalars.items() if k != "known_equilibria"}})
+    ds = curve_dataset([first, followed])
+    assert ds["known_equilibria"].values.tolist() == [1, -1]
+    assert ["known_equilibria" in scalars_of_point(ds.isel(point=k)) for k in range(2)] == [True, False]
