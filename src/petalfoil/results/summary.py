@@ -35,6 +35,8 @@ ROUNDING = 1e-10
 which a component is rounding: thousands of pressures are added, of equations that are solved to 1e-8."""
 _VECTORS = (
     (("force_x", "force_y"), "N"),
+    (("film_force_x", "film_force_y"), "N"),
+    (("contact_force_x", "contact_force_y"), "N"),
     (("load_x", "load_y"), "N"),
     (("bearing_force",), "N"),
     (("eccentricity_x", "eccentricity_y"), "m"),
