@@ -155,7 +155,7 @@ def damping_ratio(s: complex) -> float:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("friction", [0.02, 0.1])
+@pytest.mark.parametrize("friction", [pytest.param(0.02, marks=pytest.mark.long), 0.1])
 def test_a_rotor_on_the_rig_decays_as_harmonic_balance_says(friction: float) -> None:
     """Swings of 5 to 9 um: damping ratios within 5 %, with contacts at the same nodes and with contact points."""
     bearing = rubbing("rig", friction, 24)
