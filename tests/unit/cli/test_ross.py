@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 import tomllib
+import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+
+from petalfoil.results.ross import CURVED, _warn_if_curved
 
 from . import test_loads
 
@@ -74,6 +77,21 @@ def test_a_table_that_is_coarse_near_half_speed_is_warned_of(cli, loads, case, t
     assert result.exit_code == 0
     assert result.stderr.count("Warning: --ross: the table for ROSS has") >= 3
     assert "near half of 100 rad/s" in result.stderr
+
+
+@pytest.mark.parametrize(("fastest", "warned"), [(500.0, False), (1500.0, True)])
+def test_speeds_between_which_coefficients_change_unevenly_are_warned_of(fastest: float, warned: bool) -> None:
+    """Stiffness in proportion to the square of the speed: a line over `h` misses it by `h^2 / 4` in the middle."""
+    speeds = np.linspace(300.0, fastest, 5)
+    impedances = np.ones((1, 9, 2, 2)) * (speeds**2)[:, None, None, None] + 0j
+    middle = (0.5 * (speeds[1] - speeds[0])) ** 2 / speeds[1] ** 2
+    assert bool(middle > CURVED) is warned
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        _warn_if_curved(speeds, np.linspace(30.0, 900.0, 9), impedances)
+    assert len(told) == int(warned)
+    if warned:
+        assert f"some {100.0 * middle:.0f} % off between 300 and 900 rad/s" in str(told[0].message)
 
 
 @pytest.mark.slow
