@@ -1,13 +1,13 @@
 """Threshold speed of a rotor in ROSS 3 (https://github.com/petrobras/ross) on two bearings of petalfoil.
 
-    petalfoil coefficients examples/plain_journal.toml --load "20 N" --speeds "300 rad/s : 1500 rad/s : 7" \
+    petalfoil coefficients examples/plain_journal.toml --load "20 N" --speeds "300 rad/s : 1500 rad/s : 13" \
         --out plain.nc --ross drive.toml --node 0
     petalfoil show plain.nc --ross free.toml --node 2
     python examples/ross_threshold.py drive.toml free.toml 4.079
 
 The last number is the mass of the rotor [kg], here the load of both bearings over gravity. The rotor is a light, stiff
 shaft with a disk between the bearings, so that `petalfoil stability examples/plain_journal.toml --load "20 N"` answers
-the same question: 733 rad/s; ROSS 3.0.0 says 732. `matched_whirl` is what matters: without it ROSS takes every whirl to
+the same question: 733 rad/s; ROSS 3.0.0 says 734. `matched_whirl` is what matters: without it ROSS takes every whirl to
 be as fast as the shaft.
 """
 
