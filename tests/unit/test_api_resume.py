@@ -117,7 +117,7 @@ def test_results_that_are_no_points_are_refused(tmp_path: Path) -> None:
     part = stopped_after(1, *SERIES["curve"])
     with pytest.raises(UsageError, match="no series of static"):
         petalfoil.static(PETALS, resume=part)
-    with pytest.raises(UsageError, match="no series of points"):
+    with pytest.raises(UsageError, match="no series that could go on"):
         petalfoil.coefficients(PETALS, resume=part)
     with pytest.raises(StoreError, match="there is no such file"):
         petalfoil.curve(PETALS, "0 um", resume=tmp_path / "none.nc")
