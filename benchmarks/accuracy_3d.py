@@ -78,6 +78,9 @@ NOTES = {
 −0.70 %, peak pressure +0.35 %, torque +0.21 % of 128 × 48. The rig touches within 2 mm of each end, on two or three of
 24 stations ([decision 018](../decisions/018-axial-stations.md) has its contact fraction on more of them): where contact
 at the ends matters, ask for `--error`, which tells its bar.
+
+Its lift-off wants more stations: 1130 rad/s on 64 × 24 cells, 1256 on 64 × 48, 1246 on 96 × 36 (`petalfoil liftoff`
+in 3-D, load 46.4 N, 26 November 2026); that of petals that bend only, below, changes by 1 %.
 """,
     "inextensible": "",
 }
