@@ -149,13 +149,18 @@ class PointEquations:
         return value, slope
 
     @cached_property
+    def _dragged(self) -> tuple[sp.csr_array, sp.csr_array]:
+        """`D`: motion along the journal of the faces that it drags, and its derivative by the places (D6)."""
+        return dragged_faces(self.whole.pack, self.state.points)
+
+    @cached_property
     def acting(self) -> tuple[sp.csr_array, sp.csr_array]:
         """Forces of unit reactions on the petals, (j, n_wall), and their derivative by the places (D6)."""
         friction = self.whole.journal_friction
         if not friction:
             return self.by_w
-        dragged = dragged_faces(self.whole.pack, self.state.points)
-        value, by_place = (sp.csr_array(n + friction * along) for n, along in zip(self.by_w, dragged, strict=True))
+        pairs = zip(self.by_w, self._dragged, strict=True)
+        value, by_place = (sp.csr_array(n + friction * along) for n, along in pairs)
         return value, by_place
 
     @cached_property
@@ -165,7 +170,7 @@ class PointEquations:
         elastic = self.whole.elastic(state.w) - self.whole.push @ (state.P - 1.0)
         wall = elastic - self.whole.curves.by_w.T @ self._nodal_loads
         if friction := self.whole.journal_friction:
-            wall -= friction * (dragged_faces(self.whole.pack, points)[0].T @ points.reaction)
+            wall -= friction * (self._dragged[0].T @ points.reaction)
         value = np.where(self.idle > 0.0, points.reaction, gaps.value)
         return wall, self.film.residual, value, gaps.slope[points.ends] * self.travels
 
