@@ -7,29 +7,18 @@ from typing import Any
 
 from petalfoil.analysis.arguments import Name, Whole
 from petalfoil.analysis.file_exports import Export
-from petalfoil.errors import UsageError
-from petalfoil.results.ross import LEAST_POINTS, ross_frequencies
+from petalfoil.results.ross import check_axes, ross_frequencies
 
 
 def check_ross(values: Mapping[str, Any], known_as: Mapping[str, str]) -> None:
     """Refuse speeds and frequencies that make no table for ROSS."""
-    for name in ("speeds", "frequencies"):
-        axis = values.get(name) or []
-        if len(set(axis)) < max(len(axis), LEAST_POINTS):
-            raise UsageError(
-                f"a table for ROSS needs {LEAST_POINTS} different values of {known_as[name]} or more, "
-                f"got {len(set(axis))}"
-            )
+    check_axes(values.get("speeds") or [], values.get("frequencies") or [], known_as=known_as)
 
 
 def check_ross_synchronous(values: Mapping[str, Any], known_as: Mapping[str, str]) -> None:
     """Refuse speeds that make no table for ROSS 2, and frequencies without the speeds."""
     speeds = values.get("speeds") or []
-    check_ross({"speeds": speeds, "frequencies": speeds}, known_as)
-    if any(speed not in values.get("frequencies", speeds) for speed in speeds):
-        raise UsageError(
-            f"a synchronous table needs every speed among the frequencies: leave {known_as['frequencies']} out"
-        )
+    check_axes(speeds, values.get("frequencies", speeds), synchronous=True, known_as=known_as)
 
 
 def fill_ross(values: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -24,7 +24,7 @@ from petalfoil.errors import StoreError, UsageError
 from petalfoil.results.export import AXIS, ENTRIES, converged_points, write_text
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     import xarray as xr
 
@@ -142,8 +142,18 @@ def write_ross_synchronous(ds: xr.Dataset, path: str | Path, node: int = 0, tag:
     _write_element(path, (node, tag), {"frequency": speeds}, tables)
 
 
-def check_axes(speeds: Sequence[float], frequencies: Sequence[float], *, synchronous: bool = False) -> None:
-    """Refuse axes that ROSS cannot use; an analysis asks before it computes.
+AXES = {"speeds": "speeds", "frequencies": "frequencies"}
+"""What the axes of a table are called, unless an option is meant."""
+
+
+def check_axes(
+    speeds: Sequence[float],
+    frequencies: Sequence[float],
+    *,
+    synchronous: bool = False,
+    known_as: Mapping[str, str] = AXES,
+) -> None:
+    """Refuse axes that ROSS cannot use, by the names they are `known_as`; an analysis asks before it computes.
 
     Raises
     ------
@@ -153,12 +163,15 @@ def check_axes(speeds: Sequence[float], frequencies: Sequence[float], *, synchro
     axes = {"speeds": speeds} if synchronous else {"speeds": speeds, "frequencies": frequencies}
     for name, axis in axes.items():
         if len(set(axis)) < max(len(axis), LEAST_POINTS):
-            raise UsageError(f"a table for ROSS needs {LEAST_POINTS} different {name} or more, got {len(set(axis))}")
+            raise UsageError(
+                f"a table for ROSS needs {LEAST_POINTS} different values of {known_as[name]} or more, "
+                f"got {len(set(axis))}"
+            )
     missing = [speed for speed in speeds if synchronous and speed not in set(frequencies)]
     if missing:
         raise UsageError(
-            f"a synchronous table needs every speed among the frequencies, {missing[0]:g} rad/s is not: leave the "
-            "frequencies to their default"
+            f"a synchronous table needs every speed among the frequencies, {missing[0]:g} rad/s is not: leave "
+            f"{known_as['frequencies']} out"
         )
 
 
