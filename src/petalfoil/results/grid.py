@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from petalfoil.results.layout import Json, Layout, at_speed, load_of, of_load
-from petalfoil.results.record import Record, Scalar
+from petalfoil.results.record import NO_COUNT, Record, Scalar
 from petalfoil.results.schema import COORDINATES, SCALARS
 from petalfoil.results.summary import as_json
 from petalfoil.results.variable import Variable
@@ -124,5 +124,5 @@ def _attributes(variable: Variable) -> dict[str, str]:
 
 def _missing(dtype: np.dtype[Any]) -> float | int | bool | str:
     """What stands where no point was computed."""
-    missing: dict[str, float | int | bool | str] = {"f": np.nan, "i": -1, "b": False, "U": ""}
+    missing: dict[str, float | int | bool | str] = {"f": np.nan, "i": NO_COUNT, "b": False, "U": ""}
     return missing[dtype.kind]
