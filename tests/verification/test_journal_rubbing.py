@@ -140,6 +140,18 @@ def test_without_friction_nothing_is_dragged_to_the_last_bit() -> None:
 
 
 @pytest.mark.slow
+def test_a_journal_that_touches_nothing_drags_nothing() -> None:
+    """Lifted off, with contact points: the balance is that of a journal whose rubbing is torque alone."""
+    bearing = case("paper_n8", **{"model.cells_per_pitch": 16})
+    free, rubbing = (
+        balance(bearing.replace(**{"surface.journal_rubbing": rub}), "10 N") for rub in ("torque", "force")
+    )
+    assert "contact points" in str(rubbing["contact_model"].item())
+    assert float(rubbing["contact_fraction"]) == 0.0
+    for name in ("eccentricity_x", "eccentricity_y", "min_film_thickness", "friction_torque"):
+        assert float(rubbing[name]) == pytest.approx(float(free[name]), rel=1e-9)
+
+
 def test_a_journal_at_zero_speed_is_about_to_turn() -> None:
     """Its starting torque is the limit of the torque at low speeds, larger than that of a journal that only rests."""
     slowly, at_rest = solve(rubbed(operation__speed=1e-3)), static(rubbed(), "250 um")

@@ -61,8 +61,9 @@ def integrals(element: Index, t: Array, length: Array) -> sp.csr_array:
     each *= length[:, None]
     each[:, :, 1::2] *= length[:, None]
     out = np.zeros((len(element), 2 * len(length) + 2))
-    out[:, :-2] += each[:, :, :2].reshape(len(element), -1)
-    out[:, 2:] += each[:, :, 2:].reshape(len(element), -1)
+    shape = (len(element), 2 * len(length))
+    out[:, :-2] += each[:, :, :2].reshape(shape)
+    out[:, 2:] += each[:, :, 2:].reshape(shape)
     return sp.csr_array(out)
 
 
