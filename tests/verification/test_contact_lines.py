@@ -164,3 +164,14 @@ def test_under_a_load_it_is_that_of_the_load_over_the_way_between() -> None:
     force = petalfoil.solve.record(held).scalars
     apart = np.hypot(force["force_x"] - found["force_x"], force["force_y"] - found["force_y"]) / 20.0
     assert found["nodal_force_difference"] == pytest.approx(apart, rel=0.5)
+
+
+@pytest.mark.parametrize("cells", [8, 12])
+def test_two_bearings_on_a_shaft_tell_what_each_tells_alone(cells: int) -> None:
+    """The shaft moves its bearings: each is found at a position, and its force is then that of a load."""
+    alone = bearing(**{"model.cells_per_pitch": cells, "model.axial_cells": 4, "operation.load": (0.0, -20.0)})
+    rotor = {"mass": 4.0, "span": 0.2, "transverse_inertia": 4e-3, "polar_inertia": 6e-4, "second": {}}
+    pair = alone.replace(**{"operation.load": (0.0, -40.0), "rotor": rotor})
+    one, both = petalfoil.balance.record(alone).scalars, petalfoil.balance.record(pair).scalars
+    for name in ("nodal_force_difference", "eccentricity_y", "min_film_thickness"):
+        assert_allclose(both[name], one[name], rtol=1e-6)

@@ -212,7 +212,7 @@ class RotorInBearings:
 
     def position_at_nodes(self, found: Solution) -> Array:
         """The same with contacts at nodes, where a motion has them."""
-        return self._through([replace(one, elements=None) for one in self.in_order(found)])
+        return self._through([replace(one, elements=None, lines=None) for one in self.in_order(found)])
 
     def residual(self, pair: list[Solution]) -> float:
         """Force and moment left over on the shaft, over the load [1]."""

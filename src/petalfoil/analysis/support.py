@@ -142,7 +142,8 @@ class Support:
         """The equilibrium at another speed [rad/s], the shaft where it was."""
         here = known.problem.at(bearing_number=known.problem.layout.bearing_number(speed))
         if here.bearing_number == known.problem.bearing_number:
-            return replace(known, load=None, elements=None, elements_sought=False, nodal_force_difference=None)
+            nodal = replace(known, elements=None, lines=None, elements_sought=False, nodal_force_difference=None)
+            return replace(nodal, load=None)
         return self._followed(known, here) or self.warm(solve_cold(here))
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.element_contacts import over_normal_forces
+from petalfoil.equilibrium.heated import stiffness
 from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError, stepped
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
@@ -65,8 +66,10 @@ def force_apart(found: LineContacts, solution: Solution) -> float | None:
         return over_normal_forces(found.force - force, force, solution)
     if solution.contacts is None:
         return None
-    way = found.problem.displacement - problem.displacement
-    return over_normal_forces(solution.contacts.tangent.gradient @ way, force, solution)
+    by_position, way = solution.contacts.tangent.gradient, found.problem.displacement - problem.displacement
+    if not by_position.size:  # of a bearing on a shaft, which was found where the shaft moved it
+        by_position = -stiffness(solution, None)
+    return over_normal_forces(by_position @ way, force, solution)
 
 
 def between_nodes(solution: Solution) -> LineContacts | None:
