@@ -31,6 +31,7 @@ RING = 0.05
 """Thickness of the bushing's ring over its radius."""
 BAND = 0.34
 """Height of the largest excess pressure over the drawn radius of the journal."""
+BAND_NAME = "pressure band, from p<sub>a</sub> inward"
 FOIL = 0.06
 """Drawn distance of the bushing behind a foil that deflects, over the bore's radius."""
 ROUNDING = 1e-6
@@ -121,7 +122,8 @@ def section_chart(found: FoundAnswer, theme: Theme) -> Chart:
     state = State.of(found)
     solids = (*_solids(state, theme), *_petals(state, theme), *_film(state), *_foil(state, theme))
     arrows = list(_arrows(state, theme))
-    traces = [*solids, *_contacts(state), *(_named(words, colour) for words, colour, _ in arrows)]
+    named = (_named(BAND_NAME, VIRIDIS[len(VIRIDIS) // 2], 8), *(_named(words, colour) for words, colour, _ in arrows))
+    traces = [*solids, *_roots(state, theme), *_contacts(state), *named]
     bore, reach = state.stretch.bushing, 1.2 * state.stretch.bushing
     axis = {"visible": False, "range": [-reach, reach], "fixedrange": False}
     note = note_at_foot(f"radial clearance drawn ×{state.stretch.scale:g}", theme)
@@ -259,6 +261,16 @@ def _colour_bar(low: float, high: float) -> TraceData:
     return hidden | {"marker": marker | {"colorbar": bar}}
 
 
+def _roots(state: State, theme: Theme) -> Iterator[TraceData]:
+    if "radius" not in state.found.arrays or "root_angle" not in state.found.arrays:
+        return
+    theta = state.array("root_angle")
+    x, y = (state.stretch.bushing * np.stack([np.cos(theta), np.sin(theta)])).tolist()
+    marker = {"size": 7, "symbol": "square", "color": theme.ink}
+    look = {"type": "scatter", "mode": "markers", "marker": marker, "hoverinfo": "name"}
+    yield {**look, "name": "root of a petal", "x": x, "y": y}
+
+
 def _contacts(state: State) -> Iterator[TraceData]:
     for name, (label, colour) in CONTACTS.items():
         if name not in state.found.arrays:
@@ -293,9 +305,9 @@ def _arrows(state: State, theme: Theme) -> Iterator[tuple[str, str, Mapping[str,
         yield "force on it", theme.accent, _arrow(e, e + 0.42 * drawn * force / size, theme.accent, 2.0)
 
 
-def _named(words: str, colour: str) -> TraceData:
-    """An entry of the legend for an arrow, which has none of its own."""
-    look = {"line": {"color": colour, "width": 3}, "hoverinfo": "skip"}
+def _named(words: str, colour: str, width: float = 3) -> TraceData:
+    """An entry of the legend for an arrow or for the pressure band, which have none of their own."""
+    look = {"line": {"color": colour, "width": width}, "hoverinfo": "skip"}
     return {"type": "scatter", "mode": "lines", "x": [None], "y": [None], "name": words, **look}
 
 

@@ -67,6 +67,14 @@ def test_the_section_is_plain_json_without_webgl(state: FoundAnswer, theme: Any)
     assert_allclose(reach, 1.05 * state.scalars["bushing_radius"], rtol=1e-3)
 
 
+def test_the_legend_of_the_section_names_roots_and_pressure_band(state: FoundAnswer) -> None:
+    shown = {t["name"]: t for t in section_chart(state, LIGHT)["data"] if "name" in t and t.get("showlegend", True)}
+    assert {"root of a petal", "pressure band, from p<sub>a</sub> inward"} <= shown.keys()
+    roots = shown["root of a petal"]
+    assert_allclose(np.hypot(roots["x"], roots["y"]), state.scalars["bushing_radius"], rtol=1e-12)
+    assert_allclose(np.unwrap(np.arctan2(roots["y"], roots["x"])), state.arrays["root_angle"], atol=1e-12)
+
+
 def test_the_film_chart_shows_peak_pressure_and_minimum_film_thickness(state: FoundAnswer) -> None:
     pressure, film = film_chart(state, None, LIGHT)["data"]
     ambient = state.scalars["ambient_pressure"]
