@@ -54,6 +54,11 @@ def barred(name: str, record: Record, mode: int, shown_as: str = "") -> Cell:
     return found[0] if bars is None and not shown_as else " ± ".join(shown)
 
 
+def between_ends(name: str, record: Record, mode: int) -> Cell:
+    """Where a natural mode is on a scale of 0 to 1, to three decimals; absent where the scale is."""
+    return round(float(record.fields[name][mode]), 3) + 0.0 if name in record.fields else ABSENT
+
+
 AT_AMPLITUDE = "no threshold speed at an amplitude"
 """What is told of the threshold speed of a rotor whose petals rub."""
 
@@ -66,10 +71,8 @@ MODE_TABLE = ArrayTable(
         "growth\n1/s": lambda record, k: barred("mode_growth_rate", record, k),
         "damping\nratio": lambda record, k: barred("damping_ratio", record, k),
         "participation\nof the rotor": lambda record, k: float(record.fields["participation"][k]),
-        "forward (+1) or\nbackward (-1)": lambda record, k: float(record.fields["whirl_direction"][k]),
-        "cylindrical (0)\nor conical (1)": lambda record, k: (
-            float(record.fields[TILT][k]) if TILT in record.fields else ABSENT
-        ),
+        "forward (+1) or\nbackward (-1)": lambda record, k: between_ends("whirl_direction", record, k),
+        "cylindrical (0)\nor conical (1)": lambda record, k: between_ends(TILT, record, k),
     },
 )
 CAMPBELL_TABLE = ArrayTable(

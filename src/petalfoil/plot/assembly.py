@@ -184,3 +184,7 @@ def _draw_petals(ax: Axes, ds: xr.Dataset, window: Floats) -> None:
             label = None if name in named else name
             ax.fill_between(np.degrees(theta), *faces, label=label, zorder=2 + first, gid=f"petal {petal}", **look)
             named.add(name)
+    for petal in range(1, min(3, len(radius))):  # shades that the section has and this window has not
+        if (name := f"{('even', 'odd')[petal % 2]} petals") not in named:
+            shade: style.Look = {"facecolor": style.PETALS[petal % 2], "edgecolor": style.INK, "linewidth": 0.5}
+            ax.fill_between([], [], label=name, **shade)

@@ -102,7 +102,7 @@ def liftoff(ds: xr.Dataset) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Both speeds; loads that do not lift off are marked at the upper edge.
+        Both speeds; loads that do not lift off are marked at the upper edge, of a single load it is written.
 
     Raises
     ------
@@ -115,11 +115,11 @@ def liftoff(ds: xr.Dataset) -> Figure:
         "lift-off": np.where(converged, array(ds, "liftoff_speed"), np.nan) * RPM,
         "touchdown": np.where(converged, array(ds, "touchdown_speed"), np.nan) * RPM,
     }
-    single = len(load) == 1 and all(np.isfinite(values).all() for values in speeds.values())
+    single = len(load) == 1
     fig = style.figure(8.0, 2.6 if single else 5.0)
     ax = fig.subplots()
     if single:
-        _draw_bars(ax, {name: float(values[0]) for name, values in speeds.items()})
+        _draw_bars(ax, {name: float(values[0]) for name, values in speeds.items()}, str(ds["status"].values[0]))
     else:
         _draw_over_load(ax, load, speeds)
     fraction = float(np.nanmax(array(ds, "contact_fraction_limit")))
@@ -128,14 +128,21 @@ def liftoff(ds: xr.Dataset) -> Figure:
     return fig
 
 
-def _draw_bars(ax: Axes, speeds: dict[str, float]) -> None:
+def _draw_bars(ax: Axes, speeds: dict[str, float], status: str) -> None:
+    """A bar for each speed; the status of the load in place of one that there is not."""
+    fastest = max((speed for speed in speeds.values() if math.isfinite(speed)), default=0.0)
     for place, ((name, speed), look) in enumerate(zip(speeds.items(), _LEGS.values(), strict=True)):
-        ax.barh(-place, speed, height=0.6, color=look["color"], gid=name)
-        text = f" {labels.grouped(speed)} rpm"
-        ax.text(speed, -place, text, ha="left", va="center", fontsize=style.LABEL, color=style.INK)
-    style.dress(ax, QUANTITIES["speed"].axis)
+        there = math.isfinite(speed)
+        end = speed if there else 0.0
+        ax.barh(-place, end, height=0.6, color=look["color"], gid=name)
+        text = f" {labels.grouped(speed)} rpm" if there else f" none: {status}"
+        ax.text(end, -place, text, ha="left", va="center", fontsize=style.LABEL, color=style.INK)
+    style.dress(ax, QUANTITIES["speed"].axis if fastest else "")
     ax.set_yticks([0, -1], list(speeds), fontsize=style.LABEL)
-    ax.set_xlim(0.0, 1.25 * max(speeds.values()))
+    ax.set_ylim(-1.4, 0.4)
+    ax.set_xlim(0.0, 1.25 * fastest or 1.0)
+    if not fastest:
+        ax.set_xticks([])
 
 
 def _draw_over_load(ax: Axes, load: Floats, speeds: dict[str, Floats]) -> None:
@@ -150,7 +157,9 @@ def _draw_over_load(ax: Axes, load: Floats, speeds: dict[str, Floats]) -> None:
     style.dress(ax, QUANTITIES["load"].axis, QUANTITIES["speed"].axis)
     ax.set_xlim(0.0, 1.05 * float(load.max()))
     fastest = max((float(speed[np.isfinite(speed)].max(initial=0.0)) for speed in speeds.values()), default=0.0)
-    ax.set_ylim(0.0, 1.15 * fastest if fastest > 0.0 else 1.0)
+    ax.set_ylim(0.0, 1.15 * fastest or 1.0)
+    if not fastest:
+        ax.set_yticks([])  # no load lifts off: there is no speed to be read
     style.legend(ax, loc="lower right")
 
 

@@ -169,8 +169,20 @@ def test_lift_off_of_one_load_is_two_bars(texts: Texts) -> None:
     assert_allclose([bar.get_width() for bar in ax.patches], np.array([300.0, 270.0]) * RPM, rtol=1e-12, atol=0.0)
     assert "load 30 N" in texts(fig)
     assert ax.get_xlim()[1] > 300.0 * RPM
-    (marked,) = plot.liftoff(liftoff(math.inf)).axes
-    assert line(marked, "no lift-off")[0].tolist() == [30.0]
+
+
+def test_one_load_that_does_not_lift_off_says_so_on_axes_without_speeds(texts: Texts) -> None:
+    never = liftoff(math.inf)
+    never["status"] = never["status"].copy(data=["does not lift off below 9000 rpm"])
+    fig = plot.liftoff(never)
+    assert len([text for text in texts(fig).splitlines() if "none: does not lift off below 9000 rpm" in text]) == 2
+    assert not len(fig.axes[0].get_xticks())
+
+
+def test_loads_of_which_none_lifts_off_have_no_speeds_to_read() -> None:
+    (ax,) = plot.liftoff(liftoff(math.inf, math.inf)).axes
+    assert line(ax, "no lift-off")[0].tolist() == [30.0, 10.0]
+    assert not len(ax.get_yticks())
 
 
 # ---------------------------------------------------------------------------------------------- coefficients
