@@ -26,6 +26,7 @@ from petalfoil.equilibrium.cold_start import BARRIERS, by_barriers, by_slower_wa
 from petalfoil.equilibrium.continuation import ascend, settle
 from petalfoil.equilibrium.heated import ThermalRunawayError
 from petalfoil.equilibrium.lengthening import lengthened
+from petalfoil.equilibrium.other_grids import or_from_other_grids
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold
@@ -285,7 +286,7 @@ def last_resort(problem: CoupledProblem) -> Solution:
     """
     if problem.layout.film_rows.inventory is None:
         return solve_cold(problem, ())
-    return by_slower_ways(problem) or lengthened(problem)
+    return by_slower_ways(problem) or or_from_other_grids(lengthened, problem)
 
 
 def relaxed(case: Case, problem: CoupledProblem, neighbour: Solution | None = None) -> OperatingPoint:

@@ -76,6 +76,9 @@ edges that no barrier serves, either of the first two serves eight, in 40 to 114
 
 MARCH = InteriorOptions(march=True, max_steps=150, least_barrier=0.1 * GOALS[0])
 
+MARCHED = "marched to rest with a damped wall"
+"""How such a solution was reached."""
+
 PATHS = ((100.0, 10.0, 2000), (10.0, 10.0, 200), (100.0, 1.0, 200), (1000.0, 1.0, 200))
 """First barriers of a central path, weights of the unknowns in its arc length and most steps, in the order of trial.
 Petals that snap one by one fold a path a hundred times: the first has led to the end in 26 to 1017 steps."""
@@ -102,14 +105,9 @@ def slower_ways(
     """
     run = current_run()
     for damping, barrier in MARCHES:
-        try:
-            watch = run.watch("damped wall", reached(GOALS[0]))
-            point, found = interior_point(damped(damping), start(barrier), run.film_solver, MARCH, watch)
-        except SingularMatrixError as failure:
-            run.note("damped wall", outcome=str(failure))
-            continue
-        if found:
-            yield point, "marched to rest with a damped wall"
+        rests = marched_to_rest(damped(damping), start(barrier))
+        if rests is not None:
+            yield rests, MARCHED
     for barrier, weight, steps in PATHS:
         end, ends, options = None, (barrier, PATH_END), PathOptions(weight=weight, steps=steps)
         try:
@@ -119,6 +117,18 @@ def slower_ways(
         run.note("central path", first_barrier=barrier, outcome="lost" if end is None else "followed")
         if end is not None:
             yield end, "followed the central path through its folds"
+
+
+def marched_to_rest(damped: ContactProblem, start: PrimalDualPoint) -> PrimalDualPoint | None:
+    """Where a march with a damped wall comes to rest; None if it does not."""
+    run = current_run()
+    try:
+        watch = run.watch("damped wall", reached(GOALS[0]))
+        point, found = interior_point(damped, start, run.film_solver, MARCH, watch)
+    except SingularMatrixError as failure:
+        run.note("damped wall", outcome=str(failure))
+        return None
+    return point if found else None
 
 
 LIMIT_OF_LENGTH = (

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from petalfoil.equilibrium.branches import fingerprint
 from petalfoil.equilibrium.cold_start import finish, solve_cold
+from petalfoil.equilibrium.other_grids import or_from_other_grids
 from petalfoil.equilibrium.pack_at_rest import at_rest
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution, from_contacts
@@ -135,7 +136,7 @@ def advance(known: Solution, problem: CoupledProblem) -> tuple[Solution, bool]:
     """
     change = predict(known, problem)
     step = follow(known, problem, WARM, change)
-    found = step or restart(known, problem, change) or solve_cold(problem)
+    found = step or restart(known, problem, change) or or_from_other_grids(solve_cold, problem)
     moved, foretold = distance(known, found), max(float(np.max(np.abs(change), initial=0.0)), NEAR)
     if step is not None and (moved <= FAR_FOLLOWED * foretold or known.contacts is None):  # or nothing was foretold
         return found, False

@@ -10,13 +10,16 @@ packs too where it is undecided which of many contacts without force are active.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.cold_start import GOALS, nothing_found, reached, slower_ways
 from petalfoil.equilibrium.continuation import predicted, widened
+from petalfoil.equilibrium.other_grids import carried, grids, points_from
 from petalfoil.equilibrium.pack_at_rest import assembled
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution, from_contacts, unrefined
@@ -74,7 +77,8 @@ def balance_cold(problem: CoupledProblem, load: Array) -> Solution:
     ConvergenceError
         No position was found.
     """
-    found = from_nothing(problem, load) or loaded_gradually(problem, load) or by_slower_ways(problem, load)
+    ways = (from_nothing, loaded_gradually, by_slower_ways, by_other_grids)
+    found = next(filter(None, (way(problem, load) for way in ways)), None)
     if found is None:
         raise nothing_found(endless=problem.endless)
     return found
@@ -117,10 +121,31 @@ def by_slower_ways(problem: CoupledProblem, load: Array) -> Solution | None:
         pack = assembled(problem, barrier)
         return replace(pack, x=np.append(pack.x, problem.displacement))
 
-    for point, _ in slower_ways(whole, lambda damping: DampedBalance.of(problem, load, damping), start):
+    points = slower_ways(whole, lambda damping: DampedBalance.of(problem, load, damping), start)
+    return first_balance(whole, (point for point, _ in points))
+
+
+def by_other_grids(problem: CoupledProblem, load: Array) -> Solution | None:
+    """The balance to which that on another grid leads (a film without ends); None if none does."""
+    for other in grids(problem):
+        known = from_nothing(other, load * problem.layout.scales.force / other.layout.scales.force)
+        if known is None:
+            continue
+        moved = problem.at(displacement=known.problem.displacement)
+        z = np.append(carried(known, moved), moved.displacement)
+        whole, damped = LoadedProblem(moved, load), partial(DampedBalance.of, moved, load)
+        found = first_balance(whole, points_from(whole, damped, z))
+        if found is not None:
+            return found
+    return None
+
+
+def first_balance(whole: LoadedProblem, points: Iterator[PrimalDualPoint]) -> Solution | None:
+    """The balance of the first of some points whence the interior point leads to one; None if none does."""
+    for point in points:
         moved, x = whole.split(point.x)
         try:
-            found = through_interior(moved, replace(point, x=x), load)
+            found = through_interior(moved, replace(point, x=x), whole.load)
         except SingularMatrixError as failure:
             current_run().note("balance", outcome=str(failure))
             continue

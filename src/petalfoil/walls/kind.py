@@ -70,6 +70,20 @@ class WallKind(ABC):
         axial = axial_grid(case)
         return axial.whole(deflection.reshape(-1, len(axial.z))).ravel()
 
+    def interpolates(self, case: Case) -> bool:
+        """Whether deflections on one grid are known on another by `interpolated`."""
+        return False
+
+    def interpolated(self, case: Case, to: Case, deflection: Array) -> Array:
+        """Deflections (n,) on the grid of `case` at the unknowns of `to`, which only differs in cells per pitch.
+
+        Raises
+        ------
+        ValueError
+            The wall does not interpolate.
+        """
+        raise ValueError(f"the {self.name} wall does not interpolate from grid to grid")
+
     def pitch(self, case: Case) -> float | None:
         """Angle by which the wall repeats round the shaft [rad]; None where it is the same all round."""
         return None

@@ -10,6 +10,7 @@ from typing import ClassVar, TypeVar
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
 
 from petalfoil.case import Case, Edges, Method, ModelKind, Mount, PackGeometry, Petals, PetalTheory
 from petalfoil.case.petal_table import Petal
@@ -242,6 +243,15 @@ class PetalWall(WallKind):
         if not stretches(case):
             return super().over_whole_length(case, deflection)
         return over_whole_length(deflection, build_mesh(case))
+
+    def interpolates(self, case: Case) -> bool:
+        """Only of petals that bend: nothing but their nodes has unknowns."""
+        return case.backing is None and not stretches(case)
+
+    def interpolated(self, case: Case, to: Case, deflection: Array) -> Array:
+        """By monotone cubics along the petals, (n,)."""
+        mesh, other = build_mesh(case), build_mesh(to)
+        return np.asarray(PchipInterpolator(mesh.phi, nodal(mesh, deflection), axis=1)(other.phi)[:, 1:].ravel())
 
     def coordinates(self, case: Case, wall: Wall) -> Fields:
         """Angle from the root of a petal [rad]."""

@@ -114,7 +114,7 @@ def test_the_journal_moves_by_a_few_films_at_most() -> None:
 @pytest.mark.parametrize("edges", ["continuous", "ambient"])
 def test_advice_of_a_film_without_ends_names_its_length(edges: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Only `solve` makes a bearing longer and longer."""
-    for search in ("from_nothing", "loaded_gradually", "by_slower_ways"):
+    for search in ("from_nothing", "loaded_gradually", "by_slower_ways", "by_other_grids"):
         monkeypatch.setattr(under_load, search, lambda *_: None)
     problem = build_problem(PETALS.replace(**{"model.edges": edges}))
     with pytest.raises(ConvergenceError) as failure:
