@@ -52,7 +52,7 @@ def test_a_stiff_rotor_moves_as_orbit_does(example: ModuleType, monkeypatch: pyt
     begun = example.Modes.begun
     at_rest = np.repeat([1.0, 0.0], 2)
     monkeypatch.setattr(example.Modes, "begun", lambda *given: at_rest * begun(*given))
-    bearing = case("paper_n8", **{"model.cells_per_pitch": 12})
+    bearing = case("paper_n8", **{"model.cells_per_pitch": 12, "model.contacts": "nodes"})  # as `Film` has them
     times, path = example.run(two_masses(example, 1e13), bearing, turns=0.25)
     assert_allclose(path[:, 0], path[:, 1], rtol=0.0, atol=1e-12)
     start = {"operation.eccentricity": tuple(float(value) for value in path[0, 0])}

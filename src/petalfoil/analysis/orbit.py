@@ -80,6 +80,8 @@ def summary(record: Record) -> Iterator[TableRow]:
     yield TableRow("time", number(1e3 * float(time[-1] - time[0])), "ms")
     for name, label in (("steps", "steps"), ("factorizations", "factorisations"), ("failed_steps", "failed steps")):
         yield TableRow(label, str(scalars[name]), "")
+    if "contact_model" in scalars:
+        yield TableRow("contacts", str(scalars["contact_model"]), "")
     paths = Path.journals(time, over, places_of(record))
     yield TableRow("largest displacement", number(1e6 * max(float(np.hypot(p.x, p.y).max()) for p in paths)), "µm")
     yield TableRow("amplitude, last turns", with_bar(record, "amplitude", 1e6), "µm")

@@ -42,9 +42,12 @@ from petalfoil.dynamics.adaptive_steps import MarchOptions, march
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.equilibrium.run_context import RunContext, new_run
+from petalfoil.equilibrium.small_motion import AT_POINTS, HELD_AT_NODES
 from petalfoil.results.motion import figures_of, tilt_figures
 from petalfoil.results.parts import RunOutcome
 from petalfoil.results.record import Record
+from petalfoil.system.time_step import StepProblem
+from petalfoil.units import format_percent
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -110,6 +113,25 @@ class Stepping:
     failed_steps: int
 
 
+@dataclass(frozen=True, kw_only=True)
+class ContactsInTime:
+    """Where contacts are in a motion; None where the wall has none."""
+
+    contact_model: str | None
+    point_share: float | None
+
+    @classmethod
+    def of(cls, system: RotorBearing, steps: int, at_points: int) -> ContactsInTime:
+        """Those of a motion with as many `steps`, of which `at_points` have contact points."""
+        problem = system.problem
+        if not (problem.layout if isinstance(problem, StepProblem) else problem.parts[0].layout).n_wall:
+            return cls(contact_model=None, point_share=None)
+        share = at_points / steps if steps else 0.0
+        between = f"{AT_POINTS} in {format_percent(share)} of the steps, contacts at nodes in the others"
+        model = AT_POINTS if share == 1.0 else between if at_points else HELD_AT_NODES
+        return cls(contact_model=model, point_share=share)
+
+
 @dataclass
 class Orbit:
     """A motion that is followed step by step, and recorded at any of them.
@@ -147,6 +169,7 @@ class Orbit:
     trace: Trace = field(init=False)
     foretold: tuple[str, ...] = ()
     taken: int = 0
+    at_points: int = 0
     residual: float = 0.0
     is_series: bool = False
 
@@ -206,6 +229,7 @@ class Orbit:
         for stepped in self.run.during(march(self.system, self.start, end, options)):
             self.trace.add(stepped.end)
             self.taken += 1
+            self.at_points += stepped.end.points is not None
             self.residual = max(self.residual, stepped.residual)
             turns = self.trace.rows[-1]["shaft_angle"] / TURN
             yield (stepped.end.tau - begin) / (end - begin), f"{turns:.1f} turns"
@@ -236,6 +260,7 @@ class Orbit:
             *self._tilt(time, over),
             *self._warmth(),
             FrictionTold(self._path),
+            ContactsInTime.of(self.system, self.taken, self.at_points),
             self.trace.audits(over),
             self._stepping(),
             effort(self.run.seconds, self.run),
@@ -292,7 +317,7 @@ class Orbit:
             tolerance=self.request.tolerance,
             steps=self.taken,
             rejected_steps=refused.count("error"),
-            failed_steps=refused.count("no answer"),
+            failed_steps=refused.count("no answer") + refused.count("no points"),
         )
 
 

@@ -14,18 +14,26 @@ from petalfoil.analysis.operating_point import Vector, at, at_position, under_lo
 from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.case import Case
 from petalfoil.dynamics.adaptive_steps import MarchOptions
+from petalfoil.dynamics.point_path import at_points_instant
 from petalfoil.dynamics.rotor_motion import RotorMotion, constant_load
 from petalfoil.dynamics.speed_schedule import Schedule
 from petalfoil.dynamics.time_state import Instant, TimeState
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.equilibrium.cold_start import solve_cold
+from petalfoil.equilibrium.element_contacts import near_nodes, with_elements
+from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import UsageError
+from petalfoil.physics.dry_friction import Friction
+from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.build import build_pair, build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.friction import FrictionState, friction_of
 from petalfoil.system.heat_network import HeatNetwork
 from petalfoil.system.on_shaft import ShaftStep
+from petalfoil.system.point_equations import PointState
+from petalfoil.system.point_layout import PointLayout
+from petalfoil.system.point_step import PointStepEquations
 from petalfoil.system.shaft_layout import friction_on_shaft, joined
 from petalfoil.system.temperatures import Temperatures
 from petalfoil.system.time_step import StepProblem
@@ -170,7 +178,10 @@ def first_position(case: Case, request: OrbitRequest, known: Solution | None = N
     x, y = case.operation.eccentricity
     if np.any(load) or speed > 0.0:  # every place balances a shaft at rest without a load
         found, _ = under_load(at(case, speed, (0.0, 0.0)), load)
-        x, y = map(float, found.problem.displacement * found.problem.layout.scales.length)
+        layout = found.problem.layout
+        between = case.bearings == 1 and points_in_time(layout, friction_of(case, layout)) is not None
+        place = with_elements(found).position if between else found.problem.displacement
+        x, y = map(float, place * found.problem.layout.scales.length)
     if case.rotor is not None and request.schedule(case).speed(0.0) > 0.0:
         x -= case.rotor.unbalance  # a shaft that does not turn feels none
     beyond = np.hypot(x, y) >= case.pack_clearance
@@ -218,7 +229,13 @@ def system_of(case: Case, supports: tuple[Case, ...], schedule: Schedule, load: 
     problem = build_problem(case)
     rotor = RotorMotion.of(case, problem.layout.scales, schedule, load)
     alone = StepProblem(problem.layout, 0.0, problem.displacement, rotor.clock.bearing_number)
-    return RotorBearing(alone, rotor, friction_of(case, problem.layout))
+    friction = friction_of(case, problem.layout)
+    return RotorBearing(alone, rotor, friction, points_in_time(problem.layout, friction))
+
+
+def points_in_time(layout: BearingLayout, friction: Friction | None) -> PointLayout | None:
+    """Where contacts of a motion lie between nodes: of petals without friction, whom no journal drags; else None."""
+    return None if friction is not None or layout.case.drags_petals else layout.elements
 
 
 def at_rest(case: Case, system: RotorBearing, request: OrbitRequest) -> Instant:
@@ -228,6 +245,7 @@ def at_rest(case: Case, system: RotorBearing, request: OrbitRequest) -> Instant:
     """
     rotor, scales = case.rotor, system.problem.layout.scales
     speed, place = system.rotor.schedule.speed(0.0), system.problem.displacement
+    points: PointState | None = None
     off = np.zeros_like(place)  # of the axis from the mass centre, over the reference length
     if rotor is not None and request.initial == "balance":
         off[:2] = [-rotor.unbalance / scales.length, 0.0]
@@ -237,8 +255,13 @@ def at_rest(case: Case, system: RotorBearing, request: OrbitRequest) -> Instant:
     else:
         answer = at_position(at(case, speed)).answer
         state = answer.x, answer.lam, answer.active
+        found = None if system.points is None else near_nodes(answer)
+        if isinstance(found, PointContacts):
+            points = found.equations.state
     turning = np.zeros_like(place)
     turning[:2] = np.array([-off[1], off[0]]) * speed / system.rotor.clock.rate
+    if points is not None:
+        return released_at_points(system, 0.0, points, (place, turning))
     return released(system, 0.0, state, (place, turning))
 
 
@@ -271,3 +294,16 @@ def released(
     change = TimeState(problem.storing(x, lam), v, speeding)
     friction = None if system.friction is None else FrictionState.fresh(system.friction, x, lam)
     return Instant(tau, x, lam, closed, TimeState(problem.stored(x), e, v), change, friction)
+
+
+def released_at_points(system: RotorBearing, tau: float, state: PointState, moving: tuple[Array, Array]) -> Instant:
+    """The same from petals, film and contact points."""
+    (e, v), rotor, whole = moving, system.rotor, system.points
+    problem = system.problem.at(displacement=e, bearing_number=rotor.bearing_number(tau))
+    if whole is None or not isinstance(problem, StepProblem):
+        raise TypeError("contacts of this motion are at nodes")
+    equations = PointStepEquations(whole, problem, state)
+    force = equations.force + rotor.outside(tau) - rotor.gyroscopic(tau) @ v
+    speeding = np.asarray(np.linalg.solve(rotor.inertia, force), dtype=np.float64)
+    change = TimeState(-equations.film.residual, v, speeding)
+    return at_points_instant(tau, equations, TimeState(equations.film.mass, e, v), change)

@@ -9,15 +9,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.analysis.release import Kept, released
+from petalfoil.analysis.release import Kept, released, released_at_points
 from petalfoil.case import Case
+from petalfoil.dynamics.point_stage import balanced
 from petalfoil.dynamics.speed_schedule import Schedule
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.errors import UsageError
+from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 from petalfoil.system.friction import against_slip
+from petalfoil.system.point_equations import PointState
+from petalfoil.system.point_step import PointStepEquations
 from petalfoil.system.temperatures import Temperatures
+from petalfoil.system.time_step import StepProblem
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE
 
 if TYPE_CHECKING:
@@ -39,6 +44,10 @@ SAME = 1e-6
 """Relative difference that speed and angle of the shaft may have where one motion goes on from another."""
 
 
+OF_POINTS = ("petal_unknown", "point_number")
+"""Dimensions of the state of contact points."""
+
+
 def end_state(last: Instant, system: RotorBearing) -> dict[str, Array]:
     """The state at the end, from which a motion can go on."""
     length, rate = system.problem.layout.scales.length, system.rotor.clock.rate
@@ -48,6 +57,19 @@ def end_state(last: Instant, system: RotorBearing) -> dict[str, Array]:
         "last_position": last.moving.e * length,
         "last_velocity": last.moving.v * length * rate,
         "last_friction": np.zeros(0) if last.friction is None else last.friction.force,
+        **end_points(last),
+    }
+
+
+def end_points(last: Instant) -> dict[str, Array]:
+    """The same of petals with continuous slopes and their contact points; nothing of contacts at nodes."""
+    if last.points is None:
+        return {}
+    points = last.points.points
+    counts = np.array([len(points.curve)]), points.curve
+    return {
+        "last_petals": last.points.w,
+        "last_points": np.concatenate([*counts, points.position, points.inner, points.reaction], dtype=np.float64),
     }
 
 
@@ -55,6 +77,7 @@ def end_coordinates(last: Instant) -> dict[str, NDArray[np.generic]]:
     """Coordinates of the state at the end."""
     slides = 0 if last.friction is None else len(last.friction.force)
     sizes = {"unknown": len(last.x), "gap": len(last.lam), "axis": len(last.e), "slide": slides}
+    sizes |= {dim: len(values) for dim, values in zip(OF_POINTS, end_points(last).values(), strict=False)}
     return {name: np.arange(size) for name, size in sizes.items()}
 
 
@@ -79,6 +102,8 @@ def instant_of(result: xr.Dataset, system: RotorBearing, tau: float) -> Instant:
         raise _damaged("contact reactions are negative")
     if not np.all(x[layout.unknowns[PRESSURE]] > 0.0):
         raise _damaged("absolute pressures are not positive")
+    if system.points is not None and "last_points" in result:
+        return at_points_of(result, system, tau, (x, e / scales.length, v))
     start = released(system, tau, (x, lam, lam > 0.0), (e / scales.length, v))
     if start.friction is not None:
         start = replace(start, friction=replace(start.friction, force=friction))
@@ -86,6 +111,43 @@ def instant_of(result: xr.Dataset, system: RotorBearing, tau: float) -> Instant:
     if not imbalance <= allowed:
         raise _damaged(f"petals and loads are out of balance by {imbalance:.2g} of ambient pressure, over {allowed:g}")
     return start
+
+
+def at_points_of(result: xr.Dataset, system: RotorBearing, tau: float, at: tuple[Array, Array, Array]) -> Instant:
+    """The same with contact points; `at` are unknowns, displacement and velocity.
+
+    Raises
+    ------
+    UsageError
+        The state is damaged.
+    """
+    (x, e, v), whole = at, system.points
+    if whole is None:
+        raise ValueError("contacts of this motion are at nodes")
+    w, numbers = _state(result, "last_petals", whole.n_wall), result["last_points"].to_numpy()
+    points = points_of(numbers, len(whole.curves.elements)) if np.all(np.isfinite(numbers)) else None
+    if points is None:
+        raise _damaged("last_points are no contact points")
+    state = PointState(w, x[whole.layout.unknowns[PRESSURE]], points)
+    start = released_at_points(system, tau, state, (e, v))
+    problem = system.problem.at(displacement=e, bearing_number=system.rotor.bearing_number(tau))
+    if not isinstance(problem, StepProblem) or not balanced(PointStepEquations(whole, problem, state)):
+        raise _damaged("petals, loads and contacts are out of balance")
+    if not np.allclose(start.x, x, rtol=0.0, atol=SAME * float(np.max(np.abs(x)))):
+        raise _damaged("petals and loads are out of balance: deflections at nodes are not those between them")
+    return start
+
+
+def points_of(numbers: Array, curves: int) -> ContactPoints | None:
+    """Contact points from their number, curves, positions, points in stretches and reactions; None if they are none."""
+    k = int(numbers[0]) if len(numbers) else -1
+    if k < 0 or len(numbers) < 1 + 3 * k:
+        return None
+    curve, position, inner, reaction = np.split(numbers[1:], [k, 2 * k, 3 * k])
+    whole = np.all((curve == np.floor(curve)) & (curve < curves) & (curve >= 0.0))
+    if not whole or np.any(inner < 0.0) or len(reaction) != k + inner.sum():
+        return None
+    return ContactPoints(curve.astype(np.intp), position, inner.astype(np.intp), reaction)
 
 
 def wall_imbalance(instant: Instant, system: RotorBearing) -> float:

@@ -10,10 +10,13 @@ from numpy.typing import NDArray
 
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
+from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.solvers.tangent import BorderedTangent, Tangent
+from petalfoil.system.point_equations import PointEquations
+from petalfoil.system.time_step import StepProblem
 
 Array = NDArray[np.float64]
 
@@ -64,6 +67,8 @@ def fastest_swing(bearing: RotorBearing, start: Instant) -> float:
     Zero where the contacts there do not determine the stiffness. One factorisation.
     """
     problem = bearing.problem.at(displacement=start.e, bearing_number=bearing.rotor.bearing_number(start.tau))
+    if start.points is not None and bearing.points is not None and isinstance(problem, StepProblem):
+        return swing_of(bearing, -gradient_at_points(PointEquations(bearing.points, problem, start.points)))
     constraints = constrain(problem.G, start.active, acting=problem.acting)
     if not constraints.determinate:
         return 0.0
@@ -74,5 +79,19 @@ def fastest_swing(bearing: RotorBearing, start: Instant) -> float:
     except SingularMatrixError:
         return 0.0
     stiffness = -BorderedTangent.at(Tangent(matrix, constraints, factor), problem.border, linearized).gradient
+    return swing_of(bearing, stiffness)
+
+
+def gradient_at_points(equations: PointEquations) -> Array:
+    """Force by the journal's position with contact points, (d, d) [1]; zero where they do not determine the petals."""
+    still = np.zeros_like(equations.problem.displacement)
+    try:
+        return ElementTangent.at(equations, still, current_run().probe_solver).gradient
+    except NoPointsError:
+        return np.zeros((len(still), len(still)))
+
+
+def swing_of(bearing: RotorBearing, stiffness: Array) -> float:
+    """Highest natural frequency of the rotor on a stiffness (d, d), over the unit of time [1]."""
     squares = np.linalg.eigvals(np.linalg.solve(bearing.rotor.inertia, stiffness))
     return float(np.sqrt(np.max(squares.real, initial=0.0)))

@@ -128,7 +128,7 @@ class Trace:
         """Every bearing at the speed and position of an instant, with its unknowns and reactions."""
         number = self.system.rotor.bearing_number(instant.tau)
         there = self.system.problem.at(bearing_number=number, displacement=instant.e)
-        return there.each(instant.x, instant.lam)
+        return BearingState.each_of(there, instant, self.system.points)
 
     def _tilt(self, e: Array, v: Array) -> dict[str, float]:
         """Slopes of the shaft in two bearings [rad], and their rates [rad/s]."""
@@ -142,7 +142,7 @@ class Trace:
         length, _, force, rate = self._units
         rotor = self.system.rotor
         t, (e, v) = instant.tau / rate, (instant.moving.e * length, instant.moving.v * length * rate)
-        elastic = sum(0.5 * float(w @ layout.elastic_force(w)) for layout, w in self._deflections(instant))
+        elastic = sum(part.elastic_energy for part in self._bearings(instant))
         kinetic = 0.5 * float(instant.moving.v @ rotor.inertia @ instant.moving.v) * force * length
         tilt = self._tilt(e, v)
         return {
@@ -168,9 +168,7 @@ class Trace:
         parts = self._bearings(instant)
         stored = self.system.problem.stored_of_each(instant.moving.stored)
         films = [FilmFigures.of(part, gas) for part, gas in zip(parts, stored, strict=True)]
-        number = self.system.rotor.bearing_number(instant.tau)
-        there = self.system.problem.at(bearing_number=number, displacement=instant.e)
-        pushed = there.journal_force(instant.x, instant.lam) * self._units[2]
+        pushed = self._journal_force(instant, parts) * self._units[2]
         touching, pressed = sum(film.touching for film in films), np.concatenate([film.pressed for film in films])
         return {
             "min_film_thickness": min(film.thinnest for film in films),
@@ -183,6 +181,14 @@ class Trace:
             "gas": sum(film.gas for film in films),
             "outflow": sum(film.outflow for film in films) * self._units[3],
         }
+
+    def _journal_force(self, instant: Instant, parts: list[BearingState]) -> Array:
+        """Force of all bearings on the rotor, (d,) [1]."""
+        if instant.points is not None:
+            return parts[0].journal_force
+        number = self.system.rotor.bearing_number(instant.tau)
+        there = self.system.problem.at(bearing_number=number, displacement=instant.e)
+        return there.journal_force(instant.x, instant.lam)
 
     def done_since(self, instant: Instant) -> dict[str, float]:
         """Work of film, loads and growth on rotor and petals since the latest instant, by the trapezium rule [J]."""
@@ -247,7 +253,7 @@ class Trace:
         """Coordinates and fields of the pictures; of two bearings the first is shown."""
         rate, instants = self._units[3], list(self.frames)
         shown = [self._bearings(instant)[0] for instant in instants]
-        layout = shown[0][0].layout
+        layout = shown[0].problem.layout
         mesh, length, ambient = layout.wall.film, layout.scales.length, layout.scales.pressure
         whole, kind = mesh.axial.whole, wall_kind(layout.case)
         coords: dict[str, NDArray[np.generic]] = {
@@ -258,12 +264,12 @@ class Trace:
             "z": mesh.axial.whole_z,
         }
         fields: Named = {
-            "frame_pressure": np.array([whole(part.pressure(x) * ambient) for part, x, _ in shown]),
-            "frame_film_thickness": np.array([whole(part.film(x) * length) for part, x, _ in shown]),
-            "frame_x": np.array([part.displacement[0] * length for part, _, _ in shown]),
-            "frame_y": np.array([part.displacement[1] * length for part, _, _ in shown]),
+            "frame_pressure": np.array([whole(part.pressure * ambient) for part in shown]),
+            "frame_film_thickness": np.array([whole(part.film * length) for part in shown]),
+            "frame_x": np.array([part.problem.displacement[0] * length for part in shown]),
+            "frame_y": np.array([part.problem.displacement[1] * length for part in shown]),
         }
-        bent = [x[layout.unknowns[DEFLECTION]] * length for _, x, _ in shown]
+        bent = [part.deflection * length for part in shown]
         sections = [kind.cross_section(layout.case, W) for W in bent]
         if any(sections):
             coords |= kind.coordinates(layout.case, layout.wall)

@@ -61,7 +61,7 @@ def of_answer(case: Case, scalars: Scalars) -> Iterator[str]:
             "bottomed_out: the foil pack has bottomed out, journal, petals and bushing touch as a solid stack, whose "
             "own stiffness is not modelled; reduce the load, or enlarge the pack's clearance"
         )
-    at_nodes = "at nodes" in str(scalars.get("contact_model", ""))
+    at_nodes = "at nodes" in str(scalars.get("contact_model", "")) and "point_share" not in scalars
     if at_nodes and case.has_contact_points and case.heat is None:
         yield (
             "contact_model: no equilibrium with contact points was found, results are those of contacts at nodes: in "

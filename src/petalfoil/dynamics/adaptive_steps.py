@@ -7,10 +7,9 @@ from dataclasses import dataclass, replace
 
 from petalfoil.dynamics.stage import StageOptions
 from petalfoil.dynamics.time_state import Instant
-from petalfoil.dynamics.tr_bdf2 import AcceptedStep, RotorBearing, take_step
+from petalfoil.dynamics.tr_bdf2 import AcceptedStep, RotorBearing, Tangents, take_step
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.errors import ConvergenceError
-from petalfoil.solvers.tangent import BorderedTangent
 
 
 @dataclass(frozen=True)
@@ -31,11 +30,27 @@ class MarchOptions:
 
 @dataclass(frozen=True)
 class NextStep:
-    """The next step, the tangent that serves it, and how many steps before had a small error."""
+    """The next step.
+
+    Attributes
+    ----------
+    step : float
+        Its length [units of time].
+    tangent : BorderedTangent, ElementTangent or None
+        The tangent that serves it.
+    calm : int
+        Steps before it whose error was small.
+    lost : int
+        Attempts that found no contact points since steps last were calm.
+    at_nodes : int
+        Steps that still hold contacts at nodes.
+    """
 
     step: float
-    tangent: BorderedTangent | None = None
+    tangent: Tangents | None = None
     calm: int = 0
+    lost: int = 0
+    at_nodes: int = 0
 
 
 SAFETY = 0.85
@@ -43,6 +58,10 @@ LARGER, LARGEST = 1.3, 3.0
 """A step grows only if the first factor is allowed, for a longer step needs a new tangent; at most by the second."""
 CALM = 3
 """Steps with a small error before the step may grow."""
+LOST = 3
+"""Attempts without contact points, each a quarter as long, after which contacts are held at nodes."""
+HELD = 16
+"""Steps with contacts at nodes before points are looked for again."""
 SAME_STEP = 1e-9
 """Relative change of the step up to which its tangent still serves."""
 
@@ -61,37 +80,59 @@ def march(bearing: RotorBearing, start: Instant, end: float, options: MarchOptio
         left = end - path[-1].tau
         step = ahead.step if ahead.step < left * (1.0 - 1e-9) else left
         tangent = ahead.tangent if abs(step / ahead.step - 1.0) < SAME_STEP else None
-        stepped = take_step(bearing, path, step, tangent, stage_options)
-        if stepped is None or (stepped.error > 1.5 * options.tolerance and not options.fixed):
-            ahead = refused(ahead, step, stepped, options)
-            why = "no answer" if stepped is None else "error"
+        held = ahead.at_nodes > 0
+        stepped = take_step(bearing.at_nodes if held else bearing, path, step, tangent, stage_options)
+        if stepped is None or (stepped.error > 1.5 * options.tolerance and judged(path[-1], stepped, options)):
+            why = "error" if stepped is not None else "no answer" if held or bearing.points is None else "no points"
+            ahead = refused(ahead, step, stepped, options) if why != "no points" else without_points(ahead, step)
             current_run().note("motion", time=path[-1].tau, step=step, outcome=why)
             if ahead.step < options.shortest:
                 raise stuck(bearing, path[-1])
             continue
+        turned = not judged(path[-1], stepped, options)
         path = [*path[-2:], stepped.inner, stepped.end][-3:]
         yield stepped
-        ahead = accepted(ahead, step, stepped, options)
+        ahead = accepted(ahead, step, stepped, options, turned=turned)
+
+
+def judged(begin: Instant, stepped: AcceptedStep, options: MarchOptions) -> bool:
+    """Whether a step may be refused for its error.
+
+    Where contacts pass from points to nodes, or back, rates at its begin are those of the other contacts: the
+    difference is that of the grid, and no shorter step lessens it.
+    """
+    return not options.fixed and (begin.points is None) is (stepped.end.points is None)
 
 
 def refused(ahead: NextStep, step: float, stepped: AcceptedStep | None, options: MarchOptions) -> NextStep:
     """A shorter step: by its error, or a quarter where a stage had no solution."""
     if stepped is None:
-        return NextStep(0.25 * step)
-    return NextStep(step * max(0.2, SAFETY * (options.tolerance / stepped.error) ** (1.0 / 3.0)))
+        return NextStep(0.25 * step, at_nodes=ahead.at_nodes)
+    shorter = step * max(0.2, SAFETY * (options.tolerance / stepped.error) ** (1.0 / 3.0))
+    return NextStep(shorter, lost=ahead.lost, at_nodes=ahead.at_nodes)
 
 
-def accepted(ahead: NextStep, step: float, stepped: AcceptedStep, options: MarchOptions) -> NextStep:
+def without_points(ahead: NextStep, step: float) -> NextStep:
+    """After an attempt that found no contact points: a shorter step; after some of them contacts at nodes."""
+    if ahead.lost + 1 < LOST:
+        return NextStep(0.25 * step, lost=ahead.lost + 1)
+    return NextStep(step * 4.0 ** (LOST - 1), at_nodes=HELD)
+
+
+def accepted(ahead: NextStep, step: float, stepped: AcceptedStep, options: MarchOptions, *, turned: bool) -> NextStep:
     """The next step: the same as long as that is about right, so that the tangent still serves."""
+    held = max(ahead.at_nodes - 1, 0)
     if options.fixed:
-        return replace(ahead, tangent=stepped.tangent)
+        return replace(ahead, tangent=stepped.tangent, at_nodes=held)
+    if turned:
+        return NextStep(step, stepped.tangent, lost=ahead.lost, at_nodes=held)
     right = SAFETY * (options.tolerance / max(stepped.error, 1e-300)) ** (1.0 / 3.0)
     if right < 1.0 / SAFETY * 0.8:
-        return NextStep(step * max(0.3, right))
+        return NextStep(step * max(0.3, right), lost=ahead.lost, at_nodes=held)
     calm = ahead.calm + 1 if right > LARGER else 0
     if calm >= CALM and step < options.longest:
-        return NextStep(min(step * min(right, LARGEST), options.longest))
-    return NextStep(step, stepped.tangent, calm)
+        return NextStep(min(step * min(right, LARGEST), options.longest), at_nodes=held)
+    return NextStep(step, stepped.tangent, calm, 0 if calm >= CALM else ahead.lost, held)
 
 
 def stuck(bearing: RotorBearing, instant: Instant) -> ConvergenceError:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.system.friction import FrictionState
+from petalfoil.system.point_equations import PointState
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -63,6 +64,9 @@ class Instant:
         Their rates of change.
     friction : FrictionState or None
         Slip and friction of the petals.
+    points : PointState or None
+        Petals, film and contacts where these are points between nodes, of which unknowns, reactions and active contacts
+        are samples then; None where contacts are at nodes.
     """
 
     tau: float
@@ -72,6 +76,7 @@ class Instant:
     moving: TimeState
     change: TimeState
     friction: FrictionState | None = None
+    points: PointState | None = None
 
     @property
     def e(self) -> Array:

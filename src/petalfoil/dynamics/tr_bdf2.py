@@ -9,18 +9,23 @@ not pressure and film: no gas is lost.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.dynamics.point_path import at_points_instant, lagrange, point_guesses
+from petalfoil.dynamics.point_stage import PointStage
 from petalfoil.dynamics.rotor_motion import RotorMotion
 from petalfoil.dynamics.stage import Stage, StageOptions, StageSolution, solve_sliding_stage, solve_stage
 from petalfoil.dynamics.time_state import Instant, TimeState
+from petalfoil.equilibrium.element_tangent import ElementTangent
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.contact_newton import border_change
 from petalfoil.solvers.tangent import BorderedTangent
 from petalfoil.system.friction import FrictionStep
 from petalfoil.system.on_shaft import ShaftStep
+from petalfoil.system.point_layout import PointLayout
 from petalfoil.system.time_step import StepProblem
 from petalfoil.system.unknowns import PRESSURE
 
@@ -37,13 +42,34 @@ ERROR = ((4.0 * WEIGHT - 1.0) / 3.0, -1.0 / 3.0, 2.0 * IMPLICIT / 3.0)
 """Weights of the three rates in the difference to the embedded formula of third order."""
 
 
+Tangents = BorderedTangent | ElementTangent
+
+
 @dataclass(frozen=True)
 class RotorBearing:
-    """A bearing, or two on one shaft, and the rotor in it."""
+    """A bearing, or two on one shaft, and the rotor in it.
+
+    Attributes
+    ----------
+    problem : StepProblem or ShaftStep
+        The bearing.
+    rotor : RotorMotion
+        The rotor.
+    friction : Friction or None
+        Friction between its petals.
+    points : PointLayout or None
+        The same bearing with contacts between nodes; None where they are at nodes.
+    """
 
     problem: StepProblem | ShaftStep
     rotor: RotorMotion
     friction: Friction | None = None
+    points: PointLayout | None = None
+
+    @property
+    def at_nodes(self) -> Self:
+        """The same with contacts at nodes."""
+        return self if self.points is None else replace(self, points=None)
 
     def stage(self, base: TimeState, tau: float, step: float, begin: Instant, options: StageOptions) -> Stage:
         """The implicit stage at `tau` from `base` in a step from `begin`; friction goes on from there."""
@@ -68,11 +94,20 @@ class AcceptedStep:
     end: Instant
     error: float
     residual: float
-    tangent: BorderedTangent
+    tangent: Tangents
+
+
+@dataclass(frozen=True)
+class Reached:
+    """Where a stage leads: the instant, its largest scaled residual, and the tangent that found it."""
+
+    instant: Instant
+    residual: float
+    tangent: Tangents
 
 
 def take_step(
-    bearing: RotorBearing, path: list[Instant], step: float, tangent: BorderedTangent | None, options: StageOptions
+    bearing: RotorBearing, path: list[Instant], step: float, tangent: Tangents | None, options: StageOptions
 ) -> AcceptedStep | None:
     """One step from the last instant of `path`; None if a stage has no solution.
 
@@ -81,33 +116,55 @@ def take_step(
     """
     now = path[-1]
     base = now.moving.plus(step, (IMPLICIT, now.change))
-    inner = advance(
-        bearing.stage(base, now.tau + GAMMA * step, step, now, options), now.tau + GAMMA * step, path, tangent
-    )
+    at = now.tau + GAMMA * step
+    inner = advance(bearing, bearing.stage(base, at, step, now, options), at, path, tangent, inner=True)
     if inner is None:
         return None
-    between, first = inner
+    between = inner.instant
     base = now.moving.plus(step, (WEIGHT, now.change), (WEIGHT, between.change))
     last_stage = bearing.stage(base, now.tau + step, step, now, options)
-    outer = advance(last_stage, now.tau + step, [*path[-2:], between], first.tangent)
+    outer = advance(bearing, last_stage, now.tau + step, [*path[-2:], between], inner.tangent)
     if outer is None:
         return None
-    end, second = outer
-    error = estimate(bearing, (now, between, end), step, second.tangent)
-    return AcceptedStep(between, end, error, max(first.state.residual, second.state.residual), second.tangent)
+    error = estimate(bearing, (now, between, outer.instant), step, outer.tangent)
+    return AcceptedStep(between, outer.instant, error, max(inner.residual, outer.residual), outer.tangent)
 
 
 def advance(
-    stage: Stage, tau: float, path: list[Instant], tangent: BorderedTangent | None
-) -> tuple[Instant, StageSolution] | None:
-    """The instant at `tau` that a stage leads to; None if it has no solution."""
+    bearing: RotorBearing,
+    stage: Stage,
+    tau: float,
+    path: list[Instant],
+    tangent: Tangents | None,
+    *,
+    inner: bool = False,
+) -> Reached | None:
+    """Where a stage leads at `tau`, within a step or at its end; None if it has no solution."""
+    if bearing.points is not None:
+        return advance_points(PointStage(bearing.points, stage), tau, path, tangent, inner=inner)
     last = path[-1]
     for x, e in guesses(path, tau):
-        solution = solved(stage, (x, e, last.active), last.lam, tangent)
-        if solution is not None:
-            state, moving = solution.state, solution.moving
+        at_nodes = tangent if isinstance(tangent, BorderedTangent) else None
+        found = solved(stage, (x, e, last.active), last.lam, at_nodes)
+        if found is not None:
+            state, moving = found.state, found.moving
             change = moving.minus(stage.base, stage.rate)
-            return Instant(tau, state.x, state.lam, state.active, moving, change, solution.friction), solution
+            instant = Instant(tau, state.x, state.lam, state.active, moving, change, found.friction)
+            return Reached(instant, state.residual, found.tangent)
+    return None
+
+
+def advance_points(
+    stage: PointStage, tau: float, path: list[Instant], tangent: Tangents | None, *, inner: bool
+) -> Reached | None:
+    """The same with contact points."""
+    at_points = tangent if isinstance(tangent, ElementTangent) else None
+    for start in point_guesses(stage.whole, path, tau):
+        found = stage.solved(start, at_points)
+        if found is not None:
+            change = found.moving.minus(stage.stage.base, stage.stage.rate)
+            instant = at_points_instant(tau, found.equations, found.moving, change, inner=inner)
+            return Reached(instant, found.residual, found.tangent)
     return None
 
 
@@ -123,7 +180,7 @@ def guesses(path: list[Instant], tau: float) -> list[tuple[Array, Array]]:
     """Unknowns and displacement at `tau`: through the last three instants of `path`, else as they were last."""
     latest = path[-1]
     still = (latest.x, latest.e)
-    if len(path) < 3:
+    if len(path) < 3 or any(instant.points is not None for instant in path[-3:]):
         return [still]
     weights = lagrange([instant.tau for instant in path[-3:]], tau)
     x = sum(w * instant.x for w, instant in zip(weights, path[-3:], strict=True))
@@ -131,18 +188,8 @@ def guesses(path: list[Instant], tau: float) -> list[tuple[Array, Array]]:
     return [(np.asarray(x), np.asarray(e)), still]
 
 
-def lagrange(knots: list[float], tau: float) -> list[float]:
-    """Weights of the parabola through values at `knots`, at `tau`."""
-    a, b, c = knots
-    return [
-        (tau - b) * (tau - c) / ((a - b) * (a - c)),
-        (tau - a) * (tau - c) / ((b - a) * (b - c)),
-        (tau - a) * (tau - b) / ((c - a) * (c - b)),
-    ]
-
-
 def estimate(
-    bearing: RotorBearing, instants: tuple[Instant, Instant, Instant], step: float, tangent: BorderedTangent
+    bearing: RotorBearing, instants: tuple[Instant, Instant, Instant], step: float, tangent: Tangents
 ) -> float:
     """Local error of the step, in reference films and ambient pressures.
 
@@ -154,8 +201,21 @@ def estimate(
     base = TimeState(wrong.stored, -wrong.e, -wrong.v)
     stage = replace(bearing.stage(base, instants[2].tau, step, instants[0], StageOptions()), outside=still)
     unknowns = bearing.problem.layout.unknowns
-    residual, ambient = stage.rate * stage.problem.rows_of(wrong.stored), np.ones(unknowns.n)
-    settled, de, _ = border_change(stage, residual, (ambient, still), tangent)
-    pressures = (settled + tangent.units @ de)[unknowns[PRESSURE]]
+    if isinstance(tangent, ElementTangent):
+        pressures, de = response_at_points(stage, wrong.stored, tangent)
+    else:
+        residual, ambient = stage.rate * stage.problem.rows_of(wrong.stored), np.ones(unknowns.n)
+        settled, de, _ = border_change(stage, residual, (ambient, still), tangent)
+        pressures = (settled + tangent.units @ de)[unknowns[PRESSURE]]
     spread = float(np.sqrt(np.mean(pressures**2))) if len(pressures) else 0.0
     return max(float(np.linalg.norm(de)), spread)
+
+
+def response_at_points(stage: Stage, stored: Array, tangent: ElementTangent) -> tuple[Array, Array]:
+    """Change of pressures (n_film,) and displacement (d,) by errors in what is stored and in the stage's base."""
+    whole, base = tangent.equations.whole, stage.base
+    residual = np.zeros(tangent.n)
+    residual[whole.n_wall : whole.n_wall + whole.n_film] = stage.rate * stored
+    force = stage.border_stiffness @ base.e + stage.rate * (stage.inertia @ base.v)
+    change, de = tangent.correction(residual, force)
+    return change[whole.n_wall : whole.n_wall + whole.n_film], de

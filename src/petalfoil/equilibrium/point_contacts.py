@@ -9,6 +9,7 @@ a contact, and Newton's method goes on.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,7 @@ from petalfoil.system.point_layout import PointLayout
 from petalfoil.walls.element_pack import ElementPack
 
 Array = NDArray[np.float64]
+AnyEquations = TypeVar("AnyEquations", bound=PointEquations)
 
 STEPS = 48
 """Most Newton steps, all sets of contacts together. Of 40 random packs 18 take up to 5, eight more 22 to 40."""
@@ -223,8 +225,8 @@ def diverged(state: PointState) -> bool:
 
 
 def stepped(
-    equations: PointEquations, change: tuple[Array, Array], load: Array | None, *, whole_step: bool = False
-) -> PointEquations:
+    equations: AnyEquations, change: tuple[Array, Array], load: Array | None, *, whole_step: bool = False
+) -> AnyEquations:
     """The equations after the longest part of `change` (of unknowns and position) that lessens the residual.
 
     A `whole_step` is only shortened where pressures or the film would vanish, or the journal goes too far.

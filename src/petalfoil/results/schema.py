@@ -63,6 +63,17 @@ COORDINATES: dict[str, Variable] = {
     "gap": Variable(
         ("gap",), "1", "number of a gap between journal, petals and bushing", "j", DataType.INT, Role.GEOMETRY
     ),
+    "petal_unknown": Variable(
+        ("petal_unknown",),
+        "1",
+        "number of an unknown of petals with continuous slopes",
+        "k",
+        DataType.INT,
+        Role.GEOMETRY,
+    ),
+    "point_number": Variable(
+        ("point_number",), "1", "number in the list of contact points", "q", DataType.INT, Role.GEOMETRY
+    ),
     "slide": Variable(("slide",), "1", "number of a place where petals slide", "i", DataType.INT, Role.GEOMETRY),
     "axis": Variable(("axis",), "1", "direction: 0 along x, 1 along y", "i", DataType.INT, Role.GEOMETRY),
 }
@@ -149,6 +160,15 @@ HISTORIES: dict[str, Variable] = {
     ),
     "last_friction": Variable(
         ("slide",), "1", "friction of the petals at the end, in the units of the coupled system", "T"
+    ),
+    "last_petals": Variable(
+        ("petal_unknown",), "1", "values and slopes of petals at the end, in the units of the coupled system", "w"
+    ),
+    "last_points": Variable(
+        ("point_number",),
+        "1",
+        "contact points at the end: how many travel, curves, positions, points in stretches, reactions",
+        "t",
     ),
     "last_position": Variable(("axis",), "m", "displacement of the journal's centre at the end", "e"),
     "last_velocity": Variable(("axis",), "m s-1", "velocity of the journal's centre at the end", "v"),
@@ -290,6 +310,7 @@ SCALARS: dict[str, Variable] = {
     "friction_path": _run("", "path that friction forces between petals are those of", "friction_path", DataType.STR),
     "bottomed_out": _run("", "journal, petals and bushing touch at one angle", "bottomed_out", DataType.BOOL),
     "contact_model": _run("", "where contacts are", "contact_model", DataType.STR),
+    "point_share": _run("1", "share of the steps of a motion with contact points between nodes", "share_pts"),
     "known_equilibria": _run("1", "equilibria known at this position", "N_eq", DataType.INT),
     "jump": _run("", "this point left the branch of the point before", "jump", DataType.BOOL),
     "journal_radius": _geometry("m", "radius of the journal", "R_j"),

@@ -13,6 +13,7 @@
 `loaded.py`              the journal's position unknown, a load given
 `friction.py`            residual of the friction forces between petals, and a problem with it
 `time_step.py`           an implicit step in time: the film stores gas
+`point_step.py`          the same with contact points; the journal has mass
 `shaft_layout.py`        what stays the same of two bearings on one shaft
 `on_shaft.py`            both side by side in a step in time
 `temperatures.py`        temperatures of film, shaft, pack and bushing

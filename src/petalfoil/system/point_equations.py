@@ -246,8 +246,8 @@ class PointEquations:
         at_P, at_H = rows.storage_by_pressure, rows.storage_by_film
         pressure = sp.coo_array((by_P, (at_P.rows, at_P.cols)), shape=(n, n)).tocsr()
         film = sp.coo_array((by_H, (at_H.rows, at_H.cols)), shape=(n, nodes)).tocsr() @ self.whole.film_by_w
-        extra = self.steady.shape[0] - n_wall - n
-        top, bottom = sp.csr_array((n_wall, self.steady.shape[0])), sp.csr_array((extra, self.steady.shape[0]))
+        extra = self.n - n_wall - n
+        top, bottom = sp.csr_array((n_wall, self.n)), sp.csr_array((extra, self.n))
         middle = sp.hstack([film, pressure, sp.csr_array((n, extra))])
         return sp.csc_array(sp.vstack([top, middle, bottom], format="csc"))
 

@@ -1,0 +1,171 @@
+"""One implicit stage in time with contact points that travel: film, petals, contacts and rotor in one Newton.
+
+The stage is a balance under a load (`system/point_step.py`), so that the steps of statics serve it: Newton's method on
+deflections, pressures, reactions, places and position (C10), then contacts by their signs. One factorisation serves as
+many corrections, stages and steps as it contracts, as long as the contacts are the same; a stage ends by the size of
+its correction.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.dynamics.stage import Stage
+from petalfoil.dynamics.time_state import TimeState
+from petalfoil.equilibrium.contact_sets import revised
+from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError, unbalanced
+from petalfoil.equilibrium.point_contacts import stepped
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.system.point_equations import PointState
+from petalfoil.system.point_layout import PointLayout
+from petalfoil.system.point_step import PointStepEquations
+from petalfoil.system.time_step import StepProblem
+
+Array = NDArray[np.float64]
+
+SETS = 12
+"""Most sets of contacts of a stage: most stages have one, a step in which petals come to touch two or three."""
+
+TANGENTS = 5
+"""Most factorisations with one set of contacts."""
+
+CORRECTIONS = 10
+"""Most corrections with one tangent."""
+
+TOUCHING = 1e-4
+"""Largest gap, and slope by the place in an element, at the points of a stage's state, in reference films."""
+
+BALANCED = 1e-3
+"""Largest residual of the petals' rows, over ambient pressure on a node: where points travel far, corrections of films
+and pressures alone do not tell whether they are there. Contacts at nodes leave up to 5e-4."""
+
+GROWING = 2.0
+"""Growth of the correction past which a tangent no longer serves."""
+
+
+@dataclass(frozen=True)
+class PointStageSolution:
+    """What a stage reaches, and the tangent that found it."""
+
+    equations: PointStepEquations
+    moving: TimeState
+    tangent: ElementTangent
+
+    @property
+    def residual(self) -> float:
+        """Largest scaled residual."""
+        return float(np.max(np.abs(self.equations.scaled)))
+
+
+@dataclass(frozen=True)
+class PointStage:
+    """A stage with contact points.
+
+    Attributes
+    ----------
+    whole : PointLayout
+        The petals.
+    stage : Stage
+        Film, speed, rotor and what the stage starts from.
+    """
+
+    whole: PointLayout
+    stage: Stage
+
+    @property
+    def load(self) -> Array:
+        """`L`: all of (O3) that does not depend on the position, (d,) [1]."""
+        stage = self.stage
+        base = stage.base
+        return np.asarray(stage.outside + stage.border_stiffness @ base.e + stage.rate * (stage.inertia @ base.v))
+
+    def at(self, state: PointState, e: Array) -> PointStepEquations:
+        """The equations at a state."""
+        problem = self.stage.problem.at(displacement=e)
+        if not isinstance(problem, StepProblem):
+            raise TypeError("contacts of a shaft in two bearings are at nodes")
+        return PointStepEquations(self.whole, problem, state, resists=self.stage.border_stiffness)
+
+    def solved(self, start: tuple[PointState, Array], tangent: ElementTangent | None) -> PointStageSolution | None:
+        """The stage's state near `start`, a state and a displacement; None if there is none near it."""
+        equations, load, accuracy = self.at(*start), self.load, self.stage.options.accuracy
+        try:
+            for _ in range(SETS):
+                equations, tangent = self.settled(equations, load, tangent)
+                points = revised(equations, accuracy)
+                if points is None:
+                    return PointStageSolution(equations, self.moving(equations), tangent)
+                equations = replace(equations, state=replace(equations.state, points=points))
+        except NoPointsError as e:
+            current_run().note("stage", outcome=str(e))
+        return None
+
+    def settled(
+        self, equations: PointStepEquations, load: Array, tangent: ElementTangent | None
+    ) -> tuple[PointStepEquations, ElementTangent]:
+        """The state with the contacts as they are, apart from points that meet.
+
+        Raises
+        ------
+        NoPointsError
+            It is not found.
+        """
+        options, made = self.stage.options, 0
+        while made < TANGENTS:
+            if tangent is None or not serves(tangent, equations):
+                tangent, made = ElementTangent.at(equations, load, current_run().film_solver), made + 1
+            last = np.inf
+            for number in range(CORRECTIONS):
+                change = tangent.correction(equations.newton_residual, unbalanced(equations, load))
+                size = self.size(change)
+                if not np.isfinite(size) or size > GROWING * last:
+                    break
+                equations = stepped(equations, change, load, whole_step=True)
+                if not serves(tangent, equations):
+                    break
+                contraction = size / last if number else options.slow
+                if size * min(1.0, contraction / max(1.0 - contraction, 0.1)) <= options.accuracy and balanced(
+                    equations
+                ):
+                    return equations, tangent
+                if number and contraction > options.slow:
+                    break
+                last = size
+            tangent = None
+        raise NoPointsError("the corrections of a stage do not contract")
+
+    def size(self, change: tuple[Array, Array]) -> float:
+        """Size of a correction [reference films, ambient pressures]."""
+        (dX, move), n = change, self.whole.n_wall + self.whole.n_film
+        return float(max(np.max(np.abs(dX[:n])), np.max(np.abs(move))))
+
+    def moving(self, equations: PointStepEquations) -> TimeState:
+        """Gas, position and velocity of a state of this stage."""
+        e = equations.problem.displacement
+        return TimeState(equations.film.mass, e, self.stage.rate * (e - self.stage.base.e))
+
+
+def serves(tangent: ElementTangent, equations: PointStepEquations) -> bool:
+    """Whether a tangent is that of the same contacts."""
+    was = tangent.equations
+    if not isinstance(was, PointStepEquations) or was.whole is not equations.whole:
+        return False
+    return all(
+        np.array_equal(a, b)
+        for a, b in (
+            (was.state.points.curve, equations.state.points.curve),
+            (was.state.points.inner, equations.state.points.inner),
+            (was.travels, equations.travels),
+            (was.idle, equations.idle),
+        )
+    )
+
+
+def balanced(equations: PointStepEquations) -> bool:
+    """Whether gaps and slopes vanish at the contact points, and the petals are in equilibrium."""
+    wall, _, value, slope = equations.residual
+    open_by = max(np.max(np.abs(value), initial=0.0), np.max(np.abs(slope), initial=0.0))
+    return bool(open_by <= TOUCHING and np.max(np.abs(wall) / equations.row_scales[0]) <= BALANCED)

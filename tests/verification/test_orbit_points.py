@@ -1,0 +1,101 @@
+"""Motions with contact points between nodes: slopes of equilibria, balances, touching down and lifting off."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from petalfoil.analysis.impedance import elastic_and_sliding, impedance
+from petalfoil.analysis.operating_point import operating_point
+from petalfoil.analysis.orbit import orbit
+from petalfoil.analysis.orbit_motion import follow
+from petalfoil.analysis.release import OrbitRequest
+from petalfoil.analysis.stability import stability
+from petalfoil.case import Case
+from petalfoil.equilibrium.run_context import running
+from petalfoil.equilibrium.small_motion import AT_POINTS
+from petalfoil.results.record import Record
+from tests.cases import case
+from tests.verification.test_orbit import WEIGHT, equal_steps, measured_impedance, petals, under
+
+
+def on_grid(cells: int) -> Case:
+    """The paper's 8 petals."""
+    return case("paper_n8", **{"model.cells_per_pitch": cells})
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("cells", [16, 32])
+def test_forced_orbits_give_back_stiffness_and_damping_at_points(cells: int) -> None:
+    """Small amplitudes: K to 1e-4 and C to 1 % of their size."""
+    loaded, start = under(on_grid(cells), 3.0, 3.0 * WEIGHT)
+    omega = loaded.operation.speed
+    modes = np.asarray(stability.record(loaded, mass=3.0).fields["natural_frequency"])
+    course = OrbitRequest(revolutions=20.0, initial=start, tolerance=1e-6, longest=0.1)
+    found = measured_impedance(loaded, 0.01, omega, course, [float(f) for f in modes if f < 0.2 * omega])
+    with running():
+        motion, _ = elastic_and_sliding(loaded, operating_point(loaded, None).answer)
+        K, C = impedance(motion, omega, omega)
+    assert np.max(np.abs(found.real - K)) <= 1e-4 * np.max(np.abs(K))
+    assert np.max(np.abs(found.imag / omega - C)) <= 1e-2 * np.max(np.abs(C))
+
+
+def swung(contacts: str, cells: int) -> Record:
+    """A turn of a rotor that is released at rest off its balance, in the same place on every grid."""
+    bearing = on_grid(cells).replace(rotor={"mass": 3.0}, **{"model.contacts": contacts})
+    return follow(bearing, OrbitRequest(revolutions=1.0, initial=(0.0, -315e-6), tolerance=1e-4))
+
+
+@pytest.mark.slow
+def test_a_swing_converges_with_the_grid_where_nodes_do_not() -> None:
+    """Position after a turn on 16, 32, 64 cells: differences between grids fall, and are below those of nodes."""
+    apart = {}
+    for contacts in ("points", "nodes"):
+        ends = [float(np.asarray(swung(contacts, cells).fields["y"])[-1]) for cells in (16, 32, 64)]
+        apart[contacts] = [abs(b - a) for a, b in pairwise(ends)]
+    assert apart["points"][1] < 0.4 * apart["points"][0]
+    assert apart["points"][1] < 0.2 * apart["nodes"][1]
+
+
+@pytest.mark.slow
+def test_audits_close_to_second_order() -> None:
+    """Gas and energy: a third of the defect at half the step, with elements that contacts bend further."""
+    bearing, defects = petals(rotor={"mass": 1.0, "unbalance": 2e-6}), []
+    for step in (0.04, 0.02):
+        motion = equal_steps(bearing, step, 2.0)
+        assert motion.trace.last is not None
+        assert motion.trace.last.points is not None
+        scalars = motion.record().scalars
+        defects.append([scalars["mass_balance_error"], scalars["energy_balance_error"]])
+    coarse, fine = np.array(defects, dtype=float)
+    assert np.all((fine <= 0.35 * coarse) | (fine <= 1e-9)), (coarse, fine)
+    assert np.all(fine <= 1e-3)
+
+
+@pytest.mark.slow
+def test_a_ramp_lifts_off_and_a_rotor_comes_down_again() -> None:
+    """From rest on its petals a rotor is run up, and down: contact points all the way, no step without an answer."""
+    bearing = petals(rotor={"mass": 1.0}, **{"operation.load": (0.0, -15.0)})
+    up_and_down = ((0.0, 0.0), (10e-3, 2000.0), (20e-3, 100.0))
+    record = orbit.record(bearing, speeds=up_and_down, initial="balance")
+    share = np.asarray(record.fields["contact_fraction"])
+    aloft = np.flatnonzero(share == 0.0)
+    assert share[0] > 0.9
+    assert len(aloft)
+    assert share[-1] > 0.5
+    assert record.scalars["failed_steps"] == 0
+    assert record.scalars["contact_model"] == AT_POINTS
+    assert record.scalars["point_share"] == 1.0
+    assert np.asarray(record.fields["min_film_thickness"]).min() >= 1e-6
+
+
+@pytest.mark.slow
+def test_a_pack_without_points_goes_on_with_contacts_at_nodes_and_says_so() -> None:
+    """Eight petals that a large unbalance throws together: residuals hold, and the steps at nodes are told."""
+    record = follow(petals(rotor={"mass": 3.0, "unbalance": 30e-6}), OrbitRequest(revolutions=4.0))
+    share = float(str(record.scalars["point_share"]))
+    assert 0.1 < share < 1.0
+    assert "contacts at nodes in the others" in str(record.scalars["contact_model"])
+    assert float(str(record.scalars["residual"])) <= 1e-3
