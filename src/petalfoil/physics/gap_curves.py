@@ -30,6 +30,7 @@ from petalfoil.physics.petal_elements import (
     clamped_beam_slope,
     clamped_beam_twist,
 )
+from petalfoil.sparsity import SparseRows
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -88,6 +89,22 @@ class GapCurves:
         Shape (k, 2 n_node).
         """
         return hermite.rows(*self.locate(curve, position), self.angle, derivative)
+
+    @cached_property
+    def _sampled(self) -> dict[int, tuple[Index, Array, Index, Array, SparseRows]]:
+        return {}
+
+    def samples(self, per_element: int) -> tuple[Index, Array, Index, Array, SparseRows]:
+        """Places along all curves: curve, position, element, place in it, and weights of the nodal gaps there."""
+        if per_element not in self._sampled:
+            count = self.elements * per_element
+            curve = np.repeat(np.arange(len(count)), count)
+            number = np.arange(len(curve)) - np.repeat(np.cumsum(count) - count, count)
+            position = (number + 0.5) / per_element
+            element, t = self.locate(curve, position)
+            rows = SparseRows(hermite.rows(element, t, self.angle))
+            self._sampled[per_element] = (curve, position, element, t, rows)
+        return self._sampled[per_element]
 
     def nodal(self, w: Array, e: Array) -> Array:
         """Nodal (value, slope) of all gaps, (2 n_node,)."""
@@ -280,12 +297,8 @@ def together(element: Index) -> tuple[Index, Index]:
 
 def sampled(curves: GapCurves, points: ContactPoints, nodal: Array, per_element: int) -> tuple[Index, Array, Array]:
     """Gaps along all curves, reactions' own bending included: curve, position, gap of every sample, curve by curve."""
-    count = curves.elements * per_element
-    curve = np.repeat(np.arange(len(count)), count)
-    number = np.arange(len(curve)) - np.repeat(np.cumsum(count) - count, count)
-    position = (number + 0.5) / per_element
-    element, t = curves.locate(curve, position)
-    gap = hermite.rows(element, t, curves.angle) @ nodal
+    curve, position, element, t, rows = curves.samples(per_element)
+    gap = rows @ nodal
     at_element, at = curves.locate(points.every_curve, points.every_position)
     first = np.searchsorted(element, at_element)
     for start, place, lam, C in zip(first, at, points.reaction, curves.compliance[at_element], strict=True):
