@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import xarray as xr
 
 from petalfoil.plot.views import displacement, is_3d, mid_plane, number
+from petalfoil.results.schema import SCALARS
+from petalfoil.results.summary import shown_as
 from petalfoil.text import for_figure
 
 RPM = 30.0 / math.pi
@@ -76,12 +78,14 @@ _UNITS = {"1": ("", 1.0), "rad s-1": ("Hz", HERTZ), "rad": ("deg", 180.0 / math.
 
 
 def quantity(ds: xr.Dataset, name: str) -> PlottedQuantity:
-    """How a variable of a dataset is shown: as the table says, else from its own long name and unit."""
+    """How a variable of a dataset is shown: as the table says, else by its long name in the unit of printed tables."""
     if name in QUANTITIES:
         return QUANTITIES[name]
     attributes = ds[name].attrs
     declared = for_figure(str(attributes.get("units", "")))
     unit, factor = ("rpm", RPM) if declared == "rad s-1" and "speed" in name else _UNITS.get(declared, (declared, 1.0))
+    if name in SCALARS and (shown := shown_as(name)).factor != 1.0:
+        unit, factor = shown.unit, shown.factor
     return PlottedQuantity(for_figure(str(attributes.get("long_name", name.replace("_", " ")))), unit, factor)
 
 

@@ -334,6 +334,16 @@ def shown_as(name: str) -> TableLabel:
     return _SHOWN.get(name) or SCALARS[name].shown or plain
 
 
+def label_alone(name: str) -> str:
+    """Label of a scalar away from the table of a point, where the line above tells what "at angle" is of."""
+    own, above = shown_as(name).label, in_order(SCALARS)
+    if not own.startswith(" "):
+        return own
+    heads = (shown_as(other).label for other in reversed(above[: above.index(name)]))
+    group, colon, _ = next(head for head in heads if not head.startswith(" ")).partition(":")
+    return f"{group}{colon or ','} {own.strip()}"
+
+
 def number(value: float) -> str:
     """Write a number with four significant digits, plainly where that is readable, else with an exponent."""
     if math.isnan(value):

@@ -16,7 +16,7 @@ from petalfoil.case.hints import nearest
 from petalfoil.errors import UnitError, UsageError
 from petalfoil.results.record import Scalar
 from petalfoil.results.schema import SCALARS
-from petalfoil.results.summary import cell
+from petalfoil.results.summary import cell, label_alone
 from petalfoil.results.variable import DataType, Role
 from petalfoil.units import parse_quantity
 from petalfoil.units.reading import shown
@@ -72,8 +72,8 @@ class ResultLimit:
     @property
     def text(self) -> str:
         """The limit in the units of tables."""
-        shown_as = cell(self.name, self.value)
-        return f"{shown_as.label.strip()} {'<' if self.is_upper else '>'} {shown_as.value} {shown_as.unit}".strip()
+        line = cell(self.name, self.value)
+        return f"{label_alone(self.name)} {'<' if self.is_upper else '>'} {line.value} {line.unit}".strip()
 
 
 def result_of(name: str) -> str:

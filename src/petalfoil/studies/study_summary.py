@@ -13,7 +13,7 @@ import xarray as xr
 from petalfoil.analysis import known_verbs
 from petalfoil.analysis.neighbours import FROM_NEIGHBOUR
 from petalfoil.results.schema import SCALARS
-from petalfoil.results.summary import cell, in_order, values_without_rounding
+from petalfoil.results.summary import cell, in_order, label_alone, shown_as, values_without_rounding
 from petalfoil.results.variable import DataType, Role
 from petalfoil.studies.question import CONVERGED
 from petalfoil.units import format_quantity
@@ -92,7 +92,7 @@ def ranges(ds: xr.Dataset) -> Lines:
         values = values_without_rounding(ds, name)
         finite = values[np.isfinite(values)]
         parts = [cell(name, float(part)) for part in (finite.min(), np.median(finite), finite.max())]
-        lines.append((parts[0].label.strip(), *(part.value for part in parts), parts[0].unit))
+        lines.append((label_alone(name), *(part.value for part in parts), parts[0].unit))
     return tuple(lines)
 
 
@@ -101,7 +101,7 @@ def each_case(ds: xr.Dataset) -> tuple[tuple[str, ...], Lines]:
     lines = []
     for name in results(ds):
         parts = [cell(name, float(value)) for value in np.ravel(values_without_rounding(ds, name))]
-        lines.append((parts[0].label.strip(), *(part.value for part in parts), parts[0].unit))
+        lines.append((label_alone(name), *(part.value for part in parts), parts[0].unit))
     return ("quantity", *parameters_of_cases(ds), "unit"), tuple(lines)
 
 
@@ -141,7 +141,7 @@ def _sobol(told: dict[str, Any]) -> Lines:
         for path, one in sorted(numbers["parameters"].items(), key=lambda item: -item[1]["ST"]):
             first, total = (f"{one[key]:.3f} ± {one[f'{key}_conf']:.3f}" for key in ("S1", "ST"))
             blocks = f"{numbers['answered']} of {numbers['blocks']}"
-            lines.append((cell(name, 0.0).label.strip(), path, first, total, blocks))
+            lines.append((label_alone(name), path, first, total, blocks))
     return tuple(lines)
 
 
@@ -151,8 +151,7 @@ def _best(ds: xr.Dataset, told: dict[str, Any]) -> tuple[tuple[str, ...], Lines]
     wanted = list(
         dict.fromkeys([*(name for name, _ in told["objectives"]), *(one["result"] for one in told["limits"])])
     )
-    shown = [cell(name, 0.0) for name in wanted]
-    heads = ("case", *names, *(f"{one.label.strip()} {one.unit}".strip() for one in shown), "")
+    heads = ("case", *names, *(f"{label_alone(name)} {shown_as(name).unit}".strip() for name in wanted), "")
     lines = []
     for design in told["best"]:
         values = [written(design["values"][name], str(ds[name].attrs["units"])) for name in names]
@@ -186,7 +185,7 @@ def _scatter(told: dict[str, Any]) -> Lines:
     lines = []
     for name, numbers in told["results"].items():
         parts = [cell(name, math.nan if numbers.get(key) is None else numbers[key]) for key in keys]
-        lines.append((parts[0].label.strip(), *(part.value for part in parts), parts[0].unit))
+        lines.append((label_alone(name), *(part.value for part in parts), parts[0].unit))
     return tuple(lines)
 
 

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from petalfoil.results.schema import SCALARS, VARIABLES
-from petalfoil.results.summary import shown_as
+from petalfoil.results.summary import label_alone, shown_as
 from petalfoil.results.variable import TableLabel
 from petalfoil.studio.motion_chart import motion_chart
 from petalfoil.studio.protocol import FoundAnswer, Mapped, Searched
@@ -136,7 +137,7 @@ def _short(values: Floats) -> list[list[float]]:
 def label_of(name: str) -> TableLabel:
     """Label, unit and factor of a result or an array of the schema."""
     if name in SCALARS:
-        return shown_as(name)
+        return replace(shown_as(name), label=label_alone(name))
     variable = VARIABLES[name]
     lengths = {"m": ("µm", 1e6), "s": ("ms", 1e3), "rad s-1": ("rpm", 30.0 / math.pi)}
     unit, factor = lengths.get(variable.units, (variable.units.removeprefix("1"), 1.0))
@@ -146,7 +147,7 @@ def label_of(name: str) -> TableLabel:
 def titled(name: str) -> str:
     """A label with its unit."""
     shown = label_of(name)
-    return f"{shown.label.strip()} [{shown.unit}]" if shown.unit else shown.label.strip()
+    return f"{shown.label} [{shown.unit}]" if shown.unit else shown.label
 
 
 def axes_of(found: FoundAnswer) -> list[str]:

@@ -109,6 +109,6 @@ def best_designs(found: Searched, most: int = 6) -> list[str]:
         for objective in found.objectives:
             name = objective.partition(" ")[2]
             shown = label_of(name)
-            parts.append(f"{shown.label.strip()} {found.results[name][number] * shown.factor:.4g} {shown.unit}".strip())
+            parts.append(f"{shown.label} {found.results[name][number] * shown.factor:.4g} {shown.unit}".strip())
         lines.append(f"design {number + 1}: " + ", ".join(parts))
     return lines

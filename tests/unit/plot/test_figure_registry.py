@@ -86,6 +86,14 @@ def test_a_point_without_a_figure_is_a_table_of_its_quantities(
     assert not [line for line in lines if "residual" in line[0]]
 
 
+def test_a_table_without_labels_of_its_own_is_in_the_units_of_printed_tables(checked: xr.Dataset) -> None:
+    fig = plot.quantities(checked)
+    cells = {place: cell.get_text().get_text() for place, cell in fig.axes[0].tables[0].get_celld().items()}
+    units = {cells[row, 0]: (cells[row, 1], cells[row, 2]) for row, _ in cells}
+    clearance = f"{1e6 * float(checked['radial_clearance']):.4g}"
+    assert units["radial clearance where it is narrowest"] == (clearance, "µm")
+
+
 def test_a_series_without_a_figure_is_lines_over_what_is_varied(curve: xr.Dataset) -> None:
     fig = plot.summary(curve.assign_attrs(analysis="toy"))
     assert fig.axes

@@ -1,10 +1,12 @@
 import json
 import math
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+import petalfoil.analysis.capacity  # noqa: F401 - declares the results of its own
 from petalfoil.results import Record, summary
 from petalfoil.results.schema import SCALARS
 from tests.unit.results import factory
@@ -129,6 +131,25 @@ def test_rounding_is_shown_as_zero(scalars: dict[str, float], shown: list[str]) 
 
 def test_the_compressibility_number_says_on_which_length() -> None:
     assert "radial clearance" in summary.cell("compressibility_number", 5.55).label
+
+
+@pytest.mark.parametrize(
+    ("name", "label"),
+    [
+        ("peak_pressure_angle", "peak pressure, at angle"),
+        ("min_film_thickness_z", "minimum film thickness, at z"),
+        ("other_power_loss", "other bearing: power loss"),
+        ("least_capacity_direction", "least load capacity, in direction"),
+        ("peak_pressure", "peak pressure"),
+    ],
+)
+def test_a_label_away_from_its_table_tells_what_it_is_of(name: str, label: str) -> None:
+    assert summary.label_alone(name) == label
+
+
+def test_no_two_results_have_one_label_and_unit_away_from_their_table() -> None:
+    shown = Counter((summary.label_alone(name), summary.shown_as(name).unit) for name in SCALARS)
+    assert [label for label, count in shown.items() if count > 1] == []
 
 
 def test_membrane_stress_of_petals_that_nothing_stretches_is_shown_as_zero() -> None:
