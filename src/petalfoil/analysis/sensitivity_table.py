@@ -15,8 +15,9 @@ from petalfoil.errors import ConvergenceError, DefinitionError, PetalfoilError
 from petalfoil.results.layout import Series
 from petalfoil.results.parts import RunOutcome
 from petalfoil.results.record import Record
+from petalfoil.results.rounding import ROUNDING
 from petalfoil.results.schema import SCALARS
-from petalfoil.results.summary import ROUNDING, cell
+from petalfoil.results.summary import cell
 from petalfoil.results.variable import DataType, Role, TableLabel, Variable
 from petalfoil.units import format_quantity
 

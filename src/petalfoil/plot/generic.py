@@ -10,8 +10,8 @@ from petalfoil.errors import UsageError
 from petalfoil.plot import style
 from petalfoil.plot.labels import QUANTITIES, PlottedQuantity, quantity
 from petalfoil.plot.views import Floats, array, one_point, unconverged
+from petalfoil.results.rounding import values_without_rounding
 from petalfoil.results.schema import COORDINATES, SCALARS
-from petalfoil.results.summary import values_without_rounding
 from petalfoil.results.variable import Role
 from petalfoil.text import for_terminal
 

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from petalfoil.errors import UsageError
 from petalfoil.plot.labels import QUANTITIES, RPM, PlottedQuantity, quantity
+from petalfoil.results.rounding import values_without_rounding
 from petalfoil.results.schema import SCALARS
-from petalfoil.results.summary import values_without_rounding
 from petalfoil.results.variable import DataType, Role
 from petalfoil.text import for_figure
 

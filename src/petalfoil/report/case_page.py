@@ -16,9 +16,10 @@ from petalfoil.case.keys import entries
 from petalfoil.report import html
 from petalfoil.report.case_results import LOAD_FACTORS, Part, Request, load_of, load_text
 from petalfoil.report.page_tables import PageTable, of_answer
+from petalfoil.results.rounding import without_rounding
 from petalfoil.results.schema import VARIABLES
 from petalfoil.results.seal import digest_of_data
-from petalfoil.results.summary import cell, in_order, without_rounding
+from petalfoil.results.summary import cell, in_order
 from petalfoil.results.variable import Role
 from petalfoil.units.writing import format_quantity
 from petalfoil.walls import Capability, wall_kind

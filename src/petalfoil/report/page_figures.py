@@ -42,11 +42,11 @@ def load_ratios(rows: Sequence[AssumptionResult]) -> Figure:
     return fig
 
 
-def petal_maps(family: Sequence[tuple[str, xr.Dataset]], petal: int = 0) -> Figure:
-    """Draw pressure and film thickness over the exposed part of one petal and the length, for a 3-D family."""
+def petal_maps(family: Sequence[tuple[str, xr.Dataset]]) -> Figure:
+    """Draw pressure and film thickness over the exposed part of the first petal and the length, for a 3-D family."""
     states = [(label, one_point(ds)) for label, ds in family]
-    ratios = [array(ds, "pressure")[petal] / number(ds, "ambient_pressure") for _, ds in states]
-    films = [array(ds, "film_thickness")[petal] * 1e6 for _, ds in states]
+    ratios = [array(ds, "pressure")[0] / number(ds, "ambient_pressure") for _, ds in states]
+    films = [array(ds, "film_thickness")[0] * 1e6 for _, ds in states]
     fig = style.figure(8.0, 4.8)
     axes = fig.subplots(2, len(states), sharey=True, squeeze=False)
     scales = (

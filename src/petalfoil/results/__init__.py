@@ -8,6 +8,7 @@ In the order data flows:
 - ``parts``    typed parts that a record is put together from
 - ``estimate`` what a sequence of grids tells about a result: limit, order, error bar
 - ``places``   where film and pressure have their extremes: one place, or several alike
+- ``rounding`` what tables and figures show as 0
 - ``summary``  a record as the object of ``--json`` and as the rows of the printed table
 - ``layout``   what an analysis returns: a point or a series
 - ``answer``   the records of an analysis in their layout, as JSON and as labelled data

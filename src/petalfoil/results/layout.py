@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 from petalfoil.results.estimate import Estimate
 from petalfoil.results.record import NO_COUNT, Record, Scalar
+from petalfoil.results.rounding import without_rounding
 from petalfoil.results.schema import SCALARS
-from petalfoil.results.summary import TableRow, as_json, without_rounding
+from petalfoil.results.summary import TableRow, as_json
 from petalfoil.results.variable import DataType
 
 if TYPE_CHECKING:

@@ -11,8 +11,9 @@ from petalfoil.results.estimate import Estimate
 from petalfoil.results.grid import LoadSpeedGrid
 from petalfoil.results.layout import Cell, Layout, Series, SinglePoint
 from petalfoil.results.record import Record, Scalar
+from petalfoil.results.rounding import without_rounding
 from petalfoil.results.study import GridStudy, grid_text
-from petalfoil.results.summary import ABSENT, cell, in_order, number, row, rows, with_bar, without_rounding
+from petalfoil.results.summary import ABSENT, cell, in_order, number, row, rows, with_bar
 
 
 @dataclass(frozen=True)

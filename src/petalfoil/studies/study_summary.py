@@ -12,8 +12,9 @@ import xarray as xr
 
 from petalfoil.analysis import known_verbs
 from petalfoil.analysis.neighbours import FROM_NEIGHBOUR
+from petalfoil.results.rounding import values_without_rounding
 from petalfoil.results.schema import SCALARS
-from petalfoil.results.summary import cell, in_order, label_alone, shown_as, values_without_rounding
+from petalfoil.results.summary import cell, in_order, label_alone, shown_as
 from petalfoil.results.variable import DataType, Role
 from petalfoil.studies.question import CONVERGED
 from petalfoil.units import format_quantity

@@ -18,7 +18,7 @@ from petalfoil.memory import grid_of
 from petalfoil.results.answer import Answer
 from petalfoil.results.layout import Layout
 from petalfoil.results.record import Record, warnings_of_all
-from petalfoil.results.summary import without_rounding
+from petalfoil.results.rounding import without_rounding
 from petalfoil.results.tables import shown_bars, tables_of
 from petalfoil.studio.arrays import arrays_of
 from petalfoil.studio.design import Design, without_files

@@ -8,6 +8,7 @@ import pytest
 
 import petalfoil.analysis.capacity  # noqa: F401 - declares the results of its own
 from petalfoil.results import Record, summary
+from petalfoil.results.rounding import without_rounding
 from petalfoil.results.schema import SCALARS
 from tests.unit.results import factory
 
@@ -154,9 +155,9 @@ def test_no_two_results_have_one_label_and_unit_away_from_their_table() -> None:
 
 def test_membrane_stress_of_petals_that_nothing_stretches_is_shown_as_zero() -> None:
     shown = [
-        summary.without_rounding(
-            Record(analysis="balance", scalars={"max_bending_stress": 2e8, "max_membrane_stress": value})
-        )["max_membrane_stress"]
+        without_rounding(Record(analysis="balance", scalars={"max_bending_stress": 2e8, "max_membrane_stress": value}))[
+            "max_membrane_stress"
+        ]
         for value in (4.5e-5, 1.0)
     ]
     assert shown == [0.0, 1.0]
