@@ -179,9 +179,9 @@ def _headline(part: Part | None, name: str) -> Iterator[Headline]:
     scalars = without_rounding(part.answer.records[-1])
     if name not in scalars or math.isnan(float(scalars[name])):
         return
-    row = cell(name, scalars[name])
+    row, why = cell(name, scalars[name]), str(scalars["status"]).removeprefix("converged; ").partition("; ")[0]
     is_bounded = math.isfinite(float(scalars[name]))
-    yield Headline(row.label.strip(), f"{row.value} {row.unit}" if is_bounded else "none: stable for any rotor mass")
+    yield Headline(row.label, f"{row.value} {row.unit}" if is_bounded else f"none: {why}")
 
 
 def _warnings(parts: Iterable[Part]) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import math
 import re
 from pathlib import Path
 
@@ -18,6 +19,9 @@ from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.report import case_page, case_report, case_results, pdf, reproduce
 from petalfoil.report.case_results import Part, Request
 from petalfoil.report.report_files import refuse_foreign
+from petalfoil.results.answer import Answer
+from petalfoil.results.layout import SinglePoint
+from petalfoil.results.record import Record
 from petalfoil.results.store import load
 from tests.cases import EXAMPLES, case
 
@@ -102,6 +106,22 @@ def test_a_part_that_did_not_converge_makes_the_command_fail(tmp_path: Path, mon
     assert done.exit_code == 3
     assert "Stability: lost" in done.stderr
     assert "lost To try: more." in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("verb", "name", "status", "told"),
+    [
+        ("liftoff", "liftoff_speed", "does not lift off below 9000 rpm", "none: does not lift off below 9000 rpm"),
+        ("stability", "critical_mass", "converged; stable for any rotor mass; more", "none: stable for any rotor mass"),
+        ("stability", "critical_mass", "converged; a mode grows, though no mass is critical",
+         "none: a mode grows, though no mass is critical"),
+    ],
+)  # fmt: skip
+def test_a_headline_without_a_number_has_the_reason_of_its_result(verb: str, name: str, status: str, told: str) -> None:
+    record = Record(analysis=verb, scalars={"converged": True, "status": status, name: math.inf})
+    answer = Answer(verb=verb, layout=SinglePoint(), records=(record,))
+    (row,) = case_page._headline(Part(name=verb, title=verb, verb=verb, answer=answer), name)
+    assert row.value == told
 
 
 def test_arguments_are_refused_by_their_names(tmp_path: Path) -> None:
