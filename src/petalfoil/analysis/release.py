@@ -178,15 +178,25 @@ def first_position(case: Case, request: OrbitRequest, known: Solution | None = N
     x, y = case.operation.eccentricity
     if np.any(load) or speed > 0.0:  # every place balances a shaft at rest without a load
         found, _ = under_load(at(case, speed, (0.0, 0.0)), load)
-        layout = found.problem.layout
-        between = case.bearings == 1 and points_in_time(layout, friction_of(case, layout)) is not None
-        place = with_elements(found).position if between else found.problem.displacement
+        place = place_of_balance(case, found)
         x, y = map(float, place * found.problem.layout.scales.length)
     if case.rotor is not None and request.schedule(case).speed(0.0) > 0.0:
         x -= case.rotor.unbalance  # a shaft that does not turn feels none
     beyond = np.hypot(x, y) >= case.pack_clearance
     short = LYING * case.pack_clearance / np.hypot(x, y) if beyond else 1.0
     return (float(short * x), float(short * y)), request.slope
+
+
+def place_of_balance(case: Case, found: Solution) -> Array:
+    """Displacement over the reference length at which a motion has the load of a balance, (n_position,) [1].
+
+    It is that of contact points where the motion begins with them.
+    """
+    layout = found.problem.layout
+    if case.bearings > 1 or points_in_time(layout, friction_of(case, layout)) is None:
+        return found.problem.displacement
+    between = with_elements(found)
+    return between.position if isinstance(between.elements, PointContacts) else found.problem.displacement
 
 
 def on_both(case: Case, request: OrbitRequest) -> tuple[Vector, Vector]:

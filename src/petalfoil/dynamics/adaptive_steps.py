@@ -28,6 +28,10 @@ class MarchOptions:
     """All steps as long as the first, whatever their error."""
 
 
+HELD = 16
+"""Steps with contacts at nodes before points are looked for again; twice as many each time that none are found."""
+
+
 @dataclass(frozen=True)
 class NextStep:
     """The next step.
@@ -44,6 +48,8 @@ class NextStep:
         Attempts that found no contact points since steps last were calm.
     at_nodes : int
         Steps that still hold contacts at nodes.
+    hold : int
+        Steps that will hold them there when points are lost the next time.
     """
 
     step: float
@@ -51,6 +57,7 @@ class NextStep:
     calm: int = 0
     lost: int = 0
     at_nodes: int = 0
+    hold: int = HELD
 
 
 SAFETY = 0.85
@@ -60,8 +67,6 @@ CALM = 3
 """Steps with a small error before the step may grow."""
 LOST = 3
 """Attempts without contact points, each a quarter as long, after which contacts are held at nodes."""
-HELD = 16
-"""Steps with contacts at nodes before points are looked for again."""
 SAME_STEP = 1e-9
 """Relative change of the step up to which its tangent still serves."""
 
@@ -106,33 +111,37 @@ def judged(begin: Instant, stepped: AcceptedStep, options: MarchOptions) -> bool
 
 def refused(ahead: NextStep, step: float, stepped: AcceptedStep | None, options: MarchOptions) -> NextStep:
     """A shorter step: by its error, or a quarter where a stage had no solution."""
-    if stepped is None:
-        return NextStep(0.25 * step, at_nodes=ahead.at_nodes)
-    shorter = step * max(0.2, SAFETY * (options.tolerance / stepped.error) ** (1.0 / 3.0))
-    return NextStep(shorter, lost=ahead.lost, at_nodes=ahead.at_nodes)
+    part = 0.25 if stepped is None else max(0.2, SAFETY * (options.tolerance / stepped.error) ** (1.0 / 3.0))
+    return replace(ahead, step=part * step, tangent=None, calm=0)
 
 
 def without_points(ahead: NextStep, step: float) -> NextStep:
-    """After an attempt that found no contact points: a shorter step; after some of them contacts at nodes."""
+    """After an attempt that found no contact points: a shorter step; after some of them contacts at nodes.
+
+    Each time that points are lost anew, nodes hold for twice as many steps: a search costs as much as tens of steps.
+    """
     if ahead.lost + 1 < LOST:
-        return NextStep(0.25 * step, lost=ahead.lost + 1)
-    return NextStep(step * 4.0 ** (LOST - 1), at_nodes=HELD)
+        return replace(ahead, step=0.25 * step, tangent=None, calm=0, lost=ahead.lost + 1)
+    return NextStep(step * 4.0 ** (LOST - 1), at_nodes=ahead.hold, hold=2 * ahead.hold)
 
 
 def accepted(ahead: NextStep, step: float, stepped: AcceptedStep, options: MarchOptions, *, turned: bool) -> NextStep:
     """The next step: the same as long as that is about right, so that the tangent still serves."""
-    held = max(ahead.at_nodes - 1, 0)
+    ahead = replace(ahead, at_nodes=max(ahead.at_nodes - 1, 0))
     if options.fixed:
-        return replace(ahead, tangent=stepped.tangent, at_nodes=held)
+        return replace(ahead, tangent=stepped.tangent)
     if turned:
-        return NextStep(step, stepped.tangent, lost=ahead.lost, at_nodes=held)
+        return replace(ahead, step=step, tangent=stepped.tangent, calm=0)
     right = SAFETY * (options.tolerance / max(stepped.error, 1e-300)) ** (1.0 / 3.0)
     if right < 1.0 / SAFETY * 0.8:
-        return NextStep(step * max(0.3, right), lost=ahead.lost, at_nodes=held)
+        return replace(ahead, step=step * max(0.3, right), tangent=None, calm=0)
     calm = ahead.calm + 1 if right > LARGER else 0
+    if calm >= CALM and stepped.end.points is not None:
+        ahead = replace(ahead, lost=0, hold=HELD)
     if calm >= CALM and step < options.longest:
-        return NextStep(min(step * min(right, LARGEST), options.longest), at_nodes=held)
-    return NextStep(step, stepped.tangent, calm, 0 if calm >= CALM else ahead.lost, held)
+        longer = min(step * min(right, LARGEST), options.longest)
+        return replace(ahead, step=longer, tangent=None, calm=0)
+    return replace(ahead, step=step, tangent=stepped.tangent, calm=calm)
 
 
 def stuck(bearing: RotorBearing, instant: Instant) -> ConvergenceError:

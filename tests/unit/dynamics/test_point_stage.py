@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from petalfoil.analysis.orbit_motion import Orbit
 from petalfoil.analysis.release import OrbitRequest
-from petalfoil.dynamics.adaptive_steps import MarchOptions, march
+from petalfoil.dynamics.adaptive_steps import HELD, LOST, MarchOptions, NextStep, march, without_points
 from petalfoil.dynamics.point_stage import PointStage
 from petalfoil.dynamics.stage import StageOptions
 from petalfoil.dynamics.time_state import Instant
@@ -132,3 +132,24 @@ def test_a_tangent_serves_both_stages_and_the_next_step(run: RunContext) -> None
     again = take_step(orbit.system, [start, first.inner, first.end], 1e-3, first.tangent, options)
     assert again is not None
     assert run.film.factorizations - before == 1
+
+
+def test_a_motion_that_loses_its_points_again_holds_nodes_for_longer() -> None:
+    """Shorter steps first, then contacts at nodes with the step of before; twice as long the next time."""
+    ahead, held = NextStep(0.16), []
+    for _ in range(2):
+        for attempt in range(LOST):
+            assert ahead.step == pytest.approx(0.16 / 4.0**attempt)
+            ahead = without_points(ahead, ahead.step)
+        held.append(ahead.at_nodes)
+        assert ahead.step == pytest.approx(0.16)
+        ahead = replace(ahead, at_nodes=0)
+    assert held == [HELD, 2 * HELD]
+
+
+def test_a_motion_whose_balance_has_no_points_begins_where_nodes_carry_the_load() -> None:
+    """Ten petals on a coarse grid have none: the journal is released without a blow."""
+    bearing = case("paper_n10", rotor={"mass": 3.0}, **{"model.cells_per_pitch": 16})
+    orbit = Orbit.begin(bearing, OrbitRequest(revolutions=1.0, initial="balance"))
+    assert orbit.start.points is None
+    assert_allclose(orbit.start.change.v, 0.0, atol=1e-9)
