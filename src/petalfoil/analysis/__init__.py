@@ -90,6 +90,7 @@ What they share:
 `heat_results.py`      temperatures and where the heat goes
 `thermal_limit.py`     the speed above which no temperature is steady
 `adapted_stations.py`  stations along the shaft where a coarse solution bends most
+`side_stations.py`     stations along the shaft at the sides of petals that stretch
 `balances.py`          balances of a solution
 `fields.py`            its fields on the mesh
 `records.py`           typed parts to a record

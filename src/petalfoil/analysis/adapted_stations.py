@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.analysis.session import one_thread
+from petalfoil.analysis.side_stations import side_density
 from petalfoil.case import Case, PetalTheory
 from petalfoil.case.sections import UNIFORM
 from petalfoil.equilibrium.cold_start import by_barriers
@@ -26,6 +27,7 @@ from petalfoil.errors import ConvergenceError
 from petalfoil.memory import check_memory
 from petalfoil.system.build import build_problem
 from petalfoil.system.loaded import load_of
+from petalfoil.walls.petals import stretches
 
 Array = NDArray[np.float64]
 
@@ -52,10 +54,10 @@ DIGITS = 4
 def with_stations(case: Case) -> Case:
     """The case with its adapted `model.axial_density`; as it is where stations are not to be adapted.
 
-    Where what asks for stations is largest at the ends, equal cells do not resolve it: the coarse solution is repeated
-    on cells that shrink toward them, of petals that bend only. The contact fraction of the rig with petals that
-    stretch, 0.0248 on 128 × 48 cells, is 0.0270 on the default grid without that and 0.0353 with it (decision 018).
-    Where the coarse grid has no solution, stations lie at equal distances, and the case of the result says so.
+    Petals that stretch need stations at their sides, which no solution has to tell (`side_stations.py`), unless the
+    case asks for adapted ones. Where what asks for stations is largest at the ends, equal cells do not resolve it: the
+    coarse solution is repeated on cells that shrink toward them, of petals that bend only. Where the coarse grid has no
+    solution, stations lie at equal distances, and the case of the result says so.
 
     Raises
     ------
@@ -65,6 +67,8 @@ def with_stations(case: Case) -> Case:
     if not case.adapts_stations or case.operation.speed == 0.0:
         return case
     check_memory(case)
+    if stretches(case) and case.model.axial_density is None:
+        return case.replace(**{"model.axial_density": side_density(case)})
     density = coarse_density(case, {"model.axial_density": UNIFORM})
     bends_only = case.petal_theory is PetalTheory.INEXTENSIBLE
     if bends_only and density is not None and density[0] == max(density):

@@ -219,7 +219,8 @@ class Model(Definition):
         ]
         | None
     ) = None
-    """Density of the stations from an end to the middle; where petals bend, unless given, from 8 cells on."""
+    """Density of the stations from an end to the middle. With petals, unless given, from 8 cells on: adapted to a
+    coarse solution where they bend only, crowded at their sides where they stretch."""
     symmetry: StrictBool = True
     """Solve half of the length in 3-D."""
     slip: StrictBool = False

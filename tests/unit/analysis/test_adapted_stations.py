@@ -5,7 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import petalfoil
-from petalfoil.analysis.adapted_stations import over_mean, second_derivative, with_stations
+from petalfoil.analysis.adapted_stations import FIRST_AXIAL, over_mean, second_derivative, with_stations
+from petalfoil.analysis.side_stations import LAYER
 from petalfoil.case import Case
 from petalfoil.errors import DefinitionError
 from petalfoil.mesh.axial import axis_3d, equidistributed
@@ -70,6 +71,29 @@ def test_stations_crowd_where_the_rig_touches_last() -> None:
     z = axial_grid(with_stations(rig)).z
     assert z[1] < 1e-3
     assert np.count_nonzero((1.4e-3 < z) & (z < 2.8e-3)) == 2
+
+
+@pytest.mark.parametrize("layers", [1.0, 0.25])
+def test_cells_of_petals_that_stretch_grow_with_the_distance_from_their_sides(layers: float) -> None:
+    """Places of the density 1 / (l + z) in closed form; petals of a quarter of the length have layers of half of it."""
+    grid = {"model.kind": "3d", "model.cells_per_pitch": 12, "model.axial_cells": 24}
+    changes = {} if layers == 1.0 else {"petals.thickness": 0.15e-3 * layers}
+    rig = case("rig", **grid, **changes)
+    layer = LAYER * np.sqrt(rig.pack.metric_radius * 0.15e-3 * layers)
+    half = 0.5 * rig.bearing.length
+    expected = layer * ((1.0 + half / layer) ** (np.arange(13) / 12.0) - 1.0)
+    z = axial_grid(with_stations(rig)).z
+    assert_allclose(z, expected, rtol=0.03)  # between its 33 values the density is a monotone cubic
+    assert with_stations(rig.replace(**{"operation.speed": 500.0})).axial_density == with_stations(rig).axial_density
+
+
+def test_stations_of_petals_that_stretch_are_adapted_where_asked_for() -> None:
+    bearing = case("paper_n8_spatial", **COARSE, **{"petals.theory": "shell"})
+    asked = with_stations(bearing.replace(**{"model.axial_density": "adapted"})).axial_density
+    assert len(asked) == FIRST_AXIAL // 2 + 1
+    assert asked[-2] == pytest.approx(asked[-1], rel=0.2)  # equal cells in the middle, where nothing bends
+    sides = with_stations(bearing).axial_density
+    assert np.all(np.diff(sides) < 0.0)
 
 
 @pytest.mark.slow
