@@ -36,6 +36,8 @@ WITHOUT_DERIVATIVES = {
 }
 """Questions without derivatives, and why."""
 
+OF_TWO_BEARINGS = tuple(f"rotor.{key}" for key in ("centre", "load_place", "transverse", "polar", "skew", "second"))
+"""Parameters of a rotor in two bearings: refused in a case whose rotor has no span."""
 WITHOUT_EFFECT = ("model.", "surface.friction_width", "surface.petal_friction", "petals.free_shape_tolerance")
 """Numbers of the discretisation, and friction that acts in motions alone: derivatives by them are not looked for."""
 
@@ -167,6 +169,8 @@ def default_paths(case: Case, verb: str) -> list[str]:
     given = ["operation.load" if case.operation.load is None else "operation.eccentricity"]
     given += {"capacity": ["operation.eccentricity"]}.get(verb, [])
     without = (*WITHOUT_EFFECT, *given, *(["operation.speed"] if verb in ("liftoff", "static") else []))
+    if case.rotor is not None and case.rotor.span is None:
+        without += OF_TWO_BEARINGS
     known_ones = parameters_of(case).values()
     return [p.path for p in known_ones if not p.is_count and p.value is not None and not p.path.startswith(without)]
 

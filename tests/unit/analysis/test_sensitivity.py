@@ -12,6 +12,8 @@ from typer.testing import CliRunner
 
 import petalfoil
 from petalfoil import plot
+from petalfoil.analysis.differentiable import default_paths
+from petalfoil.case.parameters import parameter_of, with_values
 from petalfoil.cli.app import app
 from petalfoil.errors import DefinitionError, UsageError
 from petalfoil.plot.parameter_effects import FARTHEST
@@ -97,6 +99,17 @@ def test_a_parameter_that_cannot_vary_alone_says_why() -> None:
     status = dict(zip(ds["parameter"].values, ds["status"].values, strict=True))
     assert status["gas.viscosity"] == "converged"
     assert "a top foil bends by it" in status["bump_foil.top_foil_thickness"]
+
+
+def test_parameters_of_two_bearings_are_not_varied_in_one() -> None:
+    rotor = {"mass": 1.0, "unbalance": 1e-6}
+    one = SMALL.replace(**{"operation.load": (0.0, -20.0), "rotor": rotor})
+    varied = [path for path in default_paths(one, "balance") if path.startswith("rotor.")]
+    assert varied
+    for path in varied:
+        with_values(one, {path: 0.9 * float(parameter_of(one, path).value or 0.0) + 1e-9})  # none of them is refused
+    two = one.replace(**{"rotor": rotor | {"span": 0.2, "transverse_inertia": 4e-3, "polar_inertia": 6e-4}})
+    assert {"rotor.centre", "rotor.polar_inertia", "rotor.skew"} <= {*default_paths(two, "balance")}
 
 
 def test_a_parameter_that_is_zero_has_an_absolute_change() -> None:
