@@ -27,7 +27,7 @@ from petalfoil.equilibrium.sliding_newton import Iterate, SlidingNewton, Sliding
 from petalfoil.errors import DefinitionError, UsageError
 from petalfoil.results.record import Record
 from petalfoil.system.build import build_problem
-from petalfoil.system.friction import friction_of
+from petalfoil.system.friction import friction_of, slipping
 from tests.cases import case
 
 LOAD = 55.6
@@ -149,7 +149,9 @@ def pack_in_a_medium() -> tuple[SlidingTangent, slice]:
         x = problem.layout.ambient(pack.x)
         equations = SinkingEquations(problem, np.array([0.0, -1.0]), x, Medium(0.5))
         newton = SlidingNewton(equations, friction, pack.friction, problem.layout.wall.contacts.line_numbers, BALANCE)
-        begin = Iterate(x, problem.displacement, pack.lam, pack.friction.force, pack.active, pack.friction.direction)
+        begin = Iterate(
+            x, problem.displacement, pack.lam, pack.friction.force, pack.active, slipping(friction, pack.friction)
+        )
         tangent = newton.tangent_at(begin)
     assert tangent is not None
     return tangent, problem.layout.wall.contacts.journal

@@ -17,7 +17,7 @@ from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import HELD_AT_NODES, ElementEquilibrium, Motion
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
-from petalfoil.system.friction import friction_at_points, friction_of, in_all_directions
+from petalfoil.system.friction import friction_at_points, friction_of
 from petalfoil.system.point_layout import PointLayout
 
 Array = NDArray[np.float64]
@@ -33,7 +33,7 @@ def sliding_at(case: Case, answer: Solution) -> SlidingContacts | None:
     """Contacts at nodes that slide under load, if petals have friction."""
     layout = answer.problem.layout
     friction = friction_of(case, layout)
-    return None if friction is None else SlidingContacts.at(in_all_directions(friction, layout), answer.lam)
+    return None if friction is None else SlidingContacts.at(friction, answer.lam)
 
 
 def elastic(case: Case, answer: Solution) -> Motion:

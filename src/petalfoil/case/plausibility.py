@@ -170,12 +170,6 @@ def _petal_theory(case: Case) -> Iterator[str]:
             "of the paper's bearings 20 to 40 % too thin; without [backing] they stretch; petals.theory = "
             '"inextensible" says that this is meant'
         )
-    tilts = case.operation.tilt is not None or case.operation.moment is not None or case.bearings > 1
-    if rubs and case.petal_theory is PetalTheory.SHELL and is_3d and tilts:
-        yield (
-            "surface.petal_friction: static, runup, orbit and paths under a load rub along the petals only; a journal "
-            "that tilts makes them slip along the shaft about as far: losses of tilting by friction are too small there"
-        )
 
 
 def _unusual(case: Case) -> Iterator[str]:

@@ -21,7 +21,7 @@ from petalfoil.solvers.coulomb import ContactForces
 from petalfoil.solvers.problem import ContactProblem, Linearized, no_border
 from petalfoil.solvers.sparse_lu import LinearSolver, SingularMatrixError
 from petalfoil.solvers.tangent import BorderedTangent, Tangent
-from petalfoil.system.friction import FrictionState, against_slip, energy_lost, slips
+from petalfoil.system.friction import FrictionState, against_slip, energy_lost, slipping, slips
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -41,10 +41,10 @@ CLOSED = -1e-9
 
 def rubbing_of(friction: Friction, n: int) -> RubbingContacts:
     """The gaps that rub, among all `n` unknowns."""
-    share = friction.reaction_share.tocoo()
+    share = friction.reaction_share[: friction.slip.shape[0] // friction.directions].tocoo()
     gap = np.zeros(share.shape[0], dtype=np.intp)
     gap[share.row] = share.col
-    beside_wall = sp.csr_array((share.shape[0], n - friction.slip.shape[1]))
+    beside_wall = sp.csr_array((friction.slip.shape[0], n - friction.slip.shape[1]))
     return RubbingContacts(sp.csr_array(sp.hstack([friction.slip, beside_wall])), gap, friction.coefficient)
 
 
@@ -76,8 +76,8 @@ def slide_exactly(
     change, reactions = tangent.respond(linearized.residual, gaps)
     base = change, reactions, gaps + pack.G @ change
     slip = slips(friction, before.x + change) - before.friction.slip
-    still = np.zeros_like(slip)
-    known = KnownState(before.active, before.friction.direction, gaps, before.lam, before.friction.force, still)
+    slides, still = slipping(friction, before.friction), np.zeros_like(slip)
+    known = KnownState(before.active, slides, gaps, before.lam, before.friction.force, still)
     doubt = beside(before.active, lines) | (base[2] < CLOSED)
     for _ in range(ROUNDS):
         columns = UnitResponses.of(tangent, (pack.G, pack.acting), np.flatnonzero(doubt), rubbing)

@@ -22,7 +22,7 @@ from petalfoil.solvers.contact_space import KnownState, RubbingContacts, Unit, U
 from petalfoil.solvers.coulomb import ContactForces
 from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.solvers.tangent import BorderedTangent, GapRows, Tangent
-from petalfoil.system.friction import FrictionState, against_slip, slips
+from petalfoil.system.friction import FrictionState, against_slip, slipping, slips
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -140,7 +140,7 @@ class SlidingNewton:
         `tangent` of a neighbour serves as long as corrections contract.
         """
         x, b, active, lam = start
-        at = Iterate(x, b, lam, self.before.force, active, self.before.direction)
+        at = Iterate(x, b, lam, self.before.force, active, slipping(self.friction, self.before))
         sliding, last, made = tangent if isinstance(tangent, SlidingTangent) else None, np.inf, 0
         for _ in range(CORRECTIONS):
             if sliding is None or not sliding.has(self.in_question(at)):
@@ -219,11 +219,12 @@ class SlidingNewton:
         """The iterate after part of a correction, with the contact forces that belong to it."""
         columns, found = contacts
         lam, force = np.zeros_like(at.lam), np.zeros_like(at.force)
-        closed, slipping = np.zeros_like(at.closed), np.zeros_like(at.slips)
+        closed, slides = np.zeros_like(at.closed), np.zeros_like(at.slips)
         lam[columns.contacts], closed[columns.contacts] = found.reaction(columns.space), found.states.closed
-        force[columns.rubbing], slipping[columns.rubbing] = found.friction, found.states.slips
+        force[columns.rubbing] = found.friction
+        slides[columns.rubbing] = np.tile(found.states.slips, self.friction.directions)
         x, b = at.x + length * correction.x, at.b + length * correction.b
-        return Iterate(x, b, lam, force, closed, slipping)
+        return Iterate(x, b, lam, force, closed, slides)
 
     def state(self, at: Iterate, sliding: SlidingTangent) -> tuple[ContactState, FrictionState]:
         """An iterate with its residual, and its slips and friction forces."""

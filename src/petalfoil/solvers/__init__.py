@@ -14,6 +14,7 @@
 `contact_search.py`       the active contacts of the linearised equations, found at once
 `lcp.py`                  small dense complementarity problems
 `coulomb.py`              contact with Coulomb friction as a small dense problem
+`coulomb_disk.py`         the same where contacts slip in a plane
 `contact_space.py`        linearised equations as seen by the contacts of that
 `eigenvalues.py`          rightmost eigenvalue of a singular pencil
 `reduced_model.py`        a large linear system with few inputs as a small one

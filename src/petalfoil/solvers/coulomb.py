@@ -8,6 +8,9 @@ For gaps `g`, reactions `lam`, slips `sigma` since the step began and friction f
 Every state of the contacts (open; closed and sticking, slipping forward or backward) makes (M6) linear. States of wrong
 sign change all at once. Where that returns to former ones, the constants are led from those that the known forces solve
 to those that are asked for, and contacts change their state one after another where they must (Katzenelson 1965).
+
+Contacts that slip in a plane have a second force across the first one, with a linear law of its own (M12): it serves
+the law of a disk (`solvers/coulomb_disk.py`).
 """
 
 from __future__ import annotations
@@ -50,6 +53,9 @@ class ContactSpace:
         Contact that limits each friction force.
     coefficient : float
         `mu`.
+    across : pair of (f,) arrays, or of empty ones
+        `(a, b)` of the slip and the force across, of contacts that slip in a plane: `a sigma = b T` while closed. Slips
+        and friction forces are then those along of all contacts, followed by those across: `f` more of each.
     """
 
     held: Mask
@@ -57,6 +63,12 @@ class ContactSpace:
     slip: Array
     rubs: Index
     coefficient: float
+    across: tuple[Array, Array] = (np.zeros(0), np.zeros(0))
+
+    @property
+    def planar(self) -> bool:
+        """Whether contacts slip in a plane."""
+        return len(self.across[0]) > 0
 
 
 @dataclass(frozen=True)
@@ -82,7 +94,10 @@ class States:
 
 @dataclass(frozen=True)
 class ContactForces:
-    """A solution of (M6): unknowns and answers of the contacts (m,), friction forces and slips (f,), states."""
+    """A solution of (M6): unknowns and answers of the contacts (m,), friction forces and slips (f,), states.
+
+    In a plane forces and slips along come first, then those across, (2 f,).
+    """
 
     unknown: Array
     answer: Array
@@ -105,7 +120,7 @@ class KnownForces:
         Those of its contacts.
     gap, reaction : (m,) array
         One of them is zero.
-    friction, slip : (f,) array
+    friction, slip : (f,) array, (2 f,) in a plane
         Within the limits, and against each other.
     """
 
@@ -120,15 +135,22 @@ class KnownForces:
         cls, space: ContactSpace, states: States, normal: tuple[Array, Array], tangential: tuple[Array, Array]
     ) -> KnownForces:
         """From gaps and reactions (m,), friction forces and slips (f,): what contradicts the states is left out."""
-        (gap, reaction), (friction, slip) = normal, tangential
+        (gap, reaction), f = normal, len(space.rubs)
         closed, touching = states.closed, states.closed[space.rubs]
+        (friction, across), (slip, moved_across) = (np.split(part, [f]) for part in tangential)
         pushing = np.where(closed, np.maximum(reaction, 0.0), 0.0)
         limit = space.coefficient * pushing[space.rubs]
         slides = states.slips != 0
         force = np.where(slides, states.slips * limit, np.clip(friction, -limit, limit))
         moved = np.where(touching, np.where(slides, states.slips * np.abs(slip), 0.0), slip)
+        force = np.where(touching, force, 0.0)
+        if space.planar:
+            a, b = space.across
+            along_law = (a * across + b * moved_across) / (a * a + b * b)
+            force = np.concatenate([force, np.where(touching, a * along_law, 0.0)])
+            moved = np.concatenate([moved, np.where(touching, b * along_law, moved_across)])
         states = States(closed, np.where(touching, states.slips, 0))
-        return cls(states, np.where(closed, 0.0, np.maximum(gap, 0.0)), pushing, np.where(touching, force, 0.0), moved)
+        return cls(states, np.where(closed, 0.0, np.maximum(gap, 0.0)), pushing, force, moved)
 
 
 def contact_forces(space: ContactSpace, constant: tuple[Array, Array], known: KnownForces) -> ContactForces | None:
@@ -181,13 +203,13 @@ def margins(space: ContactSpace, found: ContactForces) -> Array:
 
     Infinite where a contact is in no such state.
     """
-    closed, slips = found.states.closed, found.states.slips
+    closed, slips, f = found.states.closed, found.states.slips, len(space.rubs)
     reaction = np.where(space.held, found.answer, found.unknown)
     gap = np.where(space.held, found.unknown, found.answer)
     limit, touching = space.coefficient * reaction[space.rubs], closed[space.rubs]
     sticks = touching & (slips == 0)
-    upper, lower = (np.where(sticks, limit - sign * found.friction, np.inf) for sign in (1.0, -1.0))
-    slid = np.where(touching & (slips != 0), slips * found.slip, np.inf)
+    upper, lower = (np.where(sticks, limit - sign * found.friction[:f], np.inf) for sign in (1.0, -1.0))
+    slid = np.where(touching & (slips != 0), slips * found.slip[:f], np.inf)
     return np.concatenate([np.where(closed, reaction, gap), upper, lower, slid])
 
 
@@ -198,7 +220,7 @@ def changed(space: ContactSpace, states: States, margin: int, slip: Array) -> tu
     if margin < m:
         closed[margin] = not closed[margin]
         own = space.rubs == margin  # a contact that closes has slipped since the step began
-        slips[own] = np.where(closed[margin], np.sign(slip[own]), 0.0)
+        slips[own] = np.where(closed[margin], np.sign(slip[:f][own]), 0.0)
         return States(closed, slips), margin
     kind, place = divmod(margin - m, f)
     if kind < SLIP:
@@ -241,21 +263,24 @@ def of_each(space: ContactSpace, constants: list[tuple[Array, Array]], states: S
     """The same for several constants at once."""
     m, f = len(space.held), len(space.rubs)
     moves = space.held != states.closed  # an opening of what was held, or a reaction of what was open
-    touching = states.closed[space.rubs]
+    touching, n = states.closed[space.rubs], space.answer.shape[1]
     sticks, slides = touching & (states.slips == 0), touching & (states.slips != 0)
     at = space.rubs[slides]
     # reactions in terms of all unknowns: an answer of a held contact, an unknown of an open one
-    by_unknowns = np.where(space.held[at, None], space.answer[at], np.eye(m, m + f)[at])
+    by_unknowns = np.where(space.held[at, None], space.answer[at], np.eye(m, n)[at])
     grip = space.coefficient * states.slips[slides]
+    across, slips_by, over = law_across(space, touching)
     rows = np.vstack(
-        [space.answer[moves], space.slip[sticks], np.eye(f, m + f, m)[slides] - grip[:, None] * by_unknowns]
+        [space.answer[moves], space.slip[:f][sticks], np.eye(f, n, m)[slides] - grip[:, None] * by_unknowns, across]
     )
     right = [
-        -np.concatenate([answer[moves], slip[sticks], -grip * np.where(space.held, answer, 0.0)[at]])
+        -np.concatenate(
+            [answer[moves], slip[:f][sticks], -grip * np.where(space.held, answer, 0.0)[at], slips_by * slip[f:][over]]
+        )
         for answer, slip in constants
     ]
-    free = np.concatenate([moves, touching])
-    z = np.zeros((m + f, len(constants)))
+    free = np.concatenate([moves, touching, over])
+    z = np.zeros((n, len(constants)))
     try:
         z[free] = np.linalg.solve(rows[:, free], np.column_stack(right))
     except np.linalg.LinAlgError:
@@ -267,6 +292,14 @@ def of_each(space: ContactSpace, constants: list[tuple[Array, Array]], states: S
     ]
 
 
+def law_across(space: ContactSpace, touching: Mask) -> tuple[Array, Array, Mask]:
+    """Rows of `a sigma - b T = 0` by all unknowns, `a` of each, and which contacts have them: none but in a plane."""
+    m, f, n = len(space.held), len(space.rubs), space.answer.shape[1]
+    over = touching if space.planar else np.zeros(0, dtype=bool)
+    a, b = (part[over] for part in space.across)
+    return a[:, None] * space.slip[f:][over] - b[:, None] * np.eye(n - m - f, n, m + f)[over], a, over
+
+
 def wrong(space: ContactSpace, found: ContactForces) -> tuple[Mask, Index]:
     """Contacts in a wrong state (m,), and the directions of slip that the friction forces ask for (f,)."""
     closed, slips = found.states.closed, found.states.slips
@@ -275,9 +308,10 @@ def wrong(space: ContactSpace, found: ContactForces) -> tuple[Mask, Index]:
     push, far = np.max(np.abs(reaction), initial=0.0), np.max(np.abs(gap[~closed]), initial=0.0)
     moved = np.max(np.abs(found.slip), initial=0.0)
     bad = np.where(closed, reaction < -ROUNDING * push, gap < -ROUNDING * max(far, 1.0))
+    friction, slip = (part[: len(space.rubs)] for part in (found.friction, found.slip))
     limit = space.coefficient * np.maximum(reaction, 0.0)[space.rubs]
-    over = np.where(np.abs(found.friction) > limit + ROUNDING * push, np.sign(found.friction), 0.0)
-    back = slips * found.slip < -ROUNDING * max(moved, 1.0)
+    over = np.where(np.abs(friction) > limit + ROUNDING * push, np.sign(friction), 0.0)
+    back = slips * slip < -ROUNDING * max(moved, 1.0)
     wanted = np.where(slips == 0, over, np.where(back, 0, slips))
     touching = closed[space.rubs]
     return bad, np.where(touching, wanted, 0).astype(np.intp)

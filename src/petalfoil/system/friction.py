@@ -38,17 +38,21 @@ class FrictionState:
     force: Array
     limit: Array
 
-    @property
-    def direction(self) -> NDArray[np.intp]:
-        """Direction of slip, 0 where a contact sticks or is open, (k,)."""
-        slides = (self.limit > 0.0) & (np.abs(self.force) >= (1.0 - SLIDES) * self.limit)
-        return np.where(slides, np.sign(self.force), 0.0).astype(np.intp)
-
     @classmethod
     def fresh(cls, friction: Friction, x: Array, lam: Array) -> FrictionState:
         """No force yet, wherever the petals are."""
         slip = slips(friction, x)
         return cls(slip, np.zeros(len(slip)), friction.coefficient * friction.normal(lam))
+
+
+def slipping(friction: Friction, state: FrictionState) -> NDArray[np.intp]:
+    """Direction of slip, 0 where a contact sticks or is open, (k,).
+
+    Of contacts that slip in two directions 1 where they slip, once for each direction.
+    """
+    slides = (state.limit > 0.0) & (friction.magnitude(state.force) >= (1.0 - SLIDES) * state.limit)
+    sign = np.sign(state.force) if friction.directions == 1 else 1.0
+    return np.where(slides, sign, 0.0).astype(np.intp)
 
 
 def slips(friction: Friction, x: NDArray[Any]) -> NDArray[Any]:
@@ -74,7 +78,8 @@ def friction_tangent(friction: Friction, stiffness: NDArray[Any], n: int) -> sp.
 def energy_lost(friction: Friction, before: FrictionState, after: FrictionState) -> float:
     """Energy lost in a step: the mean of the limits times what has slipped and does not spring back (D3)."""
     if friction.exact:
-        return float(0.5 * (before.limit + after.limit) @ np.abs(after.slip - before.slip))
+        limits = 0.5 * (before.limit + after.limit) / friction.directions  # each has the size of the whole slip
+        return float(limits @ friction.magnitude(after.slip - before.slip))
     sticks = friction.stiffness > 0.0  # none in the step that a contact closes in
     sprung = np.divide(after.force - before.force, friction.stiffness, out=np.zeros_like(after.force), where=sticks)
     for_good = np.where(sticks, np.abs(after.slip - before.slip - sprung), 0.0)
@@ -187,23 +192,20 @@ class FrictionLinearization:
 
 
 def friction_of(case: Case, layout: BearingLayout) -> Friction | None:
-    """Friction between the petals of `case` in the units of the problem; None without any."""
+    """Friction between the petals of `case` in the units of the problem, along the shaft too where petals move there.
+
+    None without any.
+    """
     surface, wall = case.surface, layout.wall
     if not surface.petal_friction or not wall.slip.shape[0]:
         return None
     width, none = surface.friction_width / layout.scales.length, np.zeros(wall.slip.shape[0])
     exact = case.petal_theory is PetalTheory.SHELL
-    return Friction(surface.petal_friction, none, wall.slip, wall.reaction_share, width, exact=exact)
-
-
-def in_all_directions(friction: Friction, layout: BearingLayout) -> Friction:
-    """The same on slip along the shaft too, where petals have it."""
-    across = layout.wall.axial_slip
-    if across is None:
-        return friction
-    share = sp.csr_array(sp.vstack([friction.reaction_share] * 2))
-    slip = sp.csr_array(sp.vstack([friction.slip, across]))
-    return replace(friction, slip=slip, reaction_share=share, stiffness=np.zeros(slip.shape[0]), directions=2)
+    along = Friction(surface.petal_friction, none, wall.slip, wall.reaction_share, width, exact=exact)
+    if wall.axial_slip is None:
+        return along
+    slip, share = (sp.csr_array(sp.vstack(pair)) for pair in ((wall.slip, wall.axial_slip), [wall.reaction_share] * 2))
+    return replace(along, slip=slip, reaction_share=share, stiffness=np.zeros(slip.shape[0]), directions=2)
 
 
 def friction_at_points(friction: Friction, whole: PointLayout, points: ContactPoints) -> Friction:

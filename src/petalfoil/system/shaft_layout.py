@@ -149,18 +149,20 @@ def friction_on_shaft(layout: ShaftLayout) -> Friction | None:
     if not rubbing:
         return None
     first = rubbing[0][1]
-    if any((one.width, one.exact) != (first.width, first.exact) for _, one in rubbing):
+    if any(
+        (one.width, one.exact, one.directions) != (first.width, first.exact, first.directions) for _, one in rubbing
+    ):
         raise UsageError(
             "petals of both bearings rub by different laws: give them the same petals.theory and surface.friction_width"
         )
-    ends, walls = np.cumsum([0, *(one.slip.shape[0] for _, one in rubbing)]), layout.unknowns.sizes[DEFLECTION]
+    places = apart([[one.slip.shape[0] // one.directions] * one.directions for _, one in rubbing])
     slips, shares = [], []
-    for (k, one), start in zip(rubbing, ends, strict=False):
+    for (k, one), rows in zip(rubbing, places, strict=True):
         slip, share = one.slip.tocoo(), one.reaction_share.tocoo()
-        slips.append((slip.data, slip.row + start, layout.numbers[k][slip.col]))
+        slips.append((slip.data, rows[slip.row], layout.numbers[k][slip.col]))
         weight = one.coefficient / first.coefficient  # limits are the first coefficient times the normal force
-        shares.append((weight * share.data, share.row + start, layout.gap_numbers[k][share.col]))
-    count, gaps = int(ends[-1]), len(layout.weight)
+        shares.append((weight * share.data, rows[share.row], layout.gap_numbers[k][share.col]))
+    count, gaps, walls = sum(map(len, places)), len(layout.weight), layout.unknowns.sizes[DEFLECTION]
     slip, share = (
         sp.coo_array((np.concatenate(data), (np.concatenate(rows), np.concatenate(cols))), shape=shape).tocsr()
         for (data, rows, cols), shape in (
