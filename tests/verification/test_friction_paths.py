@@ -19,6 +19,7 @@ from petalfoil.analysis.runup import runup
 from petalfoil.analysis.sensitivity import sensitivity
 from petalfoil.analysis.stability import stability
 from petalfoil.case import Case, Rotor
+from petalfoil.equilibrium.coulomb_path import rubbing_of
 from petalfoil.equilibrium.friction_history import assembled
 from petalfoil.equilibrium.friction_under_load import BALANCE, PATH, LoadedPath
 from petalfoil.equilibrium.run_context import running
@@ -181,3 +182,19 @@ def test_what_has_no_path_is_refused() -> None:
         sensitivity(rig(**assembled), "gas.viscosity", ask="balance", load=(0.0, -LOAD))
     with pytest.raises(UsageError, match="largest load is that of a pack without friction forces"):
         capacity(rig(**assembled), min_film_thickness=2e-6)
+
+
+@pytest.mark.slow
+def test_where_nothing_touches_the_tangent_has_no_columns_of_contacts() -> None:
+    """A run-up ended there in an internal error. The bordered unknowns answer as beside contacts."""
+    beside, _ = pack_in_a_medium()
+    problem = build_problem(rig(**{"operation.eccentricity": (0.0, 0.0), "operation.speed": 0.0}))
+    friction = friction_of(rig(), problem.layout)
+    assert friction is not None
+    rubs = (problem.G, problem.acting), rubbing_of(friction, problem.layout.n)
+    none = SlidingTangent.about(beside, beside.stiffness + beside.gradient, np.zeros(0, dtype=np.intp), rubs)
+    assert none.moved.shape == (2, 0)
+    assert none.columns.change.shape == (problem.layout.n, 0)
+    assert_allclose(none.stiffness, beside.stiffness)
+    assert_allclose(none.pushed, beside.pushed)
+    assert none.has(np.zeros(len(problem.weight), dtype=bool))

@@ -87,7 +87,8 @@ class SlidingTangent(BorderedTangent):
 
         columns = UnitResponses.of(plain, rubs[0], contacts, rubs[1], answered)
         own = {field.name: getattr(plain, field.name) for field in fields(BorderedTangent)}
-        return cls(**own, columns=columns, moved=np.column_stack(moves), pushed=pushed, stiffness=stiffness)
+        moved = np.reshape(moves, (len(moves), border.size)).T  # no columns where nothing touches
+        return cls(**own, columns=columns, moved=moved, pushed=pushed, stiffness=stiffness)
 
     def has(self, contacts: Mask) -> bool:
         """Whether `contacts` (m,) are among those in question."""
