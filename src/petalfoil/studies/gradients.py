@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
 from petalfoil.analysis.known_verbs import summaries
+from petalfoil.case import Case, ContactDiscretization
 from petalfoil.studies.plan import Point
 from petalfoil.studies.question import CaseOutcome, Question
 from petalfoil.studies.search import Gradients, Slopes
@@ -25,11 +26,15 @@ SHARED = ("load", "eccentricity", "speed", "contact_fraction", "min_film_thickne
 """Arguments that it shares with them; a question with others has no derivatives."""
 
 
-def derivative_question(question: Question, paths: Sequence[str], names: Sequence[str]) -> Question | None:
+def derivative_question(case: Case, question: Question, paths: Sequence[str], names: Sequence[str]) -> Question | None:
     """What to ask for the derivatives of results of a question by parameters; None where there are none.
+
+    Contacts are where the case has them: at nodes derivatives are those of its own discrete equations.
 
     Parameters
     ----------
+    case : Case
+        The bearing of the study.
     question : Question
         The question.
     paths, names : sequence of str
@@ -45,13 +50,15 @@ def derivative_question(question: Question, paths: Sequence[str], names: Sequenc
         if len(load) != 1:
             return None
         arguments["load"] = load[0]
+    if case.model.contacts is ContactDiscretization.NODES:
+        arguments["contacts"] = ContactDiscretization.NODES.value
     return Question(VERB, {**arguments, "ask": question.verb, "vary": list(paths), "of": list(names)})
 
 
 def gradients_of(study: Study, ask: Ask) -> Gradients:
     """Derivatives of the results that a study is about, by what varies; None where the analysis has none."""
     names, paths = _names(study), list(study.vary)
-    question = derivative_question(study.question, paths, names)
+    question = derivative_question(study.case, study.question, paths, names)
     if question is None:
         return lambda point: None
 

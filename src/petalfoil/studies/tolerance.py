@@ -132,7 +132,7 @@ def slopes_asked(study: Study) -> Question | None:
     """The question for the derivatives of all results by what scatters; None where the analysis has none."""
     names = [ResultLimit.read(text).name for text in study.settings["limits"]]
     paths = [scatter.path for scatter in scatters_of(study)]
-    return derivative_question(study.question, paths, [ALL, *(name for name in names if name in GROWTH)])
+    return derivative_question(study.case, study.question, paths, [ALL, *(name for name in names if name in GROWTH)])
 
 
 def conduct(study: Study, runner: Runner) -> None:

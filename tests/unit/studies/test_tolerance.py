@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from petalfoil.analysis.sensitivity import sensitivity
 from petalfoil.case import Case
 from petalfoil.errors import UnitError, UsageError
 from petalfoil.studies.gradients import derivative_question
@@ -184,8 +185,31 @@ def test_an_analysis_without_derivatives_has_its_first_order_by_differences(monk
 
 
 def test_arguments_without_a_derivative_are_not_asked_for_one() -> None:
-    assert derivative_question(Question("balance", {"moment": [0.0, 0.1]}), ["gas.viscosity"], ["all"]) is None
-    assert derivative_question(Question("liftoff", {"loads": [1.0, 2.0]}), ["gas.viscosity"], ["all"]) is None
-    asked = derivative_question(Question("liftoff", {"loads": [20.0]}), ["gas.viscosity"], ["all"])
+    bearing, by = case("paper_n8"), ["gas.viscosity"]
+    assert derivative_question(bearing, Question("balance", {"moment": [0.0, 0.1]}), by, ["all"]) is None
+    assert derivative_question(bearing, Question("liftoff", {"loads": [1.0, 2.0]}), by, ["all"]) is None
+    asked = derivative_question(bearing, Question("liftoff", {"loads": [20.0]}), by, ["all"])
     assert asked is not None
     assert asked.arguments == {"load": 20.0, "ask": "liftoff", "vary": ["gas.viscosity"], "of": ["all"]}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("contacts", ["nodes", "points"])
+def test_derivatives_are_those_of_the_contacts_of_the_case(contacts: str) -> None:
+    """Those of `sensitivity` with the same contacts, which differ by more than a hundredth from each other."""
+    bearing = case("paper_n8", **{"model.cells_per_pitch": 16, "model.contacts": contacts})
+    told = first_order({"petals.thickness": "normal 0.1 %"}, "balance", bearing, load=40.0)
+    effect = told["results"]["min_film_thickness"]["effects"]["petals.thickness"]
+    assert bearing.petals is not None
+    slope = {
+        place: float(
+            sensitivity.record(
+                bearing, ["petals.thickness"], ask="balance", of=["min_film_thickness"], load=40.0, contacts=place
+            ).scalars["derivative_above"]
+        )
+        * 1e-3
+        * float(bearing.petals.thickness)
+        for place in ("nodes", "points")
+    }
+    assert abs(slope["nodes"] - slope["points"]) > 1e-2 * abs(slope["points"])
+    assert effect == pytest.approx(slope[contacts], rel=1e-6)
