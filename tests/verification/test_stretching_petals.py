@@ -12,6 +12,7 @@ import scipy.sparse as sp
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
+from petalfoil.analysis.balance import balance
 from petalfoil.analysis.sensitivity import sensitivity
 from petalfoil.analysis.solve import solve
 from petalfoil.analysis.static import static
@@ -225,3 +226,16 @@ def test_derivatives_know_what_stretches() -> None:
     more, less = (solve(at_nodes.replace(**{"petals.poisson_ratio": 0.3 + way})) for way in (step, -step))
     by_differences = (more.force_y.item() - less.force_y.item()) / (2.0 * step)
     assert told.derivative.item() == pytest.approx(by_differences, rel=1e-5)
+
+
+@pytest.mark.long
+def test_contact_at_the_sides_is_that_of_a_finer_grid() -> None:
+    """The rig touches in a band of 1.6 mm beside its sides: 24 stations have to be where it is."""
+    at_work = {"model.kind": "3d", "operation.speed": "8800 rpm"}
+    rig = case("rig", **at_work, **{"model.cells_per_pitch": 64, "model.axial_cells": 24})
+    finer = rig.replace(**{"model.cells_per_pitch": 96, "model.axial_cells": 36})
+    default, fine = (balance(bearing, load="46.4 N") for bearing in (rig, finer))
+    assert float(default.contact_fraction) == pytest.approx(float(fine.contact_fraction), rel=0.02)
+    assert float(default.friction_torque) == pytest.approx(float(fine.friction_torque), rel=0.01)
+    equal = balance(rig.replace(**{"model.axial_density": "uniform"}), load="46.4 N")
+    assert float(equal.contact_fraction) != pytest.approx(float(fine.contact_fraction), rel=0.05)
