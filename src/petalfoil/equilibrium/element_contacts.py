@@ -132,7 +132,7 @@ def clear_of_journal(found: Found) -> Found:
         One does.
     """
     floor = found.pack.floor / found.equations.problem.layout.scales.length
-    deep = float(np.max(floor - found.equations.film_thickness))
+    deep = float(np.max(floor - found.equations.film_thickness.ravel()))
     if deep > DEEPEST:
         raise NoPointsError(f"a petal lies in the journal by {deep:.2g} of the reference film")
     return found
