@@ -14,14 +14,20 @@ from petalfoil.analysis.coefficients import coefficients
 from petalfoil.analysis.impedance import elastic, elastic_and_sliding, impedance
 from petalfoil.analysis.operating_point import operating_point
 from petalfoil.equilibrium.asperity_contacts import AsperityContacts, with_asperities
-from petalfoil.equilibrium.element_contacts import near_nodes, start_at
+from petalfoil.equilibrium.continuation import advance
+from petalfoil.equilibrium.element_contacts import near_nodes, start_at, with_elements
 from petalfoil.equilibrium.element_response import ElementMotion
 from petalfoil.equilibrium.element_tangent import NoPointsError
-from petalfoil.equilibrium.point_contacts import PointContacts, followed, with_points
+from petalfoil.equilibrium.followed_points import evenly_divided, followed
+from petalfoil.equilibrium.led_points import led, with_nodal_contacts
+from petalfoil.equilibrium.point_contacts import PointContacts, with_points
 from petalfoil.equilibrium.run_context import running
 from petalfoil.equilibrium.small_motion import AT_ASPERITIES, AT_POINTS, ON_LINES
 from petalfoil.equilibrium.solution import Solution
+from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.system.asperity_equations import AsperityEquations
+from petalfoil.system.build import build_problem
+from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.point_equations import PointEquations, PointState
 from tests.cases import case
 from tests.contract.taylor import assert_tangent
@@ -63,6 +69,70 @@ def test_points_followed_to_another_speed_are_those_found_there() -> None:
     assert np.linalg.norm(there.equations.problem.displacement - found.equations.problem.displacement) > 1e-3
     with running(), pytest.raises(NoPointsError):
         followed(found, faster, 40.0 * load)
+
+
+def beside(answer: Solution, down: float) -> CoupledProblem:
+    """The problem of an answer with the journal further down [m]."""
+    problem = answer.problem
+    return problem.at(displacement=problem.displacement - np.array([0.0, down / problem.layout.scales.length]))
+
+
+@pytest.mark.parametrize("name", ["paper_n6", "paper_n8", "paper_n10"])
+def test_points_led_to_the_next_position_are_those_found_from_nodes(name: str) -> None:
+    """With the same stretches; two factorisations at most, and contacts at nodes are found beside them where asked."""
+    bearing = case(name, **{"model.cells_per_pitch": 32, "operation.eccentricity": (0.0, -140e-6)})
+    with running():
+        start = with_elements(operating_point(bearing, None).answer)
+    there = beside(start, 20e-6)
+    with running() as run:
+        ahead = led(start, there)
+    assert ahead is not None
+    assert run.film.factorizations <= 2
+    with running():
+        nodal, jump = advance(start, there)
+        anew, again = with_elements(nodal), with_nodal_contacts(ahead)
+    assert not jump
+    assert isinstance(ahead.elements, PointContacts)
+    assert isinstance(anew.elements, PointContacts)
+    assert_allclose(ahead.elements.equations.force, anew.elements.equations.force, rtol=1e-9, atol=1e-7)
+    assert_allclose(ahead.elements.points.inner, anew.elements.points.inner)
+    assert_allclose(ahead.elements.equations.state.P, anew.elements.equations.state.P, rtol=1e-8)
+    assert again.contacts is not None
+    assert again.elements is ahead.elements
+    assert_allclose(again.x, nodal.x, rtol=1e-8, atol=1e-8)
+
+
+def test_points_do_not_lead_across_a_jump() -> None:
+    """What is much farther than the tangent foretold is refused; a bearing of another grid leads nowhere."""
+    found, load = contacts_of("turbocharger"), answer_of("turbocharger").load
+    assert load is not None
+    none_foretold = replace(found, tangent=replace(found.tangent, factor=Nothing())) if found.tangent else found
+    with running(), pytest.raises(NoPointsError, match="foretold"):
+        followed(none_foretold, beside(answer_of("turbocharger"), 1e-6), None)
+    other = build_problem(case("paper_n8", **{"model.cells_per_pitch": 32}))
+    with running():
+        assert led(answer_of("turbocharger"), other) is None
+
+
+class Nothing:
+    """A factor whose solutions vanish."""
+
+    def solve(self, rhs: Array) -> Array:
+        """No change."""
+        return np.zeros_like(rhs)
+
+    solve_transposed = solve
+
+
+def test_a_stretch_that_grows_is_divided_anew() -> None:
+    """By a point in each element; the sum of its reactions stays, and an isolated point is none."""
+    points = ContactPoints(
+        np.array([0, 0, 1]), np.array([2.0, 7.2, 3.0]), np.array([2, 0, 0]), np.array([5.0, 1.0, 3.0, 6.0, 7.0])
+    )
+    divided = evenly_divided(points)
+    assert divided.inner.tolist() == [4, 0, 0]
+    assert divided.reaction.tolist() == [5.0, 1.0, 1.0, 1.0, 1.0, 6.0, 7.0]
+    assert evenly_divided(divided).reaction.tolist() == divided.reaction.tolist()
 
 
 def shifted(equations: PointEquations, step: Array) -> PointEquations:

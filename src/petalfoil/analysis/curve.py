@@ -27,6 +27,7 @@ from petalfoil.analysis.session import part
 from petalfoil.case import Case
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.equilibrium.continuation import advance
+from petalfoil.equilibrium.led_points import led, with_nodal_contacts
 from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
@@ -120,7 +121,11 @@ def point_after(case: Case, problem: CoupledProblem, before: Solution | None) ->
     if before is None or is_classic(case):
         found = relaxed(case, problem, before) if is_classic(case) else with_reported(case, at_position(case))
         return replace(found, branch=replace(found.branch, jump=False))
-    answer, jump = advance(before, problem.at(temperatures=before.problem.temperatures))
-    answer = reported(case, with_heat(case, answer), before)
+    here = before.problem.at(displacement=problem.displacement)
+    answer, jump = led(before, here), False
+    if answer is None:
+        before = with_nodal_contacts(before)
+        answer, jump = advance(before, here)
+        answer = reported(case, with_heat(case, answer), before)
     rate = leading_eigenvalue(answer)
     return OperatingPoint(answer, branch(rate, case, 2 if jump else None, answer.solution_path, jump))

@@ -21,9 +21,10 @@ from petalfoil.case import Case
 from petalfoil.equilibrium.at_limit import LoadedState, LoadLimit, followed_to
 from petalfoil.equilibrium.element_contacts import clear_of_journal
 from petalfoil.equilibrium.element_tangent import NoPointsError
+from petalfoil.equilibrium.followed_points import followed
 from petalfoil.equilibrium.largest_load import LoadBranch
 from petalfoil.equilibrium.nodal_state import sampled_solution
-from petalfoil.equilibrium.point_contacts import PointContacts, followed
+from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import ElementEquilibrium
 from petalfoil.equilibrium.solution import Solution

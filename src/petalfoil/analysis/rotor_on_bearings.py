@@ -25,7 +25,8 @@ from petalfoil.dynamics.rubbing_modes import NeutralWhirls, RubbingRotor
 from petalfoil.dynamics.rubbing_whirl import RubbingWhirl
 from petalfoil.equilibrium.element_response import ElementMotion
 from petalfoil.equilibrium.element_tangent import NoPointsError
-from petalfoil.equilibrium.point_contacts import PointContacts, followed
+from petalfoil.equilibrium.followed_points import followed
+from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import JournalMotion
 from petalfoil.equilibrium.solution import Solution

@@ -16,6 +16,7 @@ from petalfoil.analysis.resume import is_same
 from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.case import Case
 from petalfoil.equilibrium.friction_under_load import LoadedPath
+from petalfoil.equilibrium.led_points import led, with_nodal_contacts
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold, rebalance
@@ -100,6 +101,12 @@ class SpeedLine:
         if self.path is not None:
             return self._with_friction(self.path, problem)
         warm, before = self.temperatures, self.known
+        led_here = None if before is None or not self.seeks else led(before, problem, load)
+        if led_here is not None:
+            self.known = led_here
+            return led_here
+        if before is not None:
+            self.known = before = with_nodal_contacts(before)
         if warm is None and after is not None:
             warm = network_in_time(self.case).start
         if self.known is None:

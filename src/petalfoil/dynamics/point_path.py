@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.dynamics.time_state import Instant, TimeState
-from petalfoil.equilibrium.contact_sets import from_active_nodes, merged
+from petalfoil.equilibrium.contact_runs import from_active_nodes
+from petalfoil.equilibrium.contact_sets import merged
 from petalfoil.equilibrium.nodal_state import sampled_deflection, shared_reactions, with_motion_along
 from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.system.point_equations import PointEquations, PointState

@@ -23,9 +23,12 @@
 `small_motion.py`          what is asked of the response to a small motion of the journal
 `linear_response.py`       that response, contacts at nodes
 `travelling_contacts.py`   contacts of that response that move between nodes
-`contact_sets.py`          contact points and stretches: from active nodes, and corrected by signs
+`contact_runs.py`          contact points and stretches from runs of active nodes
+`contact_sets.py`          the same corrected by the signs of reactions and gaps
 `element_tangent.py`       a step of Newton's method for petals with continuous slopes, under a load or not
 `point_contacts.py`        equilibria with contact points as unknowns
+`followed_points.py`       these followed to a neighbouring position, speed or load
+`led_points.py`            from solution to solution so, contacts at nodes left out
 `asperity_contacts.py`     equilibria with contact pressures over low asperities
 `at_limit.py`              the load at which a result reaches its limit, followed with these contacts
 `largest_load.py`          the largest load of a branch, there or where the branch turns back

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.cold_start import finish
-from petalfoil.equilibrium.contact_sets import runs
+from petalfoil.equilibrium.contact_runs import runs
 from petalfoil.equilibrium.pack_at_rest import central_point, with_ambient
 from petalfoil.equilibrium.run_context import current_run, running
 from petalfoil.equilibrium.solution import Solution

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.asperity_contacts import with_asperities
-from petalfoil.equilibrium.contact_sets import from_active_nodes
+from petalfoil.equilibrium.contact_runs import from_active_nodes
 from petalfoil.equilibrium.element_tangent import NoPointsError
-from petalfoil.equilibrium.point_contacts import with_points
+from petalfoil.equilibrium.followed_points import followed
+from petalfoil.equilibrium.point_contacts import PointContacts, with_points
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import AT_ASPERITIES, AT_POINTS, ElementEquilibrium
 from petalfoil.equilibrium.solution import Solution
@@ -69,7 +70,7 @@ def near_nodes(solution: Solution, known: Solution | None = None) -> ElementEqui
         return None
     for phase, found in ways(whole, solution, None if known is None else known.elements):
         try:
-            return agreeing(found(), solution)
+            return agreeing(tightened(found(), load=solution.load), solution)
         except NoPointsError as failure:
             current_run().note(phase, outcome=str(failure))
     return None
@@ -104,6 +105,20 @@ def start_at(whole: PointLayout, solution: Solution) -> PointState:
     touching = solution.active | (solution.problem.gaps(solution.x) < TOUCHING)
     points = from_active_nodes(whole, solution.lam, touching)
     return PointState(whole.pack.from_nodes(solution.deflection), solution.x[solution.problem.positive], points)
+
+
+def tightened(found: ElementEquilibrium, load: Array | None) -> ElementEquilibrium:
+    """The same equilibrium with contacts wherever gaps are below zero by more than points that are followed allow.
+
+    So it does not depend on the way that led there. Where contacts do not settle so closely, it stays as it is.
+    """
+    if not isinstance(found, PointContacts):
+        return found
+    try:
+        return followed(found, found.equations.problem, load)
+    except NoPointsError as failure:
+        current_run().note("contact points", outcome=f"kept with contacts 2 nm deep: {failure}")
+        return found
 
 
 def agreeing(found: ElementEquilibrium, solution: Solution) -> ElementEquilibrium:

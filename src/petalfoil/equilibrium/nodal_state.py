@@ -94,10 +94,11 @@ FOLLOWED = "followed from a neighbour with contact points"
 """How a solution was reached whose state at the nodes is only sampled."""
 
 
-def sampled_solution(found: ElementEquilibrium, load: Array) -> Solution:
-    """The solution of an equilibrium with contact points under a load, no equilibrium with contacts at nodes beside it.
+def sampled_solution(found: ElementEquilibrium, load: Array | None) -> Solution:
+    """The solution of an equilibrium with contact points, no equilibrium with contacts at nodes beside it.
 
-    The state at its nodes is that of its elements: a start for others.
+    `load` (n_position,) is what it carries, if anything. The state at its nodes is that of its elements: a start for
+    others.
     """
     problem, state = found.equations.problem, NodalState.of_elements(found)
     x = np.zeros(problem.layout.n)

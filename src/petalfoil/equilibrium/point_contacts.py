@@ -1,6 +1,6 @@
 """Equilibria with contact points that travel: from an equilibrium with contacts at nodes, by Newton's method.
 
-Runs of active nodes become points or stretches (`contact_sets.py`). Newton's method on deflections, pressures,
+Runs of active nodes become points or stretches (`contact_runs.py`). Newton's method on deflections, pressures,
 reactions and places (C6) to (C8) follows, under a load with the journal's position bordered (C10). Steps are halved
 until the residual falls. Then signs are looked at: a reaction that pulls leaves, a gap that has closed elsewhere gains
 a contact, and Newton's method goes on.
@@ -8,7 +8,7 @@ a contact, and Newton's method goes on.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import numpy as np
@@ -50,12 +50,6 @@ FARTHEST_MOVE = 0.5
 CHORD = 0.2
 """Residual after a step over that before it, up to which the factor at hand serves another step, at half the cost."""
 
-FOLLOWED_STEPS = 10
-"""Most Newton steps from an equilibrium to the next one under the same load: four to six over a third of the speed."""
-
-SETTLING = 1e-4
-"""Residual below which such a step keeps the factor of the one before: it leaves a thousandth of it, or less."""
-
 POLISHED = 1e-3
 """Residual over that of a solution below which another step changes no printed digit."""
 
@@ -70,13 +64,18 @@ class PointContacts:
         The equations at its state.
     residual : float
         Largest scaled residual.
-    gradient : (n_position, n_position) array or None
-        Force by the journal's position under a load, from the last tangent; None at a given position.
+    tangent : ElementTangent or None
+        The last tangent that led to it; None of a state that is not solved.
     """
 
     equations: PointEquations
     residual: float
-    gradient: Array | None = None
+    tangent: ElementTangent | None = field(default=None, repr=False)
+
+    @property
+    def gradient(self) -> Array | None:
+        """Force by the journal's position under a load, from the last tangent; None at a given position."""
+        return None if self.tangent is None or not self.tangent.gradient.size else self.tangent.gradient
 
     @property
     def pack(self) -> ElementPack:
@@ -112,11 +111,12 @@ class PointContacts:
 
     def under(self, whole: PointLayout, problem: CoupledProblem) -> PointContacts:
         """The same state under other equations with as many elements, unsolved."""
-        return replace(self, equations=PointEquations(whole, problem, self.equations.state))
+        return PointContacts(PointEquations(whole, problem, self.equations.state), self.residual)
 
     def moved(self, problem: CoupledProblem, change: Array) -> PointContacts:
         """The state after a small `change` (n,) of the unknowns, under the equations of `problem`, unsolved."""
-        return replace(self, equations=replace(self.equations, problem=problem, state=changed(self.equations, change)))
+        state = changed(self.equations, change)
+        return PointContacts(replace(self.equations, problem=problem, state=state), self.residual)
 
     def nonlinearity(self, moved: PointContacts) -> float:
         """How far points travel, in elements or in distances from the next point; 1 where points meet."""
@@ -141,7 +141,7 @@ def with_points(
     left, changes = STEPS, 0
     equations = PointEquations(whole, problem, state)
     while True:
-        equations, steps, gradient = newton(equations, left, load)
+        equations, steps, tangent = newton(equations, left, load)
         points, left = revised(equations), left - steps
         if points is None:
             residual, found = float(np.max(np.abs(equations.scaled))), equations.state.points
@@ -152,64 +152,36 @@ def with_points(
                 points=len(found.curve),
                 in_stretches=int(found.inner.sum()),
             )
-            return PointContacts(equations, residual, None if load is None else gradient)
+            return PointContacts(equations, residual, tangent)
         equations, changes = replace(equations, state=replace(equations.state, points=points)), changes + 1
 
 
-def newton(equations: PointEquations, most: int, load: Array | None) -> tuple[PointEquations, int, Array]:
+def newton(
+    equations: PointEquations, most: int, load: Array | None
+) -> tuple[PointEquations, int, ElementTangent | None]:
     """Newton's method with the contacts as they are, apart from points that meet, in at most `most` factorisations.
 
-    Returns the equations, the factorisations and the last gradient of the force by the journal's position. A factor
-    serves on as long as every step with it lessens the residual to `CHORD` of it.
+    Returns the equations, the factorisations and the last tangent. A factor serves on as long as every step with it
+    lessens the residual to `CHORD` of it.
 
     Raises
     ------
     NoPointsError
         It does not converge.
     """
-    (size, largest), gradient = norm(equations, load), np.zeros((0, 0))
+    (size, largest), tangent = norm(equations, load), None
     for count in range(most):
         if largest <= RESIDUAL_TOLERANCE and count:
-            return equations, count, gradient
+            return equations, count, tangent
         if diverged(equations.state):
             raise NoPointsError("Newton's method diverges")
         tangent, gain = ElementTangent.at(equations, load, current_run().film_solver), 0.0
-        gradient = tangent.gradient
         while gain <= CHORD and largest > POLISHED * RESIDUAL_TOLERANCE and tangent.n == equations.n:
             step = tangent.correction(equations.newton_residual, unbalanced(equations, load))
             equations = stepped(equations, step, load)
             before, (size, largest) = size, norm(equations, load)
             gain = size / before
     raise NoPointsError(f"contacts or the residual, {largest:.1e}, still change after {STEPS} steps")
-
-
-def followed(near: PointContacts, problem: CoupledProblem, load: Array | None) -> PointContacts:
-    """The equilibrium of a neighbouring problem from that `near`, in a few whole steps; under a load with its position.
-
-    The residual may grow on the way: for points that travel it does so in the first step, and halving that step would
-    lead there in ten short ones.
-
-    Raises
-    ------
-    NoPointsError
-        None was found: other contacts, or a jump.
-    """
-    equations, tangent = replace(near.equations, problem=problem), None
-    for _ in range(FOLLOWED_STEPS):
-        _, largest = norm(equations, load)
-        if tangent is not None and largest <= RESIDUAL_TOLERANCE:
-            points = revised(equations)
-            if points is None:
-                residual = float(np.max(np.abs(equations.scaled)))
-                return PointContacts(equations, residual, None if load is None else tangent.gradient)
-            equations, tangent = replace(equations, state=replace(equations.state, points=points)), None
-        if diverged(equations.state):
-            break
-        if tangent is None or largest > SETTLING or tangent.n != equations.n:
-            tangent = ElementTangent.at(equations, load, current_run().film_solver)
-        step = tangent.correction(equations.newton_residual, unbalanced(equations, load))
-        equations = stepped(equations, step, load, whole_step=True)
-    raise NoPointsError(f"not followed in {FOLLOWED_STEPS} steps")
 
 
 def norm(equations: PointEquations, load: Array | None) -> tuple[float, float]:
