@@ -230,3 +230,45 @@ def test_modes_are_the_eigenvalues_of_the_whole_operator(name: str) -> None:
         ours = (s.imag >= 0.0) & (-s.real < 0.98 * PEAK * np.abs(s)) & (np.abs(s) < 3.0) & (share > 1e-2)
         for wanted in s[ours]:
             assert min(abs(mode.s - wanted) for mode in modes) <= 1e-6 * max(abs(wanted), 1e-2)
+
+
+MICRO = """
+[bearing]
+journal_radius = "1.5 mm"
+bushing_radius = "1.6 mm"
+length = "3 mm"
+[petals]
+count = 4
+arc_length = "3.5 mm"
+thickness = "40 um"
+bend_radius = "2 mm"
+mount = "clamped"
+material = "inconel x-750"
+[gas]
+name = "helium"
+ambient_pressure = "1 bar"
+temperature = "20 degC"
+[surface]
+contact_film_thickness = "0.3 um"
+[operation]
+speed = "500000 rpm"
+load = "0.2 N"
+[rotor]
+mass = "5 g"
+[model]
+kind = "2d"
+slip = true
+cells_per_pitch = 32
+petal_cells = 16
+"""
+"""Four stiff petals that press the journal: a backward whirl grows by 2 1/s at 461 000 rpm, and no mass is critical."""
+
+
+@pytest.mark.slow
+def test_a_mode_that_grows_below_the_critical_mass_leaves_no_threshold_speed() -> None:
+    """The critical mass is followed to find one; far above, it falls below the rotor's."""
+    found = stability(Case.from_toml(MICRO))
+    assert np.max(found["mode_growth_rate"].values) > 0.0
+    assert float(found["critical_mass"]) > float(found["rotor_mass"])
+    assert math.isnan(float(found["threshold_speed"]))
+    assert "no threshold speed: the rotor is unstable already" in str(found["status"])

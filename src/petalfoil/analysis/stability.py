@@ -215,7 +215,8 @@ def point(
         whirl = rotor.whirl(impedance, speed)
         modes = None if math.isnan(rotor.mass) else rotor.modes(impedance, speed)
         if amplitude is None:
-            threshold, ended = threshold_speed(rotor, load, AtOwnSpeed(found.answer, impedance.motion, whirl))
+            start = AtOwnSpeed(found.answer, impedance.motion, whirl)
+            threshold, ended = threshold_speed(rotor, load, start, grows=any_grows(modes))
         else:
             threshold, ended = math.nan, AT_AMPLITUDE
         ended = told_with_mach(case, threshold, ended)
@@ -241,13 +242,18 @@ def whirl_parts(
     even = whirl.ratio == EVEN_FILM.ratio
     half = "whirls at half the speed at any speed and rotor mass"
     any_mass = {0.0: half if even else "unstable for any rotor mass", math.inf: "stable for any rotor mass"}
-    if any(mode.s.real > 0.0 for mode in modes or ()):
+    if any_grows(modes):
         any_mass[math.inf] = "a mode grows, though no mass is critical"
     if ended == AT_AMPLITUDE:
         any_mass[math.inf] = "no whirl was found that goes on at the amplitude"
     remarks = ["converged", any_mass.get(whirl.mass, ""), ended]
     outcome = RunOutcome(status="; ".join(filter(None, remarks)), residual=found.answer.reported_residual)
     return *state_parts(case, found), CriticalMass(whirl.mass, whirl.ratio), outcome
+
+
+def any_grows(modes: Sequence[Mode] | None) -> bool:
+    """Whether one of the natural modes, as far as there are any, grows."""
+    return any(mode.s.real > 0.0 for mode in modes or ())
 
 
 def mode_fields(modes: list[Mode], speed: float, *, tilts: bool) -> tuple[dict[str, Array], dict[str, Array]]:

@@ -67,15 +67,20 @@ class AtOwnSpeed:
     whirl: Whirl
 
 
-def threshold_speed(rotor: RotorOnBearings, load: Vector | None, start: AtOwnSpeed) -> Threshold:
+def threshold_speed(
+    rotor: RotorOnBearings, load: Vector | None, start: AtOwnSpeed, *, grows: bool = False
+) -> Threshold:
     """Speed at which the rotor becomes unstable, within the range, from what is known at the case's speed.
 
-    Upward from a stable bearing, downward from an unstable one. A speed without an equilibrium ends the search.
+    Upward from a stable bearing, downward from an unstable one. A speed without an equilibrium ends the search. The
+    critical mass is what is followed: where a mode `grows` below it, there is nothing to follow.
     """
     if whirls_at_any_mass(start.motion):
         return math.nan, ""  # and at any speed
     if math.isnan(rotor.mass):
         return math.nan, "no threshold speed: give a mass or a load"
+    if grows and margin(start.whirl, rotor.mass) > 0.0:
+        return math.nan, "no threshold speed: the rotor is unstable already, below the critical mass"
     margin_at = margins(rotor, load, start)
     known, here = rotor.case.operation.speed, margin(start.whirl, rotor.mass)
     factor = FACTOR if here > 0.0 else 1.0 / FACTOR
