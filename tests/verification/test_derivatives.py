@@ -303,7 +303,7 @@ def test_the_lift_off_speed_is_inverse_to_the_viscosity_and_follows_its_thicknes
 def again(balance: DerivativesOf, values: dict[str, float], near: float, limit: float = 0.01) -> float:
     """Lift-off speed of another bearing, found from that of the first."""
     there = with_values(balance.case, values)
-    line = SpeedLine(there, there.operation.load)
+    line = SpeedLine(there, there.operation.load, leads=False)
     line.known = balance.solution
     return refined("liftoff_speed", line, (near, limit), as_points=balance.as_points).values["liftoff_speed"]
 
@@ -337,7 +337,7 @@ def test_a_parameter_at_the_end_of_its_range_is_differentiated_inside() -> None:
 def test_at_a_contact_that_opens_at_the_lift_off_speed_both_sides_are_told() -> None:
     """The limit of the contact fraction is put where a contact ends; speeds found again on either side agree."""
     of = loaded(case("rig", **{"model.cells_per_pitch": 12}), 46.4)
-    line, speed = SpeedLine(of, (0.0, -46.4)), 5000.0 * math.pi / 30.0
+    line, speed = SpeedLine(of, (0.0, -46.4), leads=False), 5000.0 * math.pi / 30.0
     for _ in range(6):  # onto the kink: how far the next contact is follows from the rates
         there = with_values(of, {"operation.speed": speed})
         balance = DerivativesOf(there, line.at(speed), fraction_of)

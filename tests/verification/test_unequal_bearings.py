@@ -233,6 +233,8 @@ LOADED = case(
 )
 HALF = LOADED.replace(rotor={"mass": 3.0}, **{"operation.load": (0.0, -30.0)})
 UNLOADED = {"operation.load": None}
+AT_NODES = {"model.contacts": "nodes"}
+"""Contacts of a rotor in two bearings in motion."""
 
 
 def of_one(case: Case) -> float:
@@ -249,7 +251,7 @@ MEANT: dict[str, Callable[[Case], object]] = {
     "coefficients": lambda c: coefficients.record(c, [1500.0]).fields["stiffness"],
     "runup": lambda c: runup(c, to=9000.0 * RPM, points=3)["friction_torque"].values[:3],
     "liftoff": lambda c: liftoff(c, [30.0 * c.bearings])["liftoff_speed"].values,
-    "orbit": lambda c: orbit(c, revolutions=0.01, initial="balance")["y"].values[0],
+    "orbit": lambda c: orbit(c.replace(**AT_NODES), revolutions=0.01, initial="balance")["y"].values[0],
     "stability": lambda c: [of_one(c) * float(stability.record(c).scalars[name]) for name in ("critical_mass",)],
     "converge": lambda c: converge(c, levels=2, coarsest=16)["min_film_thickness"].values,
     "capacity": lambda c: of_one(c) * capacity_at(c),

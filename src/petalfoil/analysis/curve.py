@@ -110,8 +110,10 @@ def _along(cases: Sequence[Case], base: CoupledProblem) -> Solution | None:
     return found
 
 
-def point_after(case: Case, problem: CoupledProblem, before: Solution | None) -> OperatingPoint:
+def point_after(case: Case, problem: CoupledProblem, before: Solution | None, *, leads: bool = True) -> OperatingPoint:
     """A point of the curve, followed from the one `before`; from nothing where there is none.
+
+    Contact points lead there, without a solution with contacts at nodes beside it, unless `leads` is false.
 
     Raises
     ------
@@ -122,7 +124,7 @@ def point_after(case: Case, problem: CoupledProblem, before: Solution | None) ->
         found = relaxed(case, problem, before) if is_classic(case) else with_reported(case, at_position(case))
         return replace(found, branch=replace(found.branch, jump=False))
     here = before.problem.at(displacement=problem.displacement)
-    answer, jump = led(before, here), False
+    answer, jump = led(before, here) if leads else None, False
     if answer is None:
         before = with_nodal_contacts(before)
         answer, jump = advance(before, here)

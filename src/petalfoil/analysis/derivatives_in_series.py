@@ -70,7 +70,7 @@ def along_curve(cases: list[Case], asked: DerivativeRequest) -> list[Differentia
     def found_at(case: Case) -> Sequence[Source]:
         nonlocal before
         last, before = before, None
-        before = point_after(case, displaced_problem(base, case), last).answer
+        before = point_after(case, displaced_problem(base, case), last, leads=False).answer
         return best_of([of_equilibrium(case, before, asked)], asked)
 
     return [
@@ -83,7 +83,7 @@ def along_speeds(case: Case, speeds: Sequence[float], asked: DerivativeRequest) 
     """The points of a run-up."""
     if case.operation.load is None:
         raise ValueError("a run-up has a load")
-    line = SpeedLine(at(case, speeds[0]), case.operation.load)
+    line = SpeedLine(at(case, speeds[0]), case.operation.load, leads=False)
 
     def found_at(there: Case) -> Sequence[Source]:
         try:

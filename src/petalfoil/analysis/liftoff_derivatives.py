@@ -40,7 +40,9 @@ def speed_derivatives(case: Case, load: float, limit: float, *, as_points: bool 
     loaded = case.replace(**{"operation.load": (0.0, -load), "operation.eccentricity": (0.0, 0.0)})
     speeds = dict(zip(("liftoff_speed", "touchdown_speed"), crossings(loaded, load, limit), strict=True))
     found = [
-        of_contacts(refined(name, SpeedLine(loaded, (0.0, -load)), (speed, limit), as_points), as_points=as_points)
+        of_contacts(
+            refined(name, SpeedLine(loaded, (0.0, -load), leads=False), (speed, limit), as_points), as_points=as_points
+        )
         for name, speed in speeds.items()
         if 0.0 < speed < math.inf
     ]

@@ -135,7 +135,7 @@ def under_load(case: Case, load: Vector) -> tuple[Solution, Branch]:
     if not case.shares_evenly:
         return on_shaft(case, load)
     if follows_path(case):
-        found = SpeedLine(case, load).climb(case.operation.speed)
+        found = SpeedLine(case, load, leads=False).climb(case.operation.speed)
         return found, Branch(solution_path=found.solution_path)
     problem = build_problem(case)
     found, rate = begun_under_load(problem, load)
@@ -146,7 +146,7 @@ def under_load(case: Case, load: Vector) -> tuple[Solution, Branch]:
     if not rate.real > 0.0:
         return found, alone
     try:
-        risen = SpeedLine(case, load).climb(case.operation.speed)
+        risen = SpeedLine(case, load, leads=False).climb(case.operation.speed)
     except ConvergenceError as failure:
         current_run().note("climb", outcome=str(failure))
         return found, alone

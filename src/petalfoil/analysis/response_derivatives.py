@@ -189,7 +189,7 @@ def threshold_derivatives(case: Case, answer: Solution, mass: float | None, *, a
     here = rotor.impedance(answer)
     known = AtOwnSpeed(answer, here.motion, rotor.whirl(here, case.operation.speed))
     speed, why = threshold_speed(rotor, case.operation.load, known)
-    line = None if case.operation.load is None else SpeedLine(case, case.operation.load, known=answer)
+    line = None if case.operation.load is None else SpeedLine(case, case.operation.load, known=answer, leads=False)
 
     def balance_at(omega: float) -> Derivatives:
         there = at(case, omega)

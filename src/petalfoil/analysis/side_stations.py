@@ -10,8 +10,6 @@ so that cells grow in proportion to their distance from the side.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from petalfoil.case import Case
@@ -40,9 +38,10 @@ def side_density(case: Case) -> tuple[float, ...]:
     ValueError
         The case has no petals.
     """
-    if case.petals is None or case.pack is None:
+    length = case.side_length
+    if length is None:
         raise ValueError("this case has no [petals]")
     half = 0.5 * case.bearing.length
-    layer = LAYER * math.sqrt(case.pack.metric_radius * case.petals.mean.thickness)
+    layer = LAYER * length
     density = 1.0 / (max(layer, SHORTEST * half) + np.linspace(0.0, half, POINTS))
     return tuple(float(f"{value:.{DIGITS}g}") for value in density / float(np.mean(density)))

@@ -52,6 +52,9 @@ class SpeedLine:
         Raise the friction power gradually where Newton's method does not lead from the last temperatures to the next.
     seeks : bool
         Look for contacts on petals with continuous slopes; else all balances keep contacts at nodes.
+    leads : bool
+        Let contact points lead from one balance to the next, without a solution with contacts at nodes beside it.
+        Derivatives need that one: where a point begins or ends, they are its.
     rotor : RotorInBearings or None
         The rotor, where its bearings do not share the load evenly.
     others : list
@@ -68,6 +71,7 @@ class SpeedLine:
     temperatures: Temperatures | None = None
     gradually: bool = True
     seeks: bool = True
+    leads: bool = True
     base: CoupledProblem = field(init=False)
     rotor: RotorInBearings | None = None
     others: list[Temperatures | None] = field(default_factory=list)
@@ -101,7 +105,8 @@ class SpeedLine:
         if self.path is not None:
             return self._with_friction(self.path, problem)
         warm, before = self.temperatures, self.known
-        led_here = None if before is None or not self.seeks else led(before, problem, load)
+        leads = self.seeks and self.leads
+        led_here = led(before, problem, load) if before is not None and leads else None
         if led_here is not None:
             self.known = led_here
             return led_here

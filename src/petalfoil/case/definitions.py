@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping
 from pathlib import Path
@@ -152,6 +153,13 @@ class Case(Definition):
     def pack(self) -> PackGeometry | None:
         """Geometry of the assembled petals; None for a plain bearing."""
         return None if self.petals is None else pack_of(self.bearing, self.petals)
+
+    @property
+    def side_length(self) -> float | None:
+        """Length sqrt(R_m delta) over which a petal's bow at its free side dies out [m]; None for a plain bearing."""
+        if self.petals is None or self.pack is None:
+            return None
+        return math.sqrt(self.pack.metric_radius * self.petals.mean.thickness)
 
     @property
     def packs(self) -> tuple[PackGeometry, ...]:

@@ -44,10 +44,10 @@ def test_each_speed_of_a_run_up_has_the_derivatives_of_balance() -> None:
 def test_a_point_that_is_not_found_leaves_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
     found = derivatives_in_series.point_after
 
-    def lost_at_first(of: Case, problem: CoupledProblem, before: Solution | None) -> OperatingPoint:
+    def lost_at_first(of: Case, problem: CoupledProblem, before: Solution | None, *, leads: bool) -> OperatingPoint:
         if of.operation.eccentricity == (0.0, -5e-6):
             raise ConvergenceError("lost")
-        return found(of, problem, before)
+        return found(of, problem, before, leads=leads)
 
     monkeypatch.setattr(derivatives_in_series, "point_after", lost_at_first)
     told = petalfoil.sensitivity(PLAIN, "gas.viscosity", ask="curve", displacements="5 um, 10 um", of="bearing_force")

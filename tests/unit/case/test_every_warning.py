@@ -17,7 +17,6 @@ from tests.unit.case.test_plausibility import bumps, measured, rows_of
 
 PETALS, PLAIN = "paper_n8", "plain_journal"
 STILL = {"operation.speed": "110 rpm", "operation.eccentricity": (0, 0), "surface.contact_film_thickness": "0.1 um"}
-RUBS_IN_3D = {"surface.petal_friction": 0.2, "model.kind": "3d"}
 Told = list[str]
 
 
@@ -98,11 +97,6 @@ EVERY: dict[str, tuple[str, Callable[[], Told], Callable[[], Told]]] = {
         "surface.petal_friction",
         lambda: of(**{"surface.petal_friction": 0.2, "petals.theory": "inextensible"}),
         lambda: of(**{"surface.petal_friction": 0.0}),
-    ),
-    "_petal_theory surface.petal_friction tilts": (
-        "surface.petal_friction",
-        lambda: of(**{**RUBS_IN_3D, "operation.tilt": (1e-4, 0.0)}),
-        lambda: of(**RUBS_IN_3D),
     ),
     "_petal_theory backing": (
         "backing",
