@@ -7,7 +7,7 @@
 `cold_start.py`            film and pack from nothing, through the interior point and beyond
 `continuation.py`          from a known equilibrium to a neighbour; from rest up to speed
 `lengthening.py`           a film without ends as the limit of ever longer bearings
-`other_grids.py`          the same from its equilibrium on another grid
+`other_grids.py`           the same from its equilibrium on another grid
 `branches.py`              whether there is more than one equilibrium at a position
 `under_load.py`            the journal's position under a load
 `whole_length.py`          a whole length from half of it: an aligned journal mirrored, and then tilted

@@ -104,10 +104,8 @@ def slower_ways(
         The assembled pack at a barrier.
     """
     run = current_run()
-    for damping, barrier in MARCHES:
-        rests = marched_to_rest(damped(damping), start(barrier))
-        if rests is not None:
-            yield rests, MARCHED
+    for rests in marches(damped, start):
+        yield rests, MARCHED
     for barrier, weight, steps in PATHS:
         end, ends, options = None, (barrier, PATH_END), PathOptions(weight=weight, steps=steps)
         try:
@@ -117,6 +115,16 @@ def slower_ways(
         run.note("central path", first_barrier=barrier, outcome="lost" if end is None else "followed")
         if end is not None:
             yield end, "followed the central path through its folds"
+
+
+def marches(
+    damped: Callable[[float], ContactProblem], start: Callable[[float], PrimalDualPoint]
+) -> Iterator[PrimalDualPoint]:
+    """Where marches with a damped wall come to rest (P6), in the order of trial; arguments as in `slower_ways`."""
+    for damping, barrier in MARCHES:
+        rests = marched_to_rest(damped(damping), start(barrier))
+        if rests is not None:
+            yield rests
 
 
 def marched_to_rest(damped: ContactProblem, start: PrimalDualPoint) -> PrimalDualPoint | None:

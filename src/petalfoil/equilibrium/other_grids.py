@@ -7,14 +7,15 @@ march with a damped wall, goes on from what they give. The answer is that of the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
-from petalfoil.equilibrium.cold_start import BARRIERS, MARCHED, MARCHES, by_barriers, finish, marched_to_rest
+from petalfoil.equilibrium.cold_start import BARRIERS, MARCHED, by_barriers, finish, marched_to_rest, marches
 from petalfoil.equilibrium.pack_at_rest import assembled
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
@@ -67,14 +68,22 @@ def by_other_grids(problem: CoupledProblem) -> Solution | None:
         if known is None:
             continue
         points = points_from(problem, lambda damping: DampedWall.of(problem, damping), carried(known, problem))
-        for point in points:
-            try:
-                found = finish(problem, point, path_told(known))
-            except SingularMatrixError as failure:
-                current_run().note("other grid", outcome=str(failure))
-                continue
-            if found is not None:
-                return replace(found, shortest_step=None)
+        found = first_answer(problem, points, path_told(known))
+        if found is not None:
+            return replace(found, shortest_step=None)
+    return None
+
+
+def first_answer(problem: CoupledProblem, points: Iterable[PrimalDualPoint], path: str) -> Solution | None:
+    """The first solution that points close to one lead to, reached by a `path`; None if none does."""
+    for point in points:
+        try:
+            found = finish(problem, point, path)
+        except SingularMatrixError as failure:
+            current_run().note("other grid", outcome=str(failure))
+            continue
+        if found is not None:
+            return found
     return None
 
 
@@ -104,15 +113,9 @@ def grids(problem: CoupledProblem) -> Iterator[CoupledProblem]:
 def on_grid(other: CoupledProblem) -> Solution | None:
     """The equilibrium on a grid by the interior point, or by a march with a damped wall; None if they find none."""
     found = by_barriers(other, BARRIERS)
-    for damping, barrier in MARCHES:
-        if found is not None:
-            return found
-        point = marched_to_rest(DampedWall.of(other, damping), assembled(other, barrier))
-        try:
-            found = None if point is None else finish(other, point, MARCHED)
-        except SingularMatrixError as failure:
-            current_run().note("other grid", outcome=str(failure))
-    return found
+    if found is not None:
+        return found
+    return first_answer(other, marches(partial(DampedWall.of, other), partial(assembled, other)), MARCHED)
 
 
 def points_from(
