@@ -213,9 +213,8 @@ def estimate(
 
 def response_at_points(stage: Stage, stored: Array, tangent: ElementTangent) -> tuple[Array, Array]:
     """Change of pressures (n_film,) and displacement (d,) by errors in what is stored and in the stage's base."""
-    whole, base = tangent.equations.whole, stage.base
+    whole = tangent.equations.whole
     residual = np.zeros(tangent.n)
     residual[whole.n_wall : whole.n_wall + whole.n_film] = stage.rate * stored
-    force = stage.border_stiffness @ base.e + stage.rate * (stage.inertia @ base.v)
-    change, de = tangent.correction(residual, force)
+    change, de = tangent.correction(residual, PointStage(whole, stage).load)
     return change[whole.n_wall : whole.n_wall + whole.n_film], de
