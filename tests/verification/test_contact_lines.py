@@ -11,7 +11,7 @@ import petalfoil
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
-from petalfoil.equilibrium.line_contacts import LineContacts
+from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
 from petalfoil.equilibrium.line_sets import between_nodes, parted, revised, settled, with_lines
 from petalfoil.equilibrium.run_context import current_run, running
 from petalfoil.equilibrium.solution import Solution
@@ -105,6 +105,13 @@ def test_a_reaction_that_pulls_leaves_and_an_overlap_gains_a_point(lines: LineCo
     more = revised(deep)
     assert more is not None
     assert len(more.reaction) == len(lines.reaction) + 1
+
+
+def test_a_closed_film_is_no_start(lines: LineContacts) -> None:
+    down = lines.problem.displacement - np.array([0.0, 100.0])
+    with running() as run, pytest.raises(NoLinesError, match="the film closes"):
+        settled(replace(lines, problem=lines.problem.at(displacement=down)))
+    assert run.film.factorizations == 0
 
 
 def test_a_bottomed_out_pack_keeps_its_nodes(nodal: Solution) -> None:

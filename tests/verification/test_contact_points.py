@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from itertools import accumulate
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from petalfoil.equilibrium.element_response import ElementMotion
 from petalfoil.equilibrium.element_tangent import NoPointsError
 from petalfoil.equilibrium.followed_points import evenly_divided, followed
 from petalfoil.equilibrium.led_points import led, with_nodal_contacts
-from petalfoil.equilibrium.point_contacts import PointContacts, with_points
+from petalfoil.equilibrium.point_contacts import PointContacts, stepped, with_points
 from petalfoil.equilibrium.run_context import running
 from petalfoil.equilibrium.small_motion import AT_ASPERITIES, AT_POINTS, ON_LINES
 from petalfoil.equilibrium.solution import Solution
@@ -75,6 +76,42 @@ def beside(answer: Solution, down: float) -> CoupledProblem:
     """The problem of an answer with the journal further down [m]."""
     problem = answer.problem
     return problem.at(displacement=problem.displacement - np.array([0.0, down / problem.layout.scales.length]))
+
+
+def through_the_film(equations: PointEquations) -> CoupledProblem:
+    """The problem with the journal moved until the film is exactly or hardly closed where it was thinnest."""
+    thin = int(np.argmin(equations.film_thickness))
+    toward = equations.whole.film_by_e[thin]
+    way = -equations.film_thickness.ravel()[thin] * toward / (toward @ toward)
+    return equations.problem.at(displacement=equations.problem.displacement + way)
+
+
+def test_a_closed_film_is_no_start() -> None:
+    """The equations divide by the film: every search says so before a factorisation."""
+    found = contacts_of("turbocharger")
+    closed = through_the_film(found.equations)
+    near = replace(found, equations=replace(found.equations, problem=closed))
+    whole, state = found.equations.whole, found.equations.state
+    with running() as run:
+        for search in (
+            lambda: with_points(whole, closed, state),
+            lambda: followed(near, closed, np.zeros(2)),
+            lambda: with_asperities(whole, closed, state),
+        ):
+            with pytest.raises(NoPointsError, match="the film closes"):
+                search()
+        assert run.film.factorizations == 0
+
+
+def test_steps_that_close_the_film_end() -> None:
+    """Each takes four fifths of what is left, to zero by rounding: bearing 352 of the random runs of `capacity`."""
+    equations = contacts_of("turbocharger").equations
+    thin = int(np.argmin(equations.film_thickness))
+    toward = equations.whole.film_by_e[thin]
+    change = np.zeros(equations.n), -1e3 * toward / (toward @ toward)
+    steps = accumulate(range(12), lambda at, _: stepped(at, change, None, whole_step=True), initial=equations)
+    with pytest.raises(NoPointsError, match="the film closes"):
+        assert all(np.min(at.film_thickness) > 0.0 for at in steps)
 
 
 @pytest.mark.parametrize("name", ["paper_n6", "paper_n8", "paper_n10"])

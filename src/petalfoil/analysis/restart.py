@@ -131,7 +131,8 @@ def at_points_of(result: xr.Dataset, system: RotorBearing, tau: float, at: tuple
     state = PointState(w, x[whole.layout.unknowns[PRESSURE]], points)
     start = released_at_points(system, tau, state, (e, v))
     problem = system.problem.at(displacement=e, bearing_number=system.rotor.bearing_number(tau))
-    if not isinstance(problem, StepProblem) or not balanced(PointStepEquations(whole, problem, state)):
+    equations = PointStepEquations(whole, problem, state) if isinstance(problem, StepProblem) else None
+    if equations is None or np.min(equations.film_thickness) <= 0.0 or not balanced(equations):
         raise _damaged("petals, loads and contacts are out of balance")
     if not np.allclose(start.x, x, rtol=0.0, atol=SAME * float(np.max(np.abs(x)))):
         raise _damaged("petals and loads are out of balance: deflections at nodes are not those between them")

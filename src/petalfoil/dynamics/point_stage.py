@@ -18,7 +18,7 @@ from petalfoil.dynamics.stage import Stage
 from petalfoil.dynamics.time_state import TimeState
 from petalfoil.equilibrium.contact_sets import revised
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError, unbalanced
-from petalfoil.equilibrium.point_contacts import stepped
+from petalfoil.equilibrium.point_contacts import refuse_closed, stepped
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.system.point_equations import PointState
 from petalfoil.system.point_layout import PointLayout
@@ -94,6 +94,7 @@ class PointStage:
         """The stage's state near `start`, a state and a displacement; None if there is none near it."""
         equations, load, accuracy = self.at(*start), self.load, self.stage.options.accuracy
         try:
+            refuse_closed(equations)
             for _ in range(SETS):
                 equations, tangent = self.settled(equations, load, tangent)
                 points = revised(equations, accuracy)

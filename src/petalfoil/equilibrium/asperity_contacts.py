@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError, scaled_force, unbalanced
-from petalfoil.equilibrium.point_contacts import FARTHEST_MOVE, diverged
+from petalfoil.equilibrium.point_contacts import FARTHEST_MOVE, diverged, refuse_closed
 from petalfoil.equilibrium.point_contacts import admitted as film_admits
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import AT_ASPERITIES
@@ -164,6 +164,7 @@ def newton(
     NoPointsError
         It does not converge.
     """
+    refuse_closed(equations.smooth)
     gradient = np.zeros((0, 0))
     for steps in range(STEPS):
         equations = renewed(equations)

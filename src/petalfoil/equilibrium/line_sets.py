@@ -134,8 +134,10 @@ def newton(state: LineContacts) -> LineContacts:
     Raises
     ------
     NoLinesError
-        It does not converge.
+        The film has closed, or it does not converge.
     """
+    if not state.problem.admits(state.x):
+        raise NoLinesError("the film closes")
     for count in range(STEPS):
         if state.balanced or (count >= PATIENCE and np.any(state.doubled)):
             return state

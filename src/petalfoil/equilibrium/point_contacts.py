@@ -41,6 +41,10 @@ FARTHEST_STATE = 1e4
 """Film pressure over ambient pressure, and deflection over the reference film (0.1 m), past which Newton's method
 diverges."""
 
+CLOSED = 1e-6
+"""Film thickness over that of a contact below which the film has closed: steps that take four fifths of it each end at
+zero by rounding. A solution has at least the film of a contact less `element_contacts.DEEPEST`."""
+
 SHORTEST = 0.1
 """Shortest step over Newton's; it is taken even if the residual does not fall."""
 
@@ -185,9 +189,29 @@ def newton(
 
 
 def norm(equations: PointEquations, load: Array | None) -> tuple[float, float]:
-    """Root of the squares of all scaled residuals, and the largest of them; the unbalanced force among them."""
+    """Root of the squares of all scaled residuals, and the largest of them; the unbalanced force among them.
+
+    Raises
+    ------
+    NoPointsError
+        The film has closed.
+    """
+    refuse_closed(equations)
     left = np.concatenate([equations.scaled, scaled_force(equations, load)])
     return float(np.linalg.norm(left)), float(np.max(np.abs(left)))
+
+
+def refuse_closed(equations: PointEquations) -> None:
+    """Raise where the film has closed: its equations divide by it.
+
+    Raises
+    ------
+    NoPointsError
+        It has.
+    """
+    floor = equations.whole.pack.floor / equations.whole.layout.scales.length
+    if not np.all(equations.film_thickness.ravel() > CLOSED * floor):
+        raise NoPointsError("the film closes")
 
 
 def diverged(state: PointState) -> bool:
@@ -218,7 +242,13 @@ def admitted(equations: PointEquations, change: tuple[Array, Array], farthest: f
     """The part of a change (of unknowns and position) after which film and pressures are positive [1].
 
     The journal moves by `farthest` reference films at most.
+
+    Raises
+    ------
+    NoPointsError
+        The film has closed.
     """
+    refuse_closed(equations)
     (dX, move), whole, state = change, equations.whole, equations.state
     dw, dP = dX[: whole.n_wall], dX[whole.n_wall : whole.n_wall + whole.n_film]
     closing = whole.film_by_w @ dw + whole.film_by_e @ move

@@ -95,6 +95,21 @@ def test_the_equations_of_a_stage_hold_at_its_end() -> None:
     assert_allclose(found.equations.gaps.value, 0.0, atol=1e-8)
 
 
+def test_a_closed_film_is_no_start_of_a_stage() -> None:
+    """As one foretold from the states before may have."""
+    orbit = begun()
+    stage, state = first_stage(orbit)
+    equations = stage.at(state, orbit.start.e)
+    thin = int(np.argmin(equations.film_thickness))
+    toward = equations.whole.film_by_e[thin]
+    closed = orbit.start.e - equations.film_thickness.ravel()[thin] * toward / (toward @ toward)
+    before = orbit.run.film.factorizations
+    with orbit.run.active():
+        assert stage.solved((state, closed), None) is None
+    assert orbit.run.film.factorizations == before
+    assert "the film closes" in str(orbit.run.history)
+
+
 def test_a_load_more_moves_the_journal_as_the_tangent_foretells() -> None:
     orbit = begun()
     stage, state = first_stage(orbit)
