@@ -19,6 +19,8 @@ def test_every_case_is_read(name: str) -> None:
 
 
 ANSWERED = {
+    "asperities_in_time": "regression/test_orbit_counts.py"
+    "::test_a_motion_whose_balance_has_no_points_costs_what_contacts_at_nodes_cost",
     "dollar_title": "unit/plot/test_style.py::test_a_title_with_dollar_signs_is_drawn_as_it_stands",
     "escape_title": "unit/test_text.py::test_nothing_that_a_terminal_obeys_is_left",
     "flat_1072": "verification/test_hard_bearings.py::test_has_an_equilibrium",

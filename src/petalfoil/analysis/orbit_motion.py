@@ -196,11 +196,15 @@ class Orbit:
                 warm = temperatures_of(case, request)
                 warmed, supports = at_kept(case, warm)
                 known = balance_on_path(warmed, request)
-                place, slope = first_position(warmed if case.shares_evenly else case, request, known)
+                place, slope, at_points = first_position(warmed if case.shares_evenly else case, request, known)
                 request = replace(request, slope=slope)
                 placed = at(warmed, eccentricity=place)
                 system, time = system_of(placed, supports, schedule, request.load), 0.0
-                start = at_rest(placed, system, request) if known is None else at_rest_on_path(system, known)
+                start = (
+                    at_rest(placed, system, request, at_points=at_points)
+                    if known is None
+                    else at_rest_on_path(system, known)
+                )
         else:
             time, warm, place = continued(case, schedule, restart), kept_temperatures(case, restart), None
             placed, supports = at_kept(case, warm)

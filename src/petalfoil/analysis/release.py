@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -157,8 +157,26 @@ def balance_on_path(case: Case, request: OrbitRequest) -> Solution | None:
     return under_load(at(case, speed, (0.0, 0.0)), constant_load(case, request.load))[0]
 
 
-def first_position(case: Case, request: OrbitRequest, known: Solution | None = None) -> tuple[Vector | None, Vector]:
-    """Where the journal is released [m], None where the case says so; and the slopes of a shaft in two bearings [rad].
+class FirstPosition(NamedTuple):
+    """Where a journal is released.
+
+    Attributes
+    ----------
+    place : (2,) or None
+        Its displacement [m]; None where the case says so.
+    slope : (2,)
+        Slopes of a shaft in two bearings [rad].
+    at_points : bool
+        Whether it may begin with contact points: not from a balance that has none.
+    """
+
+    place: Vector | None
+    slope: Vector
+    at_points: bool = True
+
+
+def first_position(case: Case, request: OrbitRequest, known: Solution | None = None) -> FirstPosition:
+    """Where the journal is released.
 
     A `known` balance that keeps the friction of its path is where it is.
 
@@ -168,35 +186,36 @@ def first_position(case: Case, request: OrbitRequest, known: Solution | None = N
         No position balances the load.
     """
     if request.initial != "balance":
-        return request.initial, request.slope
+        return FirstPosition(request.initial, request.slope)
     if known is not None:
         x, y = map(float, known.position[:2] * known.problem.layout.scales.length)
-        return (x, y), request.slope
+        return FirstPosition((x, y), request.slope)
     if not case.shares_evenly:
-        return on_both(case, request)
+        return FirstPosition(*on_both(case, request))
     load, speed = constant_load(case, request.load), request.schedule(case).speed(0.0)
-    x, y = case.operation.eccentricity
+    (x, y), at_points = case.operation.eccentricity, True
     if np.any(load) or speed > 0.0:  # every place balances a shaft at rest without a load
         found, _ = under_load(at(case, speed, (0.0, 0.0)), load)
-        place = place_of_balance(case, found)
+        place, at_points = place_of_balance(case, found)
         x, y = map(float, place * found.problem.layout.scales.length)
     if case.rotor is not None and request.schedule(case).speed(0.0) > 0.0:
         x -= case.rotor.unbalance  # a shaft that does not turn feels none
     beyond = np.hypot(x, y) >= case.pack_clearance
     short = LYING * case.pack_clearance / np.hypot(x, y) if beyond else 1.0
-    return (float(short * x), float(short * y)), request.slope
+    return FirstPosition((float(short * x), float(short * y)), request.slope, at_points)
 
 
-def place_of_balance(case: Case, found: Solution) -> Array:
+def place_of_balance(case: Case, found: Solution) -> tuple[Array, bool]:
     """Displacement over the reference length at which a motion has the load of a balance, (n_position,) [1].
 
-    It is that of contact points where the motion begins with them.
+    It is that of contact points where the balance has them; and whether it has.
     """
     layout = found.problem.layout
     if case.bearings > 1 or points_in_time(layout, friction_of(case, layout)) is None:
-        return found.problem.displacement
+        return found.problem.displacement, False
     between = with_elements(found)
-    return between.position if isinstance(between.elements, PointContacts) else found.problem.displacement
+    at_points = isinstance(between.elements, PointContacts)
+    return between.position if at_points else found.problem.displacement, at_points
 
 
 def on_both(case: Case, request: OrbitRequest) -> tuple[Vector, Vector]:
@@ -248,8 +267,10 @@ def points_in_time(layout: BearingLayout, friction: Friction | None) -> PointLay
     return None if friction is not None or layout.case.drags_petals else layout.elements
 
 
-def at_rest(case: Case, system: RotorBearing, request: OrbitRequest) -> Instant:
+def at_rest(case: Case, system: RotorBearing, request: OrbitRequest, *, at_points: bool = True) -> Instant:
     """The journal held where it is, film and petals in equilibrium, and released at time zero.
+
+    With contact points where it may begin `at_points`: the place of a balance at nodes is none of points.
 
     From a balance its mass centre rests, and the shaft turns about that: a start without a blow.
     """
@@ -265,7 +286,7 @@ def at_rest(case: Case, system: RotorBearing, request: OrbitRequest) -> Instant:
     else:
         answer = at_position(at(case, speed)).answer
         state = answer.x, answer.lam, answer.active
-        found = None if system.points is None else near_nodes(answer)
+        found = None if system.points is None or not at_points else near_nodes(answer)
         if isinstance(found, PointContacts):
             points = found.equations.state
     turning = np.zeros_like(place)

@@ -28,8 +28,9 @@ class MarchOptions:
     """All steps as long as the first, whatever their error."""
 
 
-HELD = 16
-"""Steps with contacts at nodes before points are looked for again; twice as many each time that none are found."""
+HELD, SELDOM = 16, 128
+"""Steps with contacts at nodes before points are looked for again; twice as many each time that they are lost. The
+second is that of a motion that begins without points, five turns of the longest step."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,8 @@ class NextStep:
         Steps that still hold contacts at nodes.
     hold : int
         Steps that will hold them there when points are lost the next time.
+    with_points : int
+        Steps with contact points since they were lost.
     """
 
     step: float
@@ -58,6 +61,19 @@ class NextStep:
     lost: int = 0
     at_nodes: int = 0
     hold: int = HELD
+    with_points: int = 0
+
+    @classmethod
+    def first(cls, bearing: RotorBearing, start: Instant, step: float) -> NextStep:
+        """The first step: where the start has no contact points, there are none near by as a rule."""
+        if bearing.points is None or start.points is not None:
+            return cls(step)
+        return cls(step, at_nodes=SELDOM, hold=2 * SELDOM)
+
+    @property
+    def attempts(self) -> int:
+        """Attempts without contact points after which contacts are held at nodes: one where points are seldom found."""
+        return LOST if self.hold == HELD else 1
 
 
 SAFETY = 0.85
@@ -79,7 +95,7 @@ def march(bearing: RotorBearing, start: Instant, end: float, options: MarchOptio
     ConvergenceError
         No step, however short, has a solution.
     """
-    path, ahead = [start], NextStep(min(options.first, options.longest))
+    path, ahead = [start], NextStep.first(bearing, start, min(options.first, options.longest))
     stage_options = StageOptions(accuracy=1e-2 * options.tolerance)
     while path[-1].tau < end * (1.0 - 1e-12):
         left = end - path[-1].tau
@@ -120,14 +136,16 @@ def without_points(ahead: NextStep, step: float) -> NextStep:
 
     Each time that points are lost anew, nodes hold for twice as many steps: a search costs as much as tens of steps.
     """
-    if ahead.lost + 1 < LOST:
+    if ahead.lost + 1 < ahead.attempts:
         return replace(ahead, step=0.25 * step, tangent=None, calm=0, lost=ahead.lost + 1)
-    return NextStep(step * 4.0 ** (LOST - 1), at_nodes=ahead.hold, hold=2 * ahead.hold)
+    return NextStep(step * 4.0**ahead.lost, at_nodes=ahead.hold, hold=2 * ahead.hold)
 
 
 def accepted(ahead: NextStep, step: float, stepped: AcceptedStep, options: MarchOptions, *, turned: bool) -> NextStep:
     """The next step: the same as long as that is about right, so that the tangent still serves."""
-    ahead = replace(ahead, at_nodes=max(ahead.at_nodes - 1, 0))
+    served = 0 if stepped.end.points is None else ahead.with_points + 1
+    hold = HELD if served >= ahead.hold else ahead.hold
+    ahead = replace(ahead, at_nodes=max(ahead.at_nodes - 1, 0), with_points=served, hold=hold)
     if options.fixed:
         return replace(ahead, tangent=stepped.tangent)
     if turned:
@@ -137,7 +155,7 @@ def accepted(ahead: NextStep, step: float, stepped: AcceptedStep, options: March
         return replace(ahead, step=step * max(0.3, right), tangent=None, calm=0)
     calm = ahead.calm + 1 if right > LARGER else 0
     if calm >= CALM and stepped.end.points is not None:
-        ahead = replace(ahead, lost=0, hold=HELD)
+        ahead = replace(ahead, lost=0)
     if calm >= CALM and step < options.longest:
         longer = min(step * min(right, LARGEST), options.longest)
         return replace(ahead, step=longer, tangent=None, calm=0)

@@ -150,10 +150,10 @@ def test_a_tangent_serves_both_stages_and_the_next_step(run: RunContext) -> None
 
 
 def test_a_motion_that_loses_its_points_again_holds_nodes_for_longer() -> None:
-    """Shorter steps first, then contacts at nodes with the step of before; twice as long the next time."""
+    """Shorter steps first, then contacts at nodes with the step of before; the next time at once and twice as long."""
     ahead, held = NextStep(0.16), []
-    for _ in range(2):
-        for attempt in range(LOST):
+    for attempts in (LOST, 1):
+        for attempt in range(attempts):
             assert ahead.step == pytest.approx(0.16 / 4.0**attempt)
             ahead = without_points(ahead, ahead.step)
         held.append(ahead.at_nodes)
