@@ -12,7 +12,8 @@ from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
-from petalfoil.equilibrium.line_sets import between_nodes, parted, revised, settled, with_lines
+from petalfoil.equilibrium.line_sets import between_nodes, settled, with_lines
+from petalfoil.equilibrium.line_signs import covered, parted, revised
 from petalfoil.equilibrium.run_context import current_run, running
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold
@@ -112,6 +113,19 @@ def test_a_closed_film_is_no_start(lines: LineContacts) -> None:
     with running() as run, pytest.raises(NoLinesError, match="the film closes"):
         settled(replace(lines, problem=lines.problem.at(displacement=down)))
     assert run.film.factorizations == 0
+
+
+def test_of_overlaps_side_by_side_the_lowest_gains_a_point(lines: LineContacts) -> None:
+    """Points in all of them travel to one place, and repeat each other there."""
+    away = ~covered(lines)
+    number = next(line for kind in lines.points.lines for line in kind.number if away[line[:4]].all())
+    deep = replace(lines)
+    deep.__dict__["gaps"] = lines.gaps.copy()
+    deep.gaps[number[:4]] = [-1e-3, -2e-3, -1e-3, 1.0]
+    more = revised(deep)
+    assert more is not None
+    assert len(more.reaction) == len(lines.reaction) + 1
+    assert number[1] in more.points.beside[len(lines.reaction)]
 
 
 def test_a_bottomed_out_pack_keeps_its_nodes(nodal: Solution) -> None:

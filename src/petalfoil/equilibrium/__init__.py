@@ -35,7 +35,8 @@
 `element_contacts.py`      which of the two is near an equilibrium with contacts at nodes
 `element_rates.py`         how such an equilibrium follows a parameter of its case
 `line_contacts.py`         3-D equilibria whose contact lines cross stations between nodes: equations, Newton's step
-`line_sets.py`             which these contacts are: from active nodes, and corrected by signs
+`line_sets.py`             these found from active nodes
+`line_signs.py`            which contacts they have: corrected by signs
 `line_rates.py`            how such an equilibrium follows a parameter of its case
 `nodal_state.py`           film, deflections and reactions at nodes, wherever contacts are
 `element_response.py`      the response about these
