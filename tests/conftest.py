@@ -31,7 +31,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         folder = item.path.relative_to(HERE).parts[0] if item.path.is_relative_to(HERE) else ""
         if folder in FOLDERS:
             item.add_marker(getattr(pytest.mark, folder))
-        if "compiled" in item.keywords and not numba_is_installed():
+        if item.get_closest_marker("compiled") and not numba_is_installed():
             item.add_marker(pytest.mark.skip(reason="needs numba: too slow in NumPy (make test-classic)"))
 
 
