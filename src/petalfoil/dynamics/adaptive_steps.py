@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from petalfoil.dynamics.point_path import KNOTS
 from petalfoil.dynamics.stage import StageOptions
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import AcceptedStep, RotorBearing, Tangents, take_step
@@ -111,7 +112,7 @@ def march(bearing: RotorBearing, start: Instant, end: float, options: MarchOptio
                 raise stuck(bearing, path[-1])
             continue
         turned = not judged(path[-1], stepped, options)
-        path = [*path[-2:], stepped.inner, stepped.end][-3:]
+        path = [*path, stepped.inner, stepped.end][-KNOTS:]
         yield stepped
         ahead = accepted(ahead, step, stepped, options, turned=turned)
 

@@ -18,6 +18,9 @@ from petalfoil.system.unknowns import DEFLECTION, PRESSURE
 
 Array = NDArray[np.float64]
 
+KNOTS = 5
+"""Latest instants that the next one is guessed from (`foretelling`)."""
+
 
 def at_points_instant(
     tau: float, equations: PointEquations, moving: TimeState, change: TimeState, *, inner: bool = False
@@ -34,20 +37,21 @@ def at_points_instant(
 
 
 def point_guesses(whole: PointLayout, path: list[Instant], tau: float) -> list[tuple[PointState, Array]]:
-    """State and displacement at `tau`: through the last three instants of `path`, else as they were last."""
-    latest = path[-1]
+    """State and displacement at `tau`: foretold from the latest instants of `path`, else as they were last."""
+    latest, known = path[-1], path[-KNOTS:]
     still = (state_at(whole, latest), latest.e)
-    states = [instant.points for instant in path[-3:] if instant.points is not None]
-    if len(states) < 3:
+    states = [instant.points for instant in known if instant.points is not None]
+    if len(states) < max(len(known), 3):
         return [still]
-    weights = lagrange([instant.tau for instant in path[-3:]], tau)
-    w, P = (np.asarray(sum(a * getattr(s, name) for a, s in zip(weights, states, strict=True))) for name in ("w", "P"))
-    e = np.asarray(sum(a * instant.e for a, instant in zip(weights, path[-3:], strict=True)))
-    points = states[-1].points
-    if all(same_contacts(one, states[-1]) for one in states):
+    points, alike = states[-1].points, [same_contacts(one, states[-1]) for one in states]
+    if not all(alike):
+        known, states, alike = known[-3:], states[-3:], alike[-3:]
+    weights = foretelling([instant.tau for instant in known], tau)
+    w, P = (weights @ np.array([getattr(s, name) for s in states]) for name in ("w", "P"))
+    e = weights @ np.array([instant.e for instant in known])
+    if all(alike):
         place, reaction = (
-            np.asarray(sum(a * getattr(s.points, name) for a, s in zip(weights, states, strict=True)))
-            for name in ("position", "reaction")
+            weights @ np.array([getattr(s.points, name) for s in states]) for name in ("position", "reaction")
         )
         held = (points.position <= 0.0) | (points.position >= whole.curves.elements[points.curve])
         place = np.where(held, points.position, np.clip(place, 0.0, whole.curves.elements[points.curve]))
@@ -72,11 +76,27 @@ def state_at(whole: PointLayout, instant: Instant) -> PointState:
     return PointState(whole.pack.from_nodes(instant.x[wall]), instant.x[unknowns[PRESSURE]], points)
 
 
-def lagrange(knots: list[float], tau: float) -> list[float]:
-    """Weights of the parabola through values at `knots`, at `tau`."""
+def foretelling(knots: list[float], tau: float) -> Array:
+    """Weights of the values at the latest `knots`, three to `KNOTS`, in a guess at `tau`; (k,).
+
+    The guess is on the parabola through the last three. Stages alternate: the one before last has the same place in its
+    step, so that the parabola through the three before it missed it by about as much.
+    """
+    weights = np.zeros(len(knots))
+    weights[-3:] = lagrange(knots[-3:], tau)
+    if len(knots) == KNOTS:
+        weights[:3] -= lagrange(knots[:3], knots[-2])
+        weights[-2] += 1.0
+    return weights
+
+
+def lagrange(knots: list[float], tau: float) -> Array:
+    """Weights of the parabola through values at three `knots`, at `tau`, (3,)."""
     a, b, c = knots
-    return [
-        (tau - b) * (tau - c) / ((a - b) * (a - c)),
-        (tau - a) * (tau - c) / ((b - a) * (b - c)),
-        (tau - a) * (tau - b) / ((c - a) * (c - b)),
-    ]
+    return np.array(
+        [
+            (tau - b) * (tau - c) / ((a - b) * (a - c)),
+            (tau - a) * (tau - c) / ((b - a) * (b - c)),
+            (tau - a) * (tau - b) / ((c - a) * (c - b)),
+        ]
+    )

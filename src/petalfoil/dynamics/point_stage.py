@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.dynamics.point_path import same_contacts
-from petalfoil.dynamics.stage import Stage
+from petalfoil.dynamics.stage import TOLD, Stage
 from petalfoil.dynamics.time_state import TimeState
 from petalfoil.equilibrium.contact_sets import revised
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError, unbalanced
@@ -121,17 +121,19 @@ class PointStage:
                 tangent, made = ElementTangent.at(equations, load, current_run().film_solver), made + 1
             last = np.inf
             for number in range(CORRECTIONS):
+                before = equations.film_imbalance
                 change = tangent.correction(equations.newton_residual, unbalanced(equations, load))
                 size = self.size(change)
                 if not np.isfinite(size) or size > GROWING * last:
                     break
+                if number and before > 0.0:
+                    tangent = replace(tangent, response=max(tangent.response, size / before))
                 equations = stepped(equations, change, load, whole_step=True)
                 if not serves(tangent, equations):
                     break
                 contraction = size / last if number else options.slow
-                if size * min(1.0, contraction / max(1.0 - contraction, 0.1)) <= options.accuracy and balanced(
-                    equations
-                ):
+                left = size * min(1.0, contraction / max(1.0 - contraction, 0.1))
+                if min(left, told(tangent, equations)) <= options.accuracy and balanced(equations):
                     return equations, tangent
                 if number and contraction > options.slow:
                     break
@@ -157,6 +159,11 @@ def serves(tangent: ElementTangent, equations: PointStepEquations) -> bool:
         return False
     alike = np.array_equal(was.travels, equations.travels) and np.array_equal(was.idle, equations.idle)
     return alike and same_contacts(was.state, equations.state)
+
+
+def told(tangent: ElementTangent, equations: PointStepEquations) -> float:
+    """Correction that what is left of the film's rows asks for, as far as the tangent has been seen to answer."""
+    return TOLD * tangent.response * equations.film_imbalance if tangent.response else np.inf
 
 
 def balanced(equations: PointStepEquations) -> bool:

@@ -70,6 +70,11 @@ CONTACTS_SLIDING = replace(CONTACTS, tangents=160, tangents_per_set=TANGENTS_SLI
 """The same with friction between petals."""
 
 
+TOLD = 2.0
+"""Correction that a residual is taken to ask for, over the largest one that a residual of its size has asked for with
+the tangent at hand: a stage whose tangent is known by others ends after one correction."""
+
+
 @dataclass(frozen=True)
 class StageOptions:
     """Numbers of a stage."""
@@ -172,6 +177,8 @@ class Stage(ContactEquations):
             return StepVerdict.FAIL
         contraction = step.size / step.last_size if step.number else self.options.slow
         error = step.size * min(1.0, contraction / max(1.0 - contraction, 0.1))
+        if step.response and not sliding:
+            error = min(error, TOLD * step.response * step.after.residual)
         if step.length < 1.0:
             return StepVerdict.RENEW
         if error <= self.options.accuracy:

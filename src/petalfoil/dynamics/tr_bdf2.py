@@ -14,7 +14,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.dynamics.point_path import at_points_instant, lagrange, point_guesses
+from petalfoil.dynamics.point_path import KNOTS, at_points_instant, foretelling, point_guesses
 from petalfoil.dynamics.point_stage import PointStage
 from petalfoil.dynamics.rotor_motion import RotorMotion
 from petalfoil.dynamics.stage import Stage, StageOptions, StageSolution, solve_sliding_stage, solve_stage
@@ -123,7 +123,7 @@ def take_step(
     between = inner.instant
     base = now.moving.plus(step, (WEIGHT, now.change), (WEIGHT, between.change))
     last_stage = bearing.stage(base, now.tau + step, step, now, options)
-    outer = advance(bearing, last_stage, now.tau + step, [*path[-2:], between], inner.tangent)
+    outer = advance(bearing, last_stage, now.tau + step, [*path[1 - KNOTS :], between], inner.tangent)
     if outer is None:
         return None
     error = estimate(bearing, (now, between, outer.instant), step, outer.tangent)
@@ -177,15 +177,14 @@ def solved(
 
 
 def guesses(path: list[Instant], tau: float) -> list[tuple[Array, Array]]:
-    """Unknowns and displacement at `tau`: through the last three instants of `path`, else as they were last."""
-    latest = path[-1]
+    """Unknowns and displacement at `tau`: foretold from the latest instants of `path`, else as they were last."""
+    latest, known = path[-1], path[-KNOTS:]
     still = (latest.x, latest.e)
-    if len(path) < 3 or any(instant.points is not None for instant in path[-3:]):
+    if len(known) < 3 or any(instant.points is not None for instant in known):
         return [still]
-    weights = lagrange([instant.tau for instant in path[-3:]], tau)
-    x = sum(w * instant.x for w, instant in zip(weights, path[-3:], strict=True))
-    e = sum(w * instant.e for w, instant in zip(weights, path[-3:], strict=True))
-    return [(np.asarray(x), np.asarray(e)), still]
+    weights = foretelling([instant.tau for instant in known], tau)
+    x, e = (weights @ np.array([getattr(instant, name) for instant in known]) for name in ("x", "e"))
+    return [(x, e), still]
 
 
 def estimate(

@@ -64,6 +64,8 @@ class ElementTangent:
         `R`.
     gradient : (n_position, n_position) array
         Force by the journal's position, unknowns following.
+    response : float
+        Largest correction over what was left of the film's rows, seen after a correction with it; 0 before any is.
     """
 
     equations: TangentEquations
@@ -71,6 +73,7 @@ class ElementTangent:
     units: Array
     rows: Array
     gradient: Array
+    response: float = 0.0
 
     @classmethod
     def at(cls, equations: TangentEquations, load: Array | None, solver: LinearSolver) -> ElementTangent:

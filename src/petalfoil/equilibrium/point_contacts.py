@@ -227,8 +227,8 @@ def stepped(
 
     A `whole_step` is only shortened where pressures or the film would vanish, or the journal goes too far.
     """
-    (before, _), (dX, move) = norm(equations, load), change
-    length = admitted(equations, change, FARTHEST_MOVE)
+    (dX, move), length = change, admitted(equations, change, FARTHEST_MOVE)
+    before = np.inf if whole_step else norm(equations, load)[0]
     while True:
         problem = equations.problem.at(displacement=equations.problem.displacement + length * move)
         ahead = replace(equations, problem=problem, state=changed(equations, length * dX))

@@ -141,6 +141,8 @@ class Step:
         Fraction of the correction that was taken.
     size, last_size : float
         Largest change of an unknown in the correction, and in the one before (infinite if there was none).
+    response : float
+        Largest correction over the residual left for it that the tangent has shown; 0 while none is known.
     """
 
     number: int
@@ -149,6 +151,7 @@ class Step:
     length: float
     size: float
     last_size: float
+    response: float = 0.0
 
 
 @dataclass(frozen=True)

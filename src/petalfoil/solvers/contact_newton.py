@@ -127,7 +127,7 @@ def iterate(
         # Newton steps with it, as long as they contract.
         before = state
         try:
-            equations, state, converged = steps_with(equations, state, tangent, options)
+            equations, state, tangent, converged = steps_with(equations, state, tangent, options)
         except ContactFailure:
             if not (borrowed and options.borrow):
                 raise
@@ -160,8 +160,8 @@ def iterate(
 
 def steps_with(
     equations: AnyEquations, state: ContactState, tangent: BorderedTangent, options: ContactOptions
-) -> tuple[AnyEquations, ContactState, bool]:
-    """Newton steps with one tangent; what they reach, and whether it solves the equations.
+) -> tuple[AnyEquations, ContactState, BorderedTangent, bool]:
+    """Newton steps with one tangent; what they reach, the tangent, and whether the state solves the equations.
 
     Near the solution the tangent hardly changes, so that a step costs a solve instead of a factorisation.
     """
@@ -169,6 +169,8 @@ def steps_with(
     for number in range(options.steps):
         equations = equations.lagged(state)
         correction = corrected(equations, state, tangent)
+        if number:
+            tangent = tangent.seen(correction.size, state.residual)
         length = equations.step_length(state, correction)
         ahead = state.x + length * correction.x, state.b + length * correction.b
         after: ContactState | None = None
@@ -177,15 +179,16 @@ def steps_with(
             after = evaluate(equations, ahead, options, state.constraints, correction.stops)
         except ContactFailure as failed:
             failure = failed.outcome
-        verdict = equations.verdict(Step(number, state, after, length, correction.size, last), options)
+        step = Step(number, state, after, length, correction.size, last, tangent.response)
+        verdict = equations.verdict(step, options)
         if verdict is StepVerdict.FAIL:
             raise ContactFailure(failure)
         if verdict is StepVerdict.REJECT or after is None:
             break
         state, last = after, correction.size
         if verdict is not StepVerdict.GO_ON:
-            return equations, state, verdict is StepVerdict.CONVERGED
-    return equations, state, False
+            return equations, state, tangent, verdict is StepVerdict.CONVERGED
+    return equations, state, tangent, False
 
 
 def corrected(equations: ContactEquations, state: ContactState, tangent: BorderedTangent) -> Correction:

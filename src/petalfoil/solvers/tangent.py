@@ -7,9 +7,9 @@ follows a contact set that changes by a few gaps without a new factorisation (O4
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import scipy.linalg as la
@@ -69,6 +69,10 @@ class Tangent:
             follow = self.constraints.close(gap_change)
             change = follow + self.step(self.matrix @ follow + residual)
         return change, self.constraints.reactions(self.matrix @ change + residual)
+
+    def seen(self, correction: float, residual: float) -> Self:
+        """The same after a correction of this size has answered what another one left."""
+        return replace(self, response=max(self.response, correction / residual)) if residual > 0.0 else self
 
     def adjoint(self, by_change: Array, by_reactions: Array) -> tuple[Array, Array]:
         """Derivatives by `residual` (n,) and `gap_change` (k,) of what has these by the outcome of `respond`.
@@ -160,6 +164,8 @@ class BorderedTangent:
         Change of the unknowns by a unit of each bordered unknown.
     gradient : (d, d) array
         Change of the rows `R x + A^T lam` by them.
+    response : float
+        Largest correction over the residual that was left for it, seen after a correction with it; 0 before any is.
     """
 
     tangent: Tangent
@@ -169,6 +175,7 @@ class BorderedTangent:
     exchange: Exchange | None
     units: Values
     gradient: Values
+    response: float = field(default=0.0, kw_only=True)
 
     @classmethod
     def at(cls, tangent: Tangent, border: Border, linearized: Linearized) -> BorderedTangent:
@@ -211,6 +218,10 @@ class BorderedTangent:
             change, reactions, lam[added] = self.exchange.amend(change, reactions, moved)
         lam[held] = reactions
         return change, lam
+
+    def seen(self, correction: float, residual: float) -> Self:
+        """The same after a correction of this size has answered what another one left."""
+        return replace(self, response=max(self.response, correction / residual)) if residual > 0.0 else self
 
     def adjoint(self, by_change: Array, by_reactions: Array) -> tuple[Array, Array]:
         """Derivatives by `residual` (n,) and `gap_change` (m,) of what has these by the outcome of `respond`.

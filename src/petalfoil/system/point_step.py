@@ -53,6 +53,11 @@ class PointStepEquations(PointEquations):
         return wall, film + self.problem.rate * (self.film.mass - self.problem.start), value, slope
 
     @cached_property
+    def film_imbalance(self) -> float:
+        """Largest residual of the film's rows over the flows of their cells."""
+        return float(np.max(np.abs(self.residual[1] / self.film.row_scale), initial=0.0))
+
+    @cached_property
     def steady(self) -> sp.csc_array:
         """The tangent, storage included."""
         tangent = super().steady

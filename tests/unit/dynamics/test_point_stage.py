@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from petalfoil.analysis.orbit_motion import Orbit
 from petalfoil.analysis.release import OrbitRequest
 from petalfoil.dynamics.adaptive_steps import HELD, LOST, MarchOptions, NextStep, march, without_points
+from petalfoil.dynamics.point_path import KNOTS
 from petalfoil.dynamics.point_stage import PointStage
 from petalfoil.dynamics.stage import StageOptions
 from petalfoil.dynamics.time_state import Instant
@@ -168,3 +169,30 @@ def test_a_motion_whose_balance_has_no_points_begins_where_nodes_carry_the_load(
     orbit = Orbit.begin(bearing, OrbitRequest(revolutions=1.0, initial="balance"))
     assert orbit.start.points is None
     assert_allclose(orbit.start.change.v, 0.0, atol=1e-9)
+
+
+def test_a_known_tangent_ends_stages_where_more_corrections_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Most stages then take one correction; the others tell what the tangent answers."""
+    corrections, exactly = [], ElementTangent.correction
+
+    def counted(tangent: ElementTangent, residual: Array, force: Array) -> tuple[Array, Array]:
+        corrections.append(1)
+        return exactly(tangent, residual, force)
+
+    monkeypatch.setattr(ElementTangent, "correction", counted)
+    orbit = begun()
+    path, tangent, taken = [orbit.start], None, 0
+    with orbit.run.active():
+        for _ in range(12):
+            exact = take_step(orbit.system, path, 0.05, None, StageOptions(accuracy=1e-11))
+            before = len(corrections)
+            found = take_step(orbit.system, path, 0.05, tangent, StageOptions(accuracy=1e-5))
+            taken = len(corrections) - before
+            assert exact is not None
+            assert found is not None
+            assert exact.end.points is not None
+            assert found.end.points is not None
+            for name in ("w", "P"):
+                assert_allclose(getattr(found.end.points, name), getattr(exact.end.points, name), rtol=0.0, atol=2e-5)
+            path, tangent = [*path, found.inner, found.end][-KNOTS:], found.tangent
+    assert taken == 3  # two stages, and the estimate of the error

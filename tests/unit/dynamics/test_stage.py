@@ -11,13 +11,15 @@ from numpy.testing import assert_allclose
 from petalfoil.analysis.orbit_motion import Orbit
 from petalfoil.analysis.release import OrbitRequest
 from petalfoil.case import Case
+from petalfoil.dynamics.point_path import KNOTS, foretelling, lagrange
 from petalfoil.dynamics.stage import Stage, StageOptions, solve_stage
 from petalfoil.dynamics.time_state import Instant
-from petalfoil.dynamics.tr_bdf2 import GAMMA, IMPLICIT, RotorBearing, lagrange, take_step
+from petalfoil.dynamics.tr_bdf2 import GAMMA, IMPLICIT, RotorBearing, take_step
 from petalfoil.equilibrium.run_context import RunContext
+from petalfoil.solvers import contact_newton
 from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.contact_equations import ContactOptions, Step, StepVerdict, evaluate
-from petalfoil.solvers.contact_newton import factorise
+from petalfoil.solvers.contact_newton import corrected, factorise
 from petalfoil.solvers.sparse_lu import LinearSolver
 from tests.cases import case
 
@@ -93,14 +95,16 @@ def test_the_tangent_of_a_stage_serves_the_next(run: RunContext) -> None:
     assert run.film.factorizations - before == 1
 
 
-def verdict(stage: Stage, size: float, last: float, number: int, length: float = 1.0) -> StepVerdict:
-    """Of a step with corrections of such sizes."""
+def verdict(
+    stage: Stage, size: float, last: float, number: int, *, length: float = 1.0, response: float = 0.0
+) -> StepVerdict:
+    """Of a step with corrections of such sizes, by a tangent of such a response."""
     start = np.zeros(stage.problem.layout.n_position)
     x = stage.problem.layout.ambient(np.zeros(stage.problem.layout.n_wall))
     none = np.zeros(len(stage.problem.weight), dtype=bool)
     options = ContactOptions(deepest=-np.inf)
     state = evaluate(stage, (x, start), options, constrain(stage.problem.G, none, stage.stops))
-    return stage.verdict(Step(number, state, state, length, size, last), options)
+    return stage.verdict(Step(number, state, state, length, size, last, response), options)
 
 
 def test_a_stage_ends_by_its_correction() -> None:
@@ -111,6 +115,15 @@ def test_a_stage_ends_by_its_correction() -> None:
     assert verdict(stage, 1e-4, 2e-4, 1) is StepVerdict.RENEW  # contracts too slowly
     assert verdict(stage, 3e-3, 1e-3, 1) is StepVerdict.FAIL  # grows
     assert verdict(stage, 1e-9, np.inf, 0, length=0.5) is StepVerdict.RENEW  # shortened: not where it aimed
+
+
+def test_a_stage_ends_by_what_its_tangent_is_known_to_answer() -> None:
+    """Ambient pressure leaves a residual, of which the tangents have answered a part."""
+    stage, _ = first_stage("plain")
+    stage = replace(stage, options=StageOptions(accuracy=1e-6))
+    assert verdict(stage, 1e-3, np.inf, 0, response=1e-8) is StepVerdict.CONVERGED
+    assert verdict(stage, 1e-3, np.inf, 0, response=1e-2) is StepVerdict.GO_ON
+    assert verdict(stage, 1e-3, np.inf, 0, length=0.5, response=1e-8) is StepVerdict.RENEW
 
 
 def test_the_tangent_of_other_contacts_is_factorised_on_them() -> None:
@@ -129,3 +142,34 @@ def test_weights_of_a_parabola() -> None:
     for power in (0, 1, 2):
         values = [knot**power for knot in knots]
         assert np.dot(lagrange(knots, 2.0), values) == pytest.approx(2.0**power)
+
+
+def test_a_guess_is_exact_for_cubics_in_steps_of_one_length() -> None:
+    """And for parabolas in any steps: the parabola of a step ago missed a cubic by as much."""
+    even, uneven = [0.0, GAMMA, 1.0, 1.0 + GAMMA, 2.0], [0.0, 0.3, 1.0, 1.1, 2.0]
+    for knots, most in ((even, 3), (uneven, 2), (even[:4], 2), (even[:3], 2)):
+        for power in range(most + 1):
+            values = np.power(knots, power)
+            assert foretelling(knots, 2.0 + GAMMA) @ values == pytest.approx((2.0 + GAMMA) ** power, rel=1e-12)
+    assert len(even) == KNOTS
+    assert foretelling(uneven, 3.0) @ np.power(uneven, 3) != pytest.approx(27.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["plain", "petals"])
+def test_a_known_tangent_ends_stages_where_more_corrections_do(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Most stages then take one correction; the others tell what the tangent answers."""
+    corrections = []
+    monkeypatch.setattr(contact_newton, "corrected", lambda *asked: corrections.append(1) or corrected(*asked))
+    system, start = begun(name)
+    bearing = system.at_nodes
+    path, tangent = [replace(start, points=None)], None
+    for _ in range(12):
+        exact = take_step(bearing, path, 0.05, None, StageOptions(accuracy=1e-11))
+        before = len(corrections)
+        found = take_step(bearing, path, 0.05, tangent, StageOptions(accuracy=1e-5))
+        taken = len(corrections) - before
+        assert exact is not None
+        assert found is not None
+        assert_allclose(found.end.x, exact.end.x, rtol=0.0, atol=2e-5)
+        path, tangent = [*path, found.inner, found.end][-KNOTS:], found.tangent
+    assert taken == 2
