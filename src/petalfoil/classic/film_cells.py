@@ -63,7 +63,7 @@ def film_cells(balance: FilmBalance, H: Array, Lam: float) -> FilmCells:
     """Coefficients at film thickness `H` (strip, node, axial) and bearing number `Lam` [1]."""
     mesh, Kn = balance.mesh, balance.knudsen
     ahead, beside = (H[:, :-1], H[:, 1:]), (H[..., :-1], H[..., 1:])
-    cube, cube_across = (mean_cube(*sides)[0] for sides in (ahead, beside))
+    cube, cube_across = (mean_cube(*sides) for sides in (ahead, beside))
     width, width_across = balance.width_Z, mesh.arc_weight[:, None] * mesh.axial.copies
     first, last = shared(mesh.unknown)
     capacity = (H * balance.area).ravel()
@@ -73,8 +73,8 @@ def film_cells(balance: FilmBalance, H: Array, Lam: float) -> FilmCells:
         n_z=mesh.shape[2],
         along=_at_nodes(cube / balance.dphi * width, H.shape),
         across=_at_nodes(cube_across / balance.dZ * width_across, H.shape),
-        slip=_at_nodes(slip_pressure(*ahead, Kn)[0], H.shape),
-        slip_across=_at_nodes(slip_pressure(*beside, Kn)[0], H.shape),
+        slip=_at_nodes(slip_pressure(*ahead, Kn), H.shape),
+        slip_across=_at_nodes(slip_pressure(*beside, Kn), H.shape),
         advection=_at_nodes(0.5 * Lam * ahead[0] * width, H.shape),
         advection_ahead=_at_nodes(0.5 * Lam * ahead[1] * width, H.shape),
         peclet=_at_nodes(0.25 * Lam * (ahead[0] + ahead[1]) * balance.dphi / cube, H.shape),

@@ -66,7 +66,7 @@ def inflow(P: Array, cells: FilmCells, fit: Array) -> Array:
 def exponential_fit(P: Array, cells: FilmCells) -> Array:
     """`L(x)` of the circumferential faces after every node (F2), (n_node,) [1]."""
     mean_P = 0.5 * (P + np.append(P[cells.n_z :], P[: cells.n_z]))
-    return langevin(cells.peclet / (mean_P + cells.slip))[0]
+    return langevin(cells.peclet / (mean_P + cells.slip))
 
 
 def largest_rate(P: Array, cells: FilmCells) -> float:

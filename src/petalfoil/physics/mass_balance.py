@@ -83,7 +83,7 @@ class FilmBalance:
         along = circumferential_flux(P, H, Lam, self.dphi, self.knudsen)
         across = axial_flux(P, H, self.dZ, self.knudsen)
         width_phi = self.mesh.arc_weight[:, None] * self.mesh.axial.copies
-        return Flux(*(part * self.width_Z for part in along)), Flux(*(part * width_phi for part in across))
+        return along.times(self.width_Z), across.times(width_phi)
 
     def residual(self, fluxes: tuple[Flux, Flux]) -> Array:
         """Residual of the mass balance (F4): net outflow of the cell of each pressure unknown, (n_unknown,) [1]."""
@@ -94,7 +94,7 @@ class FilmBalance:
 
         At an ambient node it is the inflow from the surroundings into the film, that is, minus the leakage.
         """
-        return self._add_up([(flux.value, -flux.value) for flux in fluxes])
+        return self._add_up((fluxes[0].value, fluxes[1].value), -1.0)
 
     def side_leakage(self, fluxes: tuple[Flux, Flux]) -> float:
         """Gas that leaves at both ends, pressure times volume a second, over `p_a^2 h_ref^3 / (12 mu)` [1].
@@ -112,14 +112,17 @@ class FilmBalance:
 
     def row_scale(self, fluxes: tuple[Flux, Flux]) -> Array:
         """Sum of the magnitudes of the flows in each balance, (n_unknown,) [1]: the scale of its residual."""
-        return self._collect(self._add_up([(flux.scale, flux.scale) for flux in fluxes]))
+        return self._collect(self._add_up((fluxes[0].scale, fluxes[1].scale), 1.0))
 
-    def _add_up(self, sides: list[tuple[Array, Array]]) -> Array:
-        total = np.zeros(self.mesh.unknown.size)
-        for (node0, node1), (at0, at1) in zip(self._faces, sides, strict=True):
-            total += add_up(node0, at0.ravel(), len(total))
-            total += add_up(node1, at1.ravel(), len(total))
-        return total.reshape(self.mesh.shape)
+    def _add_up(self, faces: tuple[Array, Array], sign: float) -> Array:
+        """What goes through circumferential and axial faces, at the node before each and, times `sign`, behind it."""
+        along, across = faces
+        total = np.zeros(self.mesh.shape)
+        total[:, :-1] += along
+        total[:, 1:] += sign * along
+        total[..., :-1] += across
+        total[..., 1:] += sign * across
+        return total
 
     @cached_property
     def _stencil(self) -> tuple[Index, Index]:
@@ -152,8 +155,9 @@ class FilmBalance:
 
     def tangent(self, fluxes: tuple[Flux, Flux]) -> tuple[Array, Array]:
         """Derivatives of `residual`, in the order of `by_pressure` and of `by_film`."""
-        by_P = np.concatenate([d.ravel() for f in fluxes for d in (f.by_P0, f.by_P1, -f.by_P0, -f.by_P1)])
-        by_H = np.concatenate([d.ravel() for f in fluxes for d in (f.by_H0, f.by_H1, -f.by_H0, -f.by_H1)])
+        both = [flux.derivatives for flux in fluxes]
+        by_P = np.concatenate([d.ravel() for f in both for d in (f.by_P0, f.by_P1, -f.by_P0, -f.by_P1)])
+        by_H = np.concatenate([d.ravel() for f in both for d in (f.by_H0, f.by_H1, -f.by_H0, -f.by_H1)])
         return by_P[self._pressure_mask], by_H[self._stencil[0] >= 0]
 
     def storage(self, P: Array, H: Array, Lam: float) -> Array:
@@ -161,8 +165,12 @@ class FilmBalance:
         return self._collect(2.0 * Lam * P * H * self.area)
 
     def _collect(self, nodal: Array) -> Array:
-        numbers = self.mesh.unknown.ravel()
-        return add_up(numbers % (self.mesh.n_unknown + 1), nodal.ravel(), self.mesh.n_unknown + 1)[:-1]
+        return add_up(self._cells, nodal.ravel(), self.mesh.n_unknown + 1)[:-1]
+
+    @cached_property
+    def _cells(self) -> Index:
+        """Cell of every film node, one behind the last for ambient nodes; (node of the film,)."""
+        return np.asarray(self.mesh.unknown.ravel() % (self.mesh.n_unknown + 1))
 
     @cached_property
     def storage_entries(self) -> Entries:

@@ -13,6 +13,9 @@ differences where the film is resolved, upwind differences where `Lam H dphi / (
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -23,16 +26,48 @@ from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 Array = NDArray[np.float64]
 
 
-class Flux(NamedTuple):
-    """Flux through faces, positive from node 0 to node 1, with its derivatives with respect to both nodes."""
+class FluxDerivatives(NamedTuple):
+    """Derivatives of a flux through faces with respect to pressure and film thickness at both nodes."""
 
-    value: Array
     by_P0: Array
     by_P1: Array
     by_H0: Array
     by_H1: Array
+
+
+@dataclass(frozen=True)
+class Flux:
+    """Flux through faces, positive from node 0 to node 1.
+
+    A residual asks for fluxes more often than a tangent for their derivatives, which cost twice as much: these are
+    computed when they are asked for.
+
+    Attributes
+    ----------
+    value : array
+        Flux through every face.
+    scale : array
+        Sum of the magnitudes of its terms, rounding included: the scale of a residual.
+    derive : callable
+        Gives its derivatives.
+    """
+
+    value: Array
     scale: Array
-    """Sum of the magnitudes of the terms of the flux, rounding included: the scale of a residual."""
+    derive: Callable[[], FluxDerivatives]
+
+    @cached_property
+    def derivatives(self) -> FluxDerivatives:
+        """Derivatives by both nodes."""
+        return self.derive()
+
+    def times(self, width: Array | float) -> Flux:
+        """The flow through faces of a width."""
+        return Flux(
+            self.value * width,
+            self.scale * width,
+            lambda: FluxDerivatives(*(part * width for part in self.derivatives)),
+        )
 
 
 ROUNDING = 4.0 * float(np.finfo(float).eps) / RESIDUAL_TOLERANCE
@@ -43,28 +78,36 @@ residual of rounding alone passes the tolerance. This matters where hardly any g
 """
 
 
-def langevin(x: Array) -> tuple[Array, Array]:
-    """`L(x) = coth x - 1/x` for `x >= 0` and its derivative, without cancellation near zero."""
-    small = x < 0.03
-    y = np.where(small, 1.0, x)
-    square = np.minimum(x, 1.0) ** 2  # the series is used for x < 0.03 only; this keeps it finite elsewhere
+def langevin(x: Array) -> Array:
+    """`L(x) = coth x - 1/x` for `x >= 0`, without cancellation near zero."""
+    y, square, small = langevin_ranges(x)
     decay = np.exp(-2.0 * y)
     value = (1.0 + decay) / (1.0 - decay) - 1.0 / y
+    return np.where(small, x * (1.0 / 3.0 - square * (1.0 / 45.0 - square * (2.0 / 945.0))), value)
+
+
+def langevin_slope(x: Array) -> Array:
+    """Derivative of `langevin`."""
+    y, square, small = langevin_ranges(x)
+    decay = np.exp(-2.0 * y)
     slope = 1.0 / y**2 - 4.0 * decay / (1.0 - decay) ** 2
-    series = x * (1.0 / 3.0 - square * (1.0 / 45.0 - square * (2.0 / 945.0)))
-    series_slope = 1.0 / 3.0 - square * (1.0 / 15.0 - square * (2.0 / 189.0))
-    return np.where(small, series, value), np.where(small, series_slope, slope)
+    return np.where(small, 1.0 / 3.0 - square * (1.0 / 15.0 - square * (2.0 / 189.0)), slope)
 
 
-def mean_cube(H0: Array, H1: Array) -> tuple[Array, Array, Array]:
-    """Harmonic mean of `H^3` on a face, `1 / mean(H^-3)` of a linear film, and its derivatives by `H0` and `H1`."""
-    both = H0 + H1
-    cube = 2.0 * (H0 * H1) ** 2 / both
-    return cube, cube * (2.0 / H0 - 1.0 / both), cube * (2.0 / H1 - 1.0 / both)
+def langevin_ranges(x: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """`x` where the closed form holds, `x^2` where the series does, and where that is: each harmless elsewhere."""
+    small = x < 0.03
+    return np.where(small, 1.0, x), np.minimum(x, 1.0) ** 2, small
 
 
-def slip_pressure(H0: Array, H1: Array, Kn: float) -> tuple[Array, Array, Array]:
-    """Pressure with the same effect on the flow as slip, `6 Kn mean(H^2) / mean(H^3)`, and its derivatives (F7).
+def mean_cube(H0: Array, H1: Array) -> Array:
+    """Harmonic mean of `H^3` on a face, `1 / mean(H^-3)` of a linear film."""
+    cube: Array = 2.0 * (H0 * H1) ** 2 / (H0 + H1)
+    return cube
+
+
+def slip_pressure(H0: Array, H1: Array, Kn: float) -> Array:
+    """Pressure with the same effect on the flow as slip, `6 Kn mean(H^2) / mean(H^3)` (F7).
 
     For a linear film `1 / mean(H^-2) = H0 H1`. The pressure is then `6 Kn` over the harmonic mean of `H0` and `H1`.
 
@@ -75,9 +118,30 @@ def slip_pressure(H0: Array, H1: Array, Kn: float) -> tuple[Array, Array, Array]
     Kn : float
         Knudsen number on the reference film at ambient pressure [1].
     """
-    if Kn == 0.0:
-        return np.zeros_like(H0), np.zeros_like(H0), np.zeros_like(H0)
-    return 3.0 * Kn * (1.0 / H0 + 1.0 / H1), -3.0 * Kn / H0**2, -3.0 * Kn / H1**2
+    return np.zeros_like(H0) if Kn == 0.0 else 3.0 * Kn * (1.0 / H0 + 1.0 / H1)
+
+
+class Faces(NamedTuple):
+    """Pressures and film thicknesses on both sides of faces, mean of `H^3`, mean pressure, and that of slip."""
+
+    P0: Array
+    P1: Array
+    H0: Array
+    H1: Array
+    cube: Array
+    mean_P: Array
+    slip: Array
+
+    @classmethod
+    def between(cls, P: tuple[Array, Array], H: tuple[Array, Array], Kn: float) -> Faces:
+        """The faces between nodes."""
+        return cls(*P, *H, mean_cube(*H), 0.5 * (P[0] + P[1]), slip_pressure(*H, Kn))
+
+    def by_films(self, Kn: float) -> tuple[Array, Array, Array, Array]:
+        """Derivatives of `cube`, then of `slip`, by the films on both sides."""
+        H0, H1, cube = self.H0, self.H1, self.cube
+        both = H0 + H1
+        return cube * (2.0 / H0 - 1.0 / both), cube * (2.0 / H1 - 1.0 / both), -3.0 * Kn / H0**2, -3.0 * Kn / H1**2
 
 
 def circumferential_flux(P: Array, H: Array, Lam: float, dphi: Array, Kn: float = 0.0) -> Flux:
@@ -94,57 +158,55 @@ def circumferential_flux(P: Array, H: Array, Lam: float, dphi: Array, Kn: float 
     Kn : float
         Knudsen number on the reference film at ambient pressure; zero without slip [1].
     """
-    P0, P1, H0, H1 = P[:, :-1], P[:, 1:], H[:, :-1], H[:, 1:]
-    cube, cube_H0, cube_H1 = mean_cube(H0, H1)
-    mean_P, mean_H = 0.5 * (P0 + P1), 0.5 * (H0 + H1)
-    slip, slip_H0, slip_H1 = slip_pressure(H0, H1, Kn)
+    faces = Faces.between((P[:, :-1], P[:, 1:]), (H[:, :-1], H[:, 1:]), Kn)
+    P0, P1, H0, H1, cube, mean_P, slip = faces
     conductance = cube * (mean_P + slip)
-    x = 0.5 * Lam * mean_H * dphi / conductance  # half the cell Peclet number
-    fit, slope = langevin(x)
-    jump = P1 * H1 - P0 * H0
+    x = 0.25 * Lam * (H0 + H1) * dphi / conductance  # half the cell Peclet number
+    fit, jump = langevin(x), P1 * H1 - P0 * H0
 
     poiseuille = -conductance * (P1 - P0) / dphi
     couette = 0.5 * Lam * (P0 * H0 + P1 * H1)
     upwinding = -0.5 * Lam * fit * jump
+    value = poiseuille + couette + upwinding
+    scale = np.abs(poiseuille) + couette + np.abs(upwinding) + ROUNDING * conductance * mean_P / dphi
+    flux = Flux(value, scale, lambda: circumferential_derivatives(faces, x, Lam, dphi, Kn))
 
+    bound = DRAIN * (Lam * H0 + conductance / dphi) * P0
+    return limited(flux, supplied(faces, Lam, dphi, Kn)) if (value > bound).any() else flux
+
+
+def circumferential_derivatives(faces: Faces, x: Array, Lam: float, dphi: Array, Kn: float) -> FluxDerivatives:
+    """Derivatives of the circumferential flux (F2), at half the cell Peclet number `x`, before it is limited."""
+    P0, P1, H0, H1, cube, mean_P, slip = faces
+    cube_H0, cube_H1, slip_H0, slip_H1 = faces.by_films(Kn)
+    conductance, fit, jump = cube * (mean_P + slip), langevin(x), P1 * H1 - P0 * H0
     # value = -conductance dP / dphi + Lam/2 (P0 H0 + P1 H1) - Lam/2 L(x) (P1 H1 - P0 H0): every factor is
     # differentiated; `wind` is the derivative of the last term by x, and x_P, x_H0, x_H1 are the derivatives of x
-    half, wind = 0.5 * Lam, 0.5 * Lam * slope * jump
+    half, wind = 0.5 * Lam, 0.5 * Lam * langevin_slope(x) * jump
     x_P = -0.5 * x / (mean_P + slip)  # derivative of x by P0 and by P1
     by_P0 = (conductance - 0.5 * cube * (P1 - P0)) / dphi + half * H0 * (1.0 + fit) - wind * x_P
     by_P1 = (-conductance - 0.5 * cube * (P1 - P0)) / dphi + half * H1 * (1.0 - fit) - wind * x_P
-    x_H0 = x * (0.5 / mean_H - cube_H0 / cube - slip_H0 / (mean_P + slip))
-    x_H1 = x * (0.5 / mean_H - cube_H1 / cube - slip_H1 / (mean_P + slip))
+    x_H0 = x * (1.0 / (H0 + H1) - cube_H0 / cube - slip_H0 / (mean_P + slip))
+    x_H1 = x * (1.0 / (H0 + H1) - cube_H1 / cube - slip_H1 / (mean_P + slip))
     drop, slipped = (mean_P + slip) * (P1 - P0) / dphi, cube * (P1 - P0) / dphi
     by_H0 = -cube_H0 * drop - slip_H0 * slipped + half * P0 * (1.0 + fit) - wind * x_H0
     by_H1 = -cube_H1 * drop - slip_H1 * slipped + half * P1 * (1.0 - fit) - wind * x_H1
-    value = poiseuille + couette + upwinding
-    scale = np.abs(poiseuille) + couette + np.abs(upwinding) + ROUNDING * conductance * mean_P / dphi
-    flux = Flux(value, by_P0, by_P1, by_H0, by_H1, scale)
-    return limited(flux, supplied(P0, H0, (Lam, dphi), (cube, cube_H0, cube_H1), (mean_P, slip, slip_H0, slip_H1)))
+    return FluxDerivatives(by_P0, by_P1, by_H0, by_H1)
 
 
-def supplied(
-    P0: Array, H0: Array, film: tuple[float, Array], cube: tuple[Array, Array, Array], pressure: tuple[Array, ...]
-) -> Flux:
-    """What the upstream pressure alone drives through a face, `(Lam H0 + mean(H^3 (P + slip)) / dphi) P0`.
+def supplied(faces: Faces, Lam: float, dphi: Array, Kn: float) -> Flux:
+    """What the upstream pressure alone drives through a face, `(Lam H0 + mean(H^3 (P + slip)) / dphi) P0`."""
+    P0, _, H0, _, cube, mean_P, slip = faces
+    rate = Lam * H0 + cube * (mean_P + slip) / dphi
 
-    Parameters
-    ----------
-    film : (Lam, dphi)
-        As in `circumferential_flux`.
-    cube : three arrays
-        Mean of `H^3` and its derivatives by both films.
-    pressure : four arrays
-        Mean pressure, that of slip, and the derivatives of the latter by both films.
-    """
-    (Lam, dphi), (mean, mean_H0, mean_H1), (mean_P, slip, slip_H0, slip_H1) = film, cube, pressure
-    rate = Lam * H0 + mean * (mean_P + slip) / dphi
-    by_P = 0.5 * mean * P0 / dphi  # through the mean pressure, by either
-    by_mean, by_slip = P0 * (mean_P + slip) / dphi, P0 * mean / dphi
-    by_H0 = Lam * P0 + by_mean * mean_H0 + by_slip * slip_H0
-    by_H1 = by_mean * mean_H1 + by_slip * slip_H1
-    return Flux(rate * P0, rate + by_P, by_P, by_H0, by_H1, rate * P0)
+    def derivatives() -> FluxDerivatives:
+        cube_H0, cube_H1, slip_H0, slip_H1 = faces.by_films(Kn)
+        by_P = 0.5 * cube * P0 / dphi  # through the mean pressure, by either
+        by_cube, by_slip = P0 * (mean_P + slip) / dphi, P0 * cube / dphi
+        by_H0 = Lam * P0 + by_cube * cube_H0 + by_slip * slip_H0
+        return FluxDerivatives(rate + by_P, by_P, by_H0, by_cube * cube_H1 + by_slip * slip_H1)
+
+    return Flux(rate * P0, rate * P0, derivatives)
 
 
 def limited(flux: Flux, supply: Flux) -> Flux:
@@ -157,13 +219,15 @@ def limited(flux: Flux, supply: Flux) -> Flux:
     """
     bound = DRAIN * supply.value
     over = flux.value > bound
-    if not over.any():
-        return flux
     ratio = np.where(over, bound / np.where(over, flux.value, 1.0), 1.0)  # flux = bound (2 - bound / flux)
     value = np.where(over, bound * (2.0 - ratio), flux.value)
-    by_flux, by_bound = ratio**2, DRAIN * 2.0 * (1.0 - ratio)
-    by_P0, by_P1, by_H0, by_H1 = (by_flux * d + by_bound * b for d, b in zip(flux[1:5], supply[1:5], strict=True))
-    return Flux(value, by_P0, by_P1, by_H0, by_H1, flux.scale)
+
+    def derivatives() -> FluxDerivatives:
+        by_flux, by_bound = ratio**2, DRAIN * 2.0 * (1.0 - ratio)
+        pairs = zip(flux.derivatives, supply.derivatives, strict=True)
+        return FluxDerivatives(*(by_flux * d + by_bound * b for d, b in pairs))
+
+    return Flux(value, flux.scale, derivatives)
 
 
 DRAIN = 10.0
@@ -177,15 +241,19 @@ def axial_flux(P: Array, H: Array, dZ: Array, Kn: float = 0.0) -> Flux:
     `mean(P) dP = d(P^2 / 2)` holds exactly on a face. `sum (H^3 P^2 / 2 + 6 Kn H^2 P)` over a closed circle therefore
     has the same value at every station, as the integral has in the differential equation.
     """
-    P0, P1, H0, H1 = P[..., :-1], P[..., 1:], H[..., :-1], H[..., 1:]
-    (cube, cube_H0, cube_H1), mean_P = mean_cube(H0, H1), 0.5 * (P0 + P1)
-    slip, slip_H0, slip_H1 = slip_pressure(H0, H1, Kn)
-
+    faces = Faces.between((P[..., :-1], P[..., 1:]), (H[..., :-1], H[..., 1:]), Kn)
+    P0, P1, _, _, cube, mean_P, slip = faces
     poiseuille = -cube * (mean_P + slip) * (P1 - P0) / dZ
-
-    by_P0 = cube * (P0 + slip) / dZ
-    by_P1 = -cube * (P1 + slip) / dZ
-    drop, slipped = (mean_P + slip) * (P1 - P0) / dZ, cube * (P1 - P0) / dZ
-    by_H0, by_H1 = -cube_H0 * drop - slip_H0 * slipped, -cube_H1 * drop - slip_H1 * slipped
     scale = np.abs(poiseuille) + ROUNDING * cube * (mean_P**2 + slip * mean_P) / dZ
-    return Flux(poiseuille, by_P0, by_P1, by_H0, by_H1, scale)
+
+    def derivatives() -> FluxDerivatives:
+        cube_H0, cube_H1, slip_H0, slip_H1 = faces.by_films(Kn)
+        drop, slipped = (mean_P + slip) * (P1 - P0) / dZ, cube * (P1 - P0) / dZ
+        return FluxDerivatives(
+            cube * (P0 + slip) / dZ,
+            -cube * (P1 + slip) / dZ,
+            -cube_H0 * drop - slip_H0 * slipped,
+            -cube_H1 * drop - slip_H1 * slipped,
+        )
+
+    return Flux(poiseuille, scale, derivatives)
