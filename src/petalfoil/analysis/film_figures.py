@@ -73,7 +73,7 @@ class BearingState:
         if self.points is None:
             return 0.5 * float(self.deflection @ self.problem.layout.elastic_force(self.deflection))
         reaction, curvature = self.points.state.points.reaction, self.points.whole.bending @ self.points.state.w
-        return 0.5 * float(curvature @ curvature + reaction @ (self.points.gaps.bend @ reaction))
+        return 0.5 * float(curvature @ curvature + reaction @ self.points.gaps.bending)
 
     @cached_property
     def thinnest(self) -> float:

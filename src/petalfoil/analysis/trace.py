@@ -107,13 +107,16 @@ class Trace:
     rows: StepFigures = field(default_factory=StepFigures)
     frames: deque[Instant] = field(default_factory=lambda: deque(maxlen=FRAMES))
     last: Instant | None = None
+    _parts: list[BearingState] = field(default_factory=list)
     _due: float = -np.inf
 
     def add(self, instant: Instant) -> None:
         """Keep an instant, and what film and loads have done since the one before."""
-        row = {**self.rotor_figures(instant), **self.film_figures(instant), **self.done_since(instant)}
+        parts = self._bearings(instant)
+        done = self.done_since(instant, parts)
+        row = {**self.rotor_figures(instant, parts), **self.film_figures(instant, parts), **done}
         self.rows.append(row)
-        self.last = instant
+        self.last, self._parts = instant, parts
         if row["shaft_angle"] >= self._due:
             self.frames.append(instant)
             self._due = row["shaft_angle"] + 2.0 * np.pi / FRAMES_A_TURN
@@ -137,12 +140,12 @@ class Trace:
         slopes = np.concatenate([e[2:], v[2:]]) / self.case.rotor.lever
         return {name: float(slope) for name, slope in zip(TILT, slopes, strict=True)}
 
-    def rotor_figures(self, instant: Instant) -> dict[str, float]:
+    def rotor_figures(self, instant: Instant, parts: list[BearingState]) -> dict[str, float]:
         """Position, velocity, speed and energies at an instant."""
         length, _, force, rate = self._units
         rotor = self.system.rotor
         t, (e, v) = instant.tau / rate, (instant.moving.e * length, instant.moving.v * length * rate)
-        elastic = sum(part.elastic_energy for part in self._bearings(instant))
+        elastic = sum(part.elastic_energy for part in parts)
         kinetic = 0.5 * float(instant.moving.v @ rotor.inertia @ instant.moving.v) * force * length
         tilt = self._tilt(e, v)
         return {
@@ -163,9 +166,8 @@ class Trace:
         parts = self.system.problem.each(instant.x, instant.lam)
         return [(part.layout, x[part.layout.unknowns[DEFLECTION]]) for part, x, _ in parts]
 
-    def film_figures(self, instant: Instant) -> dict[str, float]:
+    def film_figures(self, instant: Instant, parts: list[BearingState]) -> dict[str, float]:
         """Film, pressure, forces and friction at an instant, gas and what of it leaves; of all bearings together."""
-        parts = self._bearings(instant)
         stored = self.system.problem.stored_of_each(instant.moving.stored)
         films = [FilmFigures.of(part, gas) for part, gas in zip(parts, stored, strict=True)]
         pushed = self._journal_force(instant, parts) * self._units[2]
@@ -190,13 +192,13 @@ class Trace:
         there = self.system.problem.at(bearing_number=number, displacement=instant.e)
         return there.journal_force(instant.x, instant.lam)
 
-    def done_since(self, instant: Instant) -> dict[str, float]:
+    def done_since(self, instant: Instant, parts: list[BearingState]) -> dict[str, float]:
         """Work of film, loads and growth on rotor and petals since the latest instant, by the trapezium rule [J]."""
         before = self.last
         if before is None:
             return dict.fromkeys(("film_step", "load_step", "petals_step", "growth_step", "dragging_step"), 0.0)
         system, unit = self.system, self._units[2] * self._units[0]
-        pairs = list(zip(self._bearings(before), self._bearings(instant), strict=True))
+        pairs = list(zip(self._parts, parts, strict=True))
         loads = 0.5 * (system.rotor.outside(before.tau) + system.rotor.outside(instant.tau))
         friction, worn = system.friction, self._lost(before, instant)
         if friction is not None and before.friction is not None and instant.friction is not None:

@@ -29,6 +29,10 @@ class MarchOptions:
     """All steps as long as the first, whatever their error."""
 
 
+LOOSEST = 1e-5
+"""Largest correction that a stage may leave, however large an error of its step may be [reference films, ambient
+pressures]: guesses amplify what earlier stages have left."""
+
 HELD, SELDOM = 16, 128
 """Steps with contacts at nodes before points are looked for again; twice as many each time that they are lost. The
 second is that of a motion that begins without points, five turns of the longest step."""
@@ -97,7 +101,7 @@ def march(bearing: RotorBearing, start: Instant, end: float, options: MarchOptio
         No step, however short, has a solution.
     """
     path, ahead = [start], NextStep.first(bearing, start, min(options.first, options.longest))
-    stage_options = StageOptions(accuracy=1e-2 * options.tolerance)
+    stage_options = StageOptions(accuracy=min(1e-2 * options.tolerance, LOOSEST))
     while path[-1].tau < end * (1.0 - 1e-12):
         left = end - path[-1].tau
         step = ahead.step if ahead.step < left * (1.0 - 1e-9) else left

@@ -61,10 +61,8 @@ def point_guesses(whole: PointLayout, path: list[Instant], tau: float) -> list[t
 
 def same_contacts(one: PointState, other: PointState) -> bool:
     """Whether two states have contacts on the same curves."""
-    same = (getattr(one.points, name) for name in ("curve", "inner"))
-    return all(
-        np.array_equal(mine, getattr(other.points, name)) for mine, name in zip(same, ("curve", "inner"), strict=True)
-    )
+    pairs = ((one.points.curve, other.points.curve), (one.points.inner, other.points.inner))
+    return all(mine is its or np.array_equal(mine, its) for mine, its in pairs)
 
 
 def state_at(whole: PointLayout, instant: Instant) -> PointState:

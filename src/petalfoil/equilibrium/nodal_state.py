@@ -140,18 +140,14 @@ def shared_reactions(found: ElementEquilibrium) -> Array:
 
 def sampled_deflection(found: ElementEquilibrium) -> Array:
     """Deflections at the nodes of the pack, (n_wall,) [1], bending by the loads within each element (S7) included."""
-    pack, equations = found.pack, found.equations
-    layout = equations.problem.layout
-    element, t = hermite.located(pack.mesh.phi[1:], pack.elements.phi)
-    smooth = (hermite.rows(element, t, pack.elements.element_angle) @ nodal_deflection(found).T).T
-    pressed = pressing(found)
-    bent = pressed @ np.where(element[:, None] == element, clamped_beam(t[:, None], t[None, :]), 0.0)
+    pack, scales = found.pack, found.equations.problem.layout.scales
+    rows, element, t, beams, C = pack.sampling
+    smooth = (rows @ found.equations.deflection).reshape(pack.mesh.count, -1)
+    bent = pressing(found) @ beams
     for loads in pack.contact_places(found.points):
-        same = loads.element[:, None] == element
-        bend = np.where(same, clamped_beam(t[None, :], loads.place[:, None]), 0.0)
+        bend = np.where(loads.element[:, None] == element, clamped_beam(t, loads.place[:, None]), 0.0)
         np.add.at(bent, loads.petal, loads.force[:, None] * bend)
-    C = np.stack([petal.point_compliance[element] for petal in pack.petals])
-    return np.asarray((smooth + C * (layout.scales.force / layout.scales.length) * bent).ravel())
+    return np.asarray((smooth + C * (scales.force / scales.length) * bent).ravel())
 
 
 def pressing(found: ElementEquilibrium) -> Array:

@@ -30,7 +30,7 @@ from petalfoil.physics.petal_elements import (
     clamped_beam_slope,
     clamped_beam_twist,
 )
-from petalfoil.sparsity import SparseRows
+from petalfoil.sparsity import SparseRows, add_up
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -80,7 +80,7 @@ class GapCurves:
 
     def locate(self, curve: Index, position: Array) -> tuple[Index, Array]:
         """Element and place in it of positions on curves."""
-        inside = np.clip(np.floor(position).astype(np.intp), 0, self.elements[curve] - 1)
+        inside = np.maximum(np.minimum(np.floor(position).astype(np.intp), self.elements[curve] - 1), 0)
         return self.first[curve] + inside, position - inside
 
     def rows(self, curve: Index, position: Array, derivative: int = 0) -> sp.csr_array:
@@ -114,8 +114,7 @@ class GapCurves:
     def nodal_loads(self, points: ContactPoints) -> Array:
         """Reactions of contact points as loads on the nodal (value, slope) of the gaps, (2 n_node,)."""
         columns, weights = hermite.entries(*self.locate(points.every_curve, points.every_position), self.angle)
-        loads = np.bincount(columns.ravel(), (weights * points.reaction[:, None]).ravel(), minlength=len(self.rest))
-        return loads.astype(np.float64)
+        return add_up(columns.ravel(), (weights * points.reaction[:, None]).ravel(), len(self.rest))
 
 
 @dataclass(frozen=True)
@@ -165,11 +164,13 @@ class ContactPoints:
     @cached_property
     def every_curve(self) -> Index:
         """Curve of every point, (j,)."""
-        return np.repeat(self.curve, self.inner + 1)
+        return self.curve if len(self.curve) == len(self.reaction) else np.repeat(self.curve, self.inner + 1)
 
     @cached_property
     def every_position(self) -> Array:
         """Position of every point, (j,)."""
+        if len(self.curve) == len(self.reaction):
+            return self.position
         k, number = len(self.curve), np.arange(len(self.reaction))
         before = np.repeat(np.arange(k), self.inner + 1)
         part = (number - self.ends[before]) / (self.inner[before] + 1.0)
@@ -200,7 +201,12 @@ class PointGaps:
     @cached_property
     def value(self) -> Array:
         """`p`, (j,)."""
-        return self._smooth(0) + self._at_points(self._bent(clamped_beam) * self._load)
+        return self._smooth(0) + self.bending
+
+    @cached_property
+    def bending(self) -> Array:
+        """What reactions bend their own elements by at the points, `sum_d C b lam_d`, (j,)."""
+        return self._at_points(self._bent(clamped_beam) * self._load)
 
     @cached_property
     def slope(self) -> Array:
@@ -278,7 +284,7 @@ class PointGaps:
 
     def _at_points(self, part: Array) -> Array:
         """Sum of a part of the pairs at each point, (j,)."""
-        return np.bincount(self._pairs[0], weights=part, minlength=len(self.points.reaction)).astype(np.float64)
+        return add_up(self._pairs[0], part, len(self.points.reaction))
 
     def _matrix(self, part: Array) -> sp.csr_array:
         """A part of the pairs as a matrix, (j, j)."""
@@ -288,11 +294,8 @@ class PointGaps:
 
 def together(element: Index) -> tuple[Index, Index]:
     """All pairs of points on one element, a point with itself included: numbers of the first and of the second."""
-    order = np.argsort(element, kind="stable")
-    _, first, count = np.unique(element[order], return_index=True, return_counts=True)
-    partners, start = np.repeat(count, count), np.repeat(first, count)
-    number = np.arange(partners.sum()) - np.repeat(np.cumsum(partners) - partners, partners)
-    return np.repeat(order, partners), order[np.repeat(start, partners) + number]
+    first, second = np.nonzero(element[:, None] == element)
+    return first, second
 
 
 def sampled(curves: GapCurves, points: ContactPoints, nodal: Array, per_element: int) -> tuple[Index, Array, Array]:
@@ -300,8 +303,7 @@ def sampled(curves: GapCurves, points: ContactPoints, nodal: Array, per_element:
     curve, position, element, t, rows = curves.samples(per_element)
     gap = rows @ nodal
     at_element, at = curves.locate(points.every_curve, points.every_position)
-    first = np.searchsorted(element, at_element)
-    for start, place, lam, C in zip(first, at, points.reaction, curves.compliance[at_element], strict=True):
-        own = slice(start, start + per_element)
-        gap[own] += C * lam * clamped_beam(t[own], np.full(per_element, place))
+    own = np.searchsorted(element, at_element)[:, None] + np.arange(per_element)
+    bends = (curves.compliance[at_element] * points.reaction)[:, None] * clamped_beam(t[own], at[:, None])
+    np.add.at(gap, own, bends)
     return curve, position, gap

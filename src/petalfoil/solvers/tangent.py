@@ -70,10 +70,6 @@ class Tangent:
             change = follow + self.step(self.matrix @ follow + residual)
         return change, self.constraints.reactions(self.matrix @ change + residual)
 
-    def seen(self, correction: float, residual: float) -> Self:
-        """The same after a correction of this size has answered what another one left."""
-        return replace(self, response=max(self.response, correction / residual)) if residual > 0.0 else self
-
     def adjoint(self, by_change: Array, by_reactions: Array) -> tuple[Array, Array]:
         """Derivatives by `residual` (n,) and `gap_change` (k,) of what has these by the outcome of `respond`.
 

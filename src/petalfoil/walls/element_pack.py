@@ -19,7 +19,7 @@ from petalfoil.mesh import hermite
 from petalfoil.mesh.pack import PackMesh
 from petalfoil.mesh.pitch import petal_angles
 from petalfoil.physics.gap_curves import ContactPoints, Facing, GapCurves
-from petalfoil.physics.petal_elements import PetalElements
+from petalfoil.physics.petal_elements import PetalElements, clamped_beam
 from petalfoil.physics.petal_sliding import Faces
 from petalfoil.physics.shell import PetalShell
 from petalfoil.sparsity import SparseRows
@@ -81,6 +81,27 @@ class ElementPack:
             if id(petal) not in known:
                 known[id(petal)] = petal.bending
         return sp.csr_array(sp.block_diag([known[id(petal)] for petal in self.petals], format="csr"))
+
+    @cached_property
+    def sampling(self) -> tuple[SparseRows, Index, Array, Array, Array]:
+        """What deflections at the nodes of the pack, roots apart, are sampled with.
+
+        Returns
+        -------
+        rows : (petal * node, n) sparse
+            Weights of the unknowns.
+        element, place : (node,) array
+            Element of each node and place in it.
+        beams : (node, node) array
+            `b` between nodes on one element (S7) [1].
+        compliance : (petal, node) array
+            That of each element under a point load, which all petals share apart from their thickness [m/N].
+        """
+        element, t = hermite.located(self.mesh.phi[1:], self.elements.phi)
+        weights = hermite.rows(element, t, self.elements.element_angle)
+        rows = SparseRows(sp.kron(sp.eye_array(self.mesh.count), weights, format="csr") @ self.nodal)
+        beams = np.where(element[:, None] == element, clamped_beam(t[:, None], t), 0.0)
+        return rows, element, t, beams, np.stack([petal.point_compliance[element] for petal in self.petals])
 
     @property
     def n_unknown(self) -> int:
