@@ -17,6 +17,7 @@ from petalfoil.physics.gap_curves import Facing
 from petalfoil.system.point_layout import PointLayout
 
 Array = NDArray[np.float64]
+Index = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -31,14 +32,19 @@ class ClosestGap:
         The petal.
     phi : float
         Angle from its root [rad].
-    weights : (2 n_node,) array
-        Derivatives of the gap by the nodal gaps of all curves; its place is stationary, or an end.
+    element, place : (1,) array
+        Element of all curves, and place in it.
     """
 
     gap: float
     petal: int
     phi: float
-    weights: Array
+    element: Index
+    place: Array
+
+    def weights(self, whole: PointLayout) -> Array:
+        """Derivatives of the gap by the nodal gaps of all curves, (2 n_node,): its place is stationary, or an end."""
+        return np.asarray(hermite.rows(self.element, self.place, whole.curves.angle).toarray()[0])
 
 
 def closest_gap(nodal_gaps: Array, whole: PointLayout) -> ClosestGap:
@@ -54,8 +60,8 @@ def closest_gap(nodal_gaps: Array, whole: PointLayout) -> ClosestGap:
     least = int(gap.argmin())
     petal, within = divmod(least, per_curve)
     start = whole.pack.elements.phi[whole.pack.nodes[Facing.JOURNAL]][within]
-    weights = hermite.rows(element[[least]], place[[least]], curves.angle).toarray()[0]
-    return ClosestGap(float(gap[least]), petal, float(start + place[least] * angle[least]), weights)
+    phi = float(start + place[least] * angle[least])
+    return ClosestGap(float(gap[least]), petal, phi, element[[least]], place[[least]])
 
 
 def lowest_place(cubic: Array) -> Array:

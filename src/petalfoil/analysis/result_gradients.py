@@ -138,7 +138,7 @@ def min_film_thickness(found: Evaluation) -> FieldGradient | None:
         return None
     if (elements := found.answer.elements) is not None:
         near = closest_gap(elements.equations.nodal_gaps, elements.equations.whole)
-        return replace(nothing(found), gaps=near.weights * layout.scales.length)
+        return replace(nothing(found), gaps=near.weights(elements.equations.whole) * layout.scales.length)
     low = lowest(*whole_film(layout.wall.film, field))
     if found.thinnest.value != low.value:
         return None

@@ -262,9 +262,13 @@ def overlapping(
     """
     points, curves = equations.state.points, equations.whole.curves
     curve, position, gap = sampled(curves, points, equations.nodal_gaps, SAMPLES)
-    gap = gap + sagging(equations, curve, position)
+    if points.inner.any():
+        gap = gap + sagging(equations, curve, position)
+    low = gap < -depth
+    if not low.any():
+        return []
     bushing = np.array([facing is Facing.BUSHING for facing in curves.facing])
-    low = (gap < -depth) & ~(bushing[curve] & (position < 0.5))
+    low &= ~(bushing[curve] & (position < 0.5))
     before = np.concatenate([[np.inf], np.where(np.diff(curve) == 0, gap[:-1], np.inf)])
     after = np.concatenate([np.where(np.diff(curve) == 0, gap[1:], np.inf), [np.inf]])
     found: dict[tuple[int, int], tuple[int, float, int]] = {}

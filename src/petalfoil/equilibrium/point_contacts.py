@@ -267,11 +267,13 @@ def changed(equations: PointEquations, change: Array, farthest: float = TRUST) -
     Points travel by `farthest` elements at most.
     """
     state, whole = equations.state, equations.whole
-    dw, dP, dlam, dt = np.split(change, np.cumsum([whole.n_wall, whole.n_film, len(state.points.reaction)]))
-    place = state.points.position + np.clip(dt, -farthest, farthest)
+    film = whole.n_wall
+    lam = film + whole.n_film
+    at = lam + len(state.points.reaction)
+    place = state.points.position + np.maximum(np.minimum(change[at:], farthest), -farthest)
     points = replace(
         state.points,
-        position=np.clip(place, 0.0, whole.curves.elements[state.points.curve]),
-        reaction=state.points.reaction + dlam,
+        position=np.maximum(np.minimum(place, whole.curves.elements[state.points.curve]), 0.0),
+        reaction=state.points.reaction + change[lam:at],
     )
-    return PointState(state.w + dw, state.P + dP, merged(points))
+    return PointState(state.w + change[:film], state.P + change[film:lam], merged(points))

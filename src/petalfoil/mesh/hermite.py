@@ -20,12 +20,19 @@ COEFFICIENTS = np.array([[1, 0, -3, 2], [0, 1, -2, 1], [0, 0, 3, -2], [0, 0, -1,
 """Row `k` holds the powers of `t` in `H_k`."""
 
 
+def differentiated(coefficients: Array) -> Array:
+    """Powers of `t` in the derivatives."""
+    return coefficients[:, 1:] * np.arange(1, coefficients.shape[1])
+
+
+DERIVATIVES = (COEFFICIENTS, differentiated(COEFFICIENTS), differentiated(differentiated(COEFFICIENTS)))
+"""The same in `H_k` and its first two derivatives."""
+
+
 def basis(t: Array, derivative: int = 0) -> Array:
     """`H_0 ... H_3` at places `t` (k,) of an element, or a derivative of them by `t`; (k, 4)."""
-    coefficients = COEFFICIENTS
-    for _ in range(derivative):
-        coefficients = coefficients[:, 1:] * np.arange(1, coefficients.shape[1])
-    powers = np.asarray(t)[:, None] ** np.arange(coefficients.shape[1])
+    coefficients = DERIVATIVES[derivative]
+    powers = np.vander(t, coefficients.shape[1], increasing=True)
     return np.asarray(powers @ coefficients.T)
 
 

@@ -111,11 +111,6 @@ class GapCurves:
         gaps: Array = self.rest + self.by_e @ e + self.by_w @ w
         return gaps
 
-    def nodal_loads(self, points: ContactPoints) -> Array:
-        """Reactions of contact points as loads on the nodal (value, slope) of the gaps, (2 n_node,)."""
-        columns, weights = hermite.entries(*self.locate(points.every_curve, points.every_position), self.angle)
-        return add_up(columns.ravel(), (weights * points.reaction[:, None]).ravel(), len(self.rest))
-
 
 @dataclass(frozen=True)
 class ContactPoints:
@@ -272,15 +267,33 @@ class PointGaps:
         at, load = self._pairs
         return np.where(at == load, 0.0, self._load)
 
+    @cached_property
+    def _beams(self) -> tuple[Array, Array, Array]:
+        """Compliance of the element of each pair, place of the first point in it, and of the second."""
+        (at, load), (element, t) = self._pairs, self._place
+        return self.curves.compliance[element[at]], t[at], t[load]
+
     def _bent(self, part: Callable[[Array, Array], Array]) -> Array:
         """Compliance of each pair, or a derivative."""
-        (at, load), (element, t) = self._pairs, self._place
-        return self.curves.compliance[element][at] * part(t[at], t[load])
+        compliance, at, load = self._beams
+        return compliance * part(at, load)
+
+    @cached_property
+    def _values(self) -> tuple[Index, Array]:
+        """Columns and weights of the nodal gaps in the gap at each point."""
+        return hermite.entries(*self._place, self.curves.angle)
+
+    @cached_property
+    def nodal_loads(self) -> Array:
+        """Reactions as loads on the nodal (value, slope) of the gaps, (2 n_node,)."""
+        columns, weights = self._values
+        return add_up(columns.ravel(), (weights * self.points.reaction[:, None]).ravel(), len(self.curves.rest))
 
     def _smooth(self, derivative: int) -> Array:
         """The cubic of (K10) at the points, or a derivative by the place, (j,)."""
-        columns, weights = hermite.entries(*self._place, self.curves.angle, derivative)
-        return np.asarray(np.sum(weights * self.nodal[columns], axis=1))
+        of_values = derivative == 0
+        columns, weights = self._values if of_values else hermite.entries(*self._place, self.curves.angle, derivative)
+        return np.asarray(np.einsum("ki,ki->k", weights, self.nodal[columns]))
 
     def _at_points(self, part: Array) -> Array:
         """Sum of a part of the pairs at each point, (j,)."""

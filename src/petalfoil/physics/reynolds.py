@@ -80,24 +80,23 @@ residual of rounding alone passes the tolerance. This matters where hardly any g
 
 def langevin(x: Array) -> Array:
     """`L(x) = coth x - 1/x` for `x >= 0`, without cancellation near zero."""
-    y, square, small = langevin_ranges(x)
+    small = x < 0.03
+    y = np.where(small, 1.0, x)
     decay = np.exp(-2.0 * y)
     value = (1.0 + decay) / (1.0 - decay) - 1.0 / y
+    if not small.any():
+        return np.asarray(value)
+    square = np.minimum(x, 1.0) ** 2  # the series is used for x < 0.03 only; this keeps it finite elsewhere
     return np.where(small, x * (1.0 / 3.0 - square * (1.0 / 45.0 - square * (2.0 / 945.0))), value)
 
 
 def langevin_slope(x: Array) -> Array:
     """Derivative of `langevin`."""
-    y, square, small = langevin_ranges(x)
+    small = x < 0.03
+    y, square = np.where(small, 1.0, x), np.minimum(x, 1.0) ** 2
     decay = np.exp(-2.0 * y)
     slope = 1.0 / y**2 - 4.0 * decay / (1.0 - decay) ** 2
     return np.where(small, 1.0 / 3.0 - square * (1.0 / 15.0 - square * (2.0 / 189.0)), slope)
-
-
-def langevin_ranges(x: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """`x` where the closed form holds, `x^2` where the series does, and where that is: each harmless elsewhere."""
-    small = x < 0.03
-    return np.where(small, 1.0, x), np.minimum(x, 1.0) ** 2, small
 
 
 def mean_cube(H0: Array, H1: Array) -> Array:
@@ -241,6 +240,9 @@ def axial_flux(P: Array, H: Array, dZ: Array, Kn: float = 0.0) -> Flux:
     `mean(P) dP = d(P^2 / 2)` holds exactly on a face. `sum (H^3 P^2 / 2 + 6 Kn H^2 P)` over a closed circle therefore
     has the same value at every station, as the integral has in the differential equation.
     """
+    if P.shape[-1] == 1:  # a film without ends
+        none = P[..., :-1]
+        return Flux(none, none, lambda: FluxDerivatives(none, none, none, none))
     faces = Faces.between((P[..., :-1], P[..., 1:]), (H[..., :-1], H[..., 1:]), Kn)
     P0, P1, _, _, cube, mean_P, slip = faces
     poiseuille = -cube * (mean_P + slip) * (P1 - P0) / dZ

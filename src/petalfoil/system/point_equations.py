@@ -128,7 +128,7 @@ class PointEquations:
     @cached_property
     def _nodal_loads(self) -> Array:
         """Reactions on the nodal (value, slope) of the gaps."""
-        return self.whole.curves.nodal_loads(self.state.points)
+        return self.gaps.nodal_loads
 
     @cached_property
     def _weights(self) -> tuple[sp.csr_array, sp.csr_array]:
@@ -196,7 +196,7 @@ class PointEquations:
         wall_scale, film_scale = self.row_scales
         return np.concatenate([wall / wall_scale, film / film_scale, value, slope])
 
-    @property
+    @cached_property
     def row_scales(self) -> tuple[Array, Array]:
         """What residuals of wall and film are compared with."""
         rounding = WALL_ROUNDING * np.finfo(float).eps * (self.whole.stiffness_size @ np.abs(self.state.w))

@@ -44,7 +44,7 @@ def test_the_derivatives_of_the_least_gap_are_its_differences() -> None:
     assert 0.0 <= fine - near.gap < 1e-2 * near.gap
     change = np.random.default_rng(2).standard_normal(len(gaps))
     ahead, behind = (closest_gap(gaps + sign * 1e-5 * change, whole).gap for sign in (1.0, -1.0))
-    assert (ahead - behind) / 2e-5 == pytest.approx(float(near.weights @ change), rel=1e-6)
+    assert (ahead - behind) / 2e-5 == pytest.approx(float(near.weights(whole) @ change), rel=1e-6)
 
 
 @pytest.mark.slow
