@@ -120,7 +120,7 @@ def slip_pressure(H0: Array, H1: Array, Kn: float) -> Array:
     return np.zeros_like(H0) if Kn == 0.0 else 3.0 * Kn * (1.0 / H0 + 1.0 / H1)
 
 
-class Faces(NamedTuple):
+class FilmFaces(NamedTuple):
     """Pressures and film thicknesses on both sides of faces, mean of `H^3`, mean pressure, and that of slip."""
 
     P0: Array
@@ -132,7 +132,7 @@ class Faces(NamedTuple):
     slip: Array
 
     @classmethod
-    def between(cls, P: tuple[Array, Array], H: tuple[Array, Array], Kn: float) -> Faces:
+    def between(cls, P: tuple[Array, Array], H: tuple[Array, Array], Kn: float) -> FilmFaces:
         """The faces between nodes."""
         return cls(*P, *H, mean_cube(*H), 0.5 * (P[0] + P[1]), slip_pressure(*H, Kn))
 
@@ -157,7 +157,7 @@ def circumferential_flux(P: Array, H: Array, Lam: float, dphi: Array, Kn: float 
     Kn : float
         Knudsen number on the reference film at ambient pressure; zero without slip [1].
     """
-    faces = Faces.between((P[:, :-1], P[:, 1:]), (H[:, :-1], H[:, 1:]), Kn)
+    faces = FilmFaces.between((P[:, :-1], P[:, 1:]), (H[:, :-1], H[:, 1:]), Kn)
     P0, P1, H0, H1, cube, mean_P, slip = faces
     conductance = cube * (mean_P + slip)
     x = 0.25 * Lam * (H0 + H1) * dphi / conductance  # half the cell Peclet number
@@ -174,7 +174,7 @@ def circumferential_flux(P: Array, H: Array, Lam: float, dphi: Array, Kn: float 
     return limited(flux, supplied(faces, Lam, dphi, Kn)) if (value > bound).any() else flux
 
 
-def circumferential_derivatives(faces: Faces, x: Array, Lam: float, dphi: Array, Kn: float) -> FluxDerivatives:
+def circumferential_derivatives(faces: FilmFaces, x: Array, Lam: float, dphi: Array, Kn: float) -> FluxDerivatives:
     """Derivatives of the circumferential flux (F2), at half the cell Peclet number `x`, before it is limited."""
     P0, P1, H0, H1, cube, mean_P, slip = faces
     cube_H0, cube_H1, slip_H0, slip_H1 = faces.by_films(Kn)
@@ -193,7 +193,7 @@ def circumferential_derivatives(faces: Faces, x: Array, Lam: float, dphi: Array,
     return FluxDerivatives(by_P0, by_P1, by_H0, by_H1)
 
 
-def supplied(faces: Faces, Lam: float, dphi: Array, Kn: float) -> Flux:
+def supplied(faces: FilmFaces, Lam: float, dphi: Array, Kn: float) -> Flux:
     """What the upstream pressure alone drives through a face, `(Lam H0 + mean(H^3 (P + slip)) / dphi) P0`."""
     P0, _, H0, _, cube, mean_P, slip = faces
     rate = Lam * H0 + cube * (mean_P + slip) / dphi
@@ -243,7 +243,7 @@ def axial_flux(P: Array, H: Array, dZ: Array, Kn: float = 0.0) -> Flux:
     if P.shape[-1] == 1:  # a film without ends
         none = P[..., :-1]
         return Flux(none, none, lambda: FluxDerivatives(none, none, none, none))
-    faces = Faces.between((P[..., :-1], P[..., 1:]), (H[..., :-1], H[..., 1:]), Kn)
+    faces = FilmFaces.between((P[..., :-1], P[..., 1:]), (H[..., :-1], H[..., 1:]), Kn)
     P0, P1, _, _, cube, mean_P, slip = faces
     poiseuille = -cube * (mean_P + slip) * (P1 - P0) / dZ
     scale = np.abs(poiseuille) + ROUNDING * cube * (mean_P**2 + slip * mean_P) / dZ
