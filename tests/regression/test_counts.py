@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from petalfoil.analysis.branch_choice import coarse
 from petalfoil.analysis.curve import curve
-from petalfoil.analysis.operating_point import coarse
 from petalfoil.analysis.solve import solve
 from petalfoil.analysis.stability import stability
 from petalfoil.case import Case

@@ -14,7 +14,16 @@ from petalfoil.analysis.curve import curve
 from petalfoil.analysis.solve import solve
 from petalfoil.case import Case
 from petalfoil.dynamics.film_stability import leading_eigenvalue
-from petalfoil.equilibrium.branches import STRETCH, fingerprint, longest_contact, may_have_others
+from petalfoil.equilibrium.branches import (
+    CHANCE,
+    STRETCH,
+    different,
+    fingerprint,
+    found_by_chance,
+    longest_contact,
+    may_have_others,
+    pressing_least,
+)
 from petalfoil.equilibrium.cold_start import BARRIERS, attempt, solve_cold
 from petalfoil.equilibrium.continuation import settle
 from petalfoil.equilibrium.solution import Solution
@@ -104,6 +113,26 @@ def test_others_are_looked_for_where_the_path_was_left() -> None:
     assert first.shortest_step > InteriorOptions.short
     asked = [replace(first, shortest_step=length) for length in (first.shortest_step, 0.1, None)]
     assert [may_have_others(answer) for answer in asked] == [False, True, True]
+
+
+def test_an_answer_by_chance_is_one_of_a_hardly_possible_step() -> None:
+    """One that a neighbour led to was not found by chance."""
+    first = attempt(build_problem(drawn(2)), BARRIERS[0])
+    assert first is not None
+    steps = (first.shortest_step, 0.1, 2.0 * CHANCE, 0.5 * CHANCE, None)
+    asked = [replace(first, shortest_step=length) for length in steps]
+    assert [found_by_chance(answer) for answer in (*asked, None)] == [False, False, False, True, False, True]
+
+
+def test_the_equilibrium_that_presses_least_comes_first() -> None:
+    """Two equilibria of case 88, each of them once, whatever the order in which they were met."""
+    problem = build_problem(drawn(88))
+    unstable = solve_cold(problem)
+    rested = settle(unstable)
+    assert rested is not None
+    for met in ([unstable, rested, unstable], [rested, unstable, rested]):
+        first, second = pressing_least(different(met))
+        assert fingerprint(first)[0] < fingerprint(second)[0]
 
 
 @pytest.mark.slow

@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from petalfoil.analysis.curve import curve
 from petalfoil.analysis.solve import point
 from petalfoil.case import Case, Edges, Gas
 from petalfoil.errors import ConvergenceError
@@ -111,6 +112,27 @@ def test_two_bearings(change: Callable[[Case], tuple[Case, float]]) -> None:
 @CHANGES
 def test_forty_bearings(change: Callable[[Case], tuple[Case, float]]) -> None:
     assert compare(range(40), change) == []
+
+
+@pytest.mark.slow
+@CHANGES
+def test_a_bearing_that_most_starts_do_not_answer(change: Callable[[Case], tuple[Case, float]]) -> None:
+    """Of bearing 96 rounding decides which starts lead somewhere, and one leads to another equilibrium."""
+    assert compare(range(96, 97), change) == []
+
+
+@pytest.mark.slow
+def test_a_point_past_a_jump_says_that_there_are_several() -> None:
+    """Bearing 38: the curve ends on another equilibrium than `solve` finds, which knows of one."""
+    case, one = drawn(38)
+    assert one is not None
+    x, y = case.operation.eccentricity
+    way = np.linspace(0.0, np.hypot(x, y), 5)
+    points = list(curve.records(case, way, direction=float(np.arctan2(y, x))))
+    assert [bool(record.scalars["jump"]) for record in points] == [False, False, False, True, False]
+    assert difference(one, points[-1], 1.0) > EQUAL
+    assert names_branches(points[-1])
+    assert "past a jump" in str(points[-1].scalars["solution_path"])
 
 
 @pytest.mark.long

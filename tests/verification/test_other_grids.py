@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from petalfoil.equilibrium.branches import distinct
+from petalfoil.equilibrium.branches import different
 from petalfoil.equilibrium.cold_start import nothing_found, solve_cold
 from petalfoil.equilibrium.other_grids import by_other_grids, carried, grids, opened, or_from_other_grids
 from petalfoil.equilibrium.run_context import running
@@ -59,7 +59,7 @@ def test_the_answer_does_not_depend_on_the_grid_that_led_to_it() -> None:
     cold, led = solve_cold(problem), or_from_other_grids(lost, problem)
     assert "cells per pitch" in led.solution_path
     assert led.residual <= RESIDUAL_TOLERANCE
-    assert distinct([cold, led]) == 1
+    assert len(different([cold, led])) == 1
     load = np.array([0.0, -3.0])
     balance, by_grids = balance_cold(problem, load), balance_by_other_grids(problem, load)
     assert by_grids is not None

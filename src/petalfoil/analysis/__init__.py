@@ -35,6 +35,7 @@ What they share:
 
 =====================  ===================================================================
 `operating_point.py`   the equilibrium that an analysis is about
+`branch_choice.py`     which of several equilibria that is
 `neighbours.py`        equilibria that begin at the solution of a similar case of a study
 `displacements.py`     the journal displaced point by point
 `hysteresis.py`        the same at rest, with friction between petals

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from petalfoil.analysis.branch_choice import from_rest, others
 from petalfoil.analysis.classic_method import by_classic, newton_only
 from petalfoil.analysis.contact_model import reported
 from petalfoil.analysis.evaluation import Evaluation
@@ -19,14 +20,10 @@ from petalfoil.analysis.records import branch
 from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.analysis.thermal_limit import beyond_thermal_limit
-from petalfoil.case import Case, ModelKind
+from petalfoil.case import Case
 from petalfoil.dynamics.film_stability import leading_eigenvalue
-from petalfoil.equilibrium.branches import distinct, may_have_others, probe
-from petalfoil.equilibrium.cold_start import BARRIERS, by_barriers, by_slower_ways, solve_cold
-from petalfoil.equilibrium.continuation import ascend, settle
+from petalfoil.equilibrium.branches import different, pressing_least
 from petalfoil.equilibrium.heated import ThermalRunawayError
-from petalfoil.equilibrium.lengthening import lengthened
-from petalfoil.equilibrium.other_grids import or_from_other_grids
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold
@@ -37,7 +34,6 @@ from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.loaded import load_of
 from petalfoil.units import format_percent
-from petalfoil.walls import Capability, wall_kind
 
 Vector = tuple[float, float]
 
@@ -46,9 +42,6 @@ SMALLER_LOADS = (0.1, 0.01, 0.001)
 
 SOLID_CONTACT = 0.9
 """Contact fraction above which the film is no support any more."""
-
-PROBE_CELLS, PROBE_AXIAL = 24, 6
-"""Grid on which other equilibria are looked for."""
 
 
 @dataclass(frozen=True)
@@ -238,7 +231,8 @@ def at_position(case: Case) -> OperatingPoint:
     """The equilibrium to report at the case's eccentricity.
 
     That of the cold start, if it was found at the first barrier, is stable and the only one known; else the one to
-    which the pack is followed from rest, as long as it is stable.
+    which the pack is followed from zero speed, as long as it is stable. Where that branch is lost it is the stable one
+    that presses least on the journal.
 
     Raises
     ------
@@ -251,42 +245,18 @@ def at_position(case: Case) -> OperatingPoint:
         )
     problem = build_problem(case)
     first, rate = begun(problem, None, lambda: first_attempt(problem))
-    found = list(filter(None, [first or by_barriers(problem, BARRIERS[1:])]))
-    rates = [leading_eigenvalue(answer) if first is None else rate for answer in found]
-    several = wall_kind(case).can(Capability.SEVERAL_EQUILIBRIA)
-    doubtful = first is None or rate.real > 0.0 or may_have_others(first)
-    known = probe(build_problem(coarse(case))) if several and doubtful else 1
-    path = ""
+    known, found = others(case, problem, first, rate)
     alone = known == 1 and first is not None and not rate.real > 0.0
     if first is not None:
         keep(first, alone=alone)
+    path, rates = "", [rate]
     if not alone:
-        risen, jumps = ascend(problem)
-        if risen is not None:
-            found, rates = [risen, *found], [leading_eigenvalue(risen), *rates]
-            path = ascent_text(jumps)
-    if not found:
-        found = [last_resort(problem)]
-        rates = [leading_eigenvalue(found[0])]
-    if rates[0].real > 0.0:
-        found, rates, path = settled(found, rates, path)
+        found, rates, path = from_rest(problem, pressing_least(found))
     if case.heat is not None:
         found = [in_heat(case, found[0], None), *found[1:]]
         rates = [leading_eigenvalue(found[0]), *rates[1:]]
-    return OperatingPoint(found[0], branch(rates[0], case, max(known, distinct(found)), path or found[0].solution_path))
-
-
-def last_resort(problem: CoupledProblem) -> Solution:
-    """The equilibrium where neither a cold start nor the continuation from zero speed found one.
-
-    Raises
-    ------
-    ConvergenceError
-        Nothing was found.
-    """
-    if problem.layout.film_rows.inventory is None:
-        return solve_cold(problem, ())
-    return by_slower_ways(problem) or or_from_other_grids(lengthened, problem)
+    known = max(known, len(different(found)))
+    return OperatingPoint(found[0], branch(rates[0], case, known, path or found[0].solution_path))
 
 
 def relaxed(case: Case, problem: CoupledProblem, neighbour: Solution | None = None) -> OperatingPoint:
@@ -299,32 +269,3 @@ def relaxed(case: Case, problem: CoupledProblem, neighbour: Solution | None = No
     """
     answer = by_classic(problem, neighbour)
     return OperatingPoint(answer, branch(leading_eigenvalue(answer), case, None, answer.solution_path))
-
-
-def settled(found: list[Solution], rates: list[complex], path: str) -> tuple[list[Solution], list[complex], str]:
-    """Put first where the unstable equilibrium at the head of `found` goes, if that is stable."""
-    stable = [k for k, rate in enumerate(rates) if not rate.real > 0.0]
-    rested = None if stable else settle(found[0])
-    if rested is not None:
-        found, rates = [*found, rested], [*rates, leading_eigenvalue(rested)]
-        stable = [] if rates[-1].real > 0.0 else [len(found) - 1]
-    if not stable:
-        return found, rates, path
-    first = stable[0]
-    order = [first, *(k for k in range(len(found)) if k != first)]
-    text = f"{found[first].solution_path}; the branch from rest has lost its stability below this speed"
-    return [found[k] for k in order], [rates[k] for k in order], text
-
-
-def coarse(case: Case) -> Case:
-    """The same bearing on the grid of the probe."""
-    changes: dict[str, object] = {"model.cells_per_pitch": min(case.cells_per_pitch, PROBE_CELLS)}
-    if case.model.kind is ModelKind.THREE_D:
-        changes["model.axial_cells"] = min(case.axial_cells, PROBE_AXIAL)
-    return case.replace(**changes)
-
-
-def ascent_text(jumps: int) -> str:
-    """How the followed branch was reached."""
-    text = "followed from the assembled pack at zero speed up to speed"
-    return text if jumps == 0 else f"{text}; the branch ended {jumps} time(s) on the way and the bearing settled anew"
