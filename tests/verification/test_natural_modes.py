@@ -15,7 +15,7 @@ from scipy.optimize import newton
 from petalfoil.analysis.impedance import elastic
 from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.stability import stability
-from petalfoil.case import Case
+from petalfoil.case import NEUTRAL_DAMPING, Case
 from petalfoil.dynamics import reduced_impedance
 from petalfoil.dynamics.critical_mass import neutral_whirl, whirl_impedance
 from petalfoil.dynamics.natural_modes import PEAK, Mode, natural_modes
@@ -271,4 +271,19 @@ def test_a_mode_that_grows_below_the_critical_mass_leaves_no_threshold_speed() -
     assert np.max(found["mode_growth_rate"].values) > 0.0
     assert float(found["critical_mass"]) > float(found["rotor_mass"])
     assert math.isnan(float(found["threshold_speed"]))
-    assert "no threshold speed: the rotor is unstable already" in str(found["status"])
+    assert "no threshold speed: a mode of the rotor grows already" in str(found["status"])
+
+
+@pytest.mark.slow
+def test_a_mode_that_hardly_grows_is_neutral_and_so_is_one_that_hardly_decays() -> None:
+    """A growth of 2 1/s at 461 000 rpm, and a map of states that decay at 0.005 1/s, were unstable and stable."""
+    found = stability.record(Case.from_toml(MICRO))
+    assert 0.0 < np.max(found.fields["mode_growth_rate"]) < NEUTRAL_DAMPING * found.fields["natural_frequency"].max()
+    assert ": neutral, growth rate" in str(found.scalars["verdict"])
+    petals = case("paper_n8", **{"model.cells_per_pitch": 16})
+    for bearing in (petals, petals.replace(rotor={"mass": 2.0})):
+        for record in stability.records(bearing, loads=[20.0], speeds=[4000.0, 8000.0]):
+            assert ": neutral, growth rate -0.0" in str(record.scalars["verdict"])
+            assert "a mode is neutral" in str(record.scalars["status"])
+            assert record.scalars["critical_mass"] == math.inf
+            assert any(warning.startswith("verdict: ") for warning in record.warnings)

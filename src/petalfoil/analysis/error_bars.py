@@ -23,6 +23,7 @@ from petalfoil.analysis.grid_study import (
     grids,
     unknowns,
 )
+from petalfoil.analysis.rotor_verdict import neutral_by_error
 from petalfoil.analysis.runs import Run
 from petalfoil.case import Case, warnings_of_errors
 from petalfoil.equilibrium.run_context import Progress
@@ -143,7 +144,7 @@ def barred(record: Record, number: int, answers: Answers) -> Record:
         return replace(record, errors={}, remarks=(*record.remarks, f"no error bars: {failure}"))
     told = (*record.warnings, *warnings_of_errors(record.scalars, errors))
     fields = {**record.fields, **field_bars(record, number, answers)}
-    return replace(record, errors=errors, fields=fields, warnings=told)
+    return neutral_by_error(replace(record, errors=errors, fields=fields, warnings=told))
 
 
 def field_bars(record: Record, number: int, answers: Answers) -> dict[str, Array]:

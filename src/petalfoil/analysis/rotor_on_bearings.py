@@ -7,6 +7,7 @@ both. Elsewhere each has a state of its own.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -135,6 +136,12 @@ class RotorOnBearings:
         if self.amplitude is None:
             return natural_modes(impedance, self.inertia, speed)
         return RubbingRotor(RubbingWhirl.of(impedance.motion, self.amplitude), self.inertia, speed).modes(impedance)
+
+    def deciding_modes(self, whirl: Whirl, impedance: Impedance, speed: float) -> list[Mode] | None:
+        """The modes where no mass is critical, for they decide there; None where one is, or the mass is unknown."""
+        if math.isfinite(whirl.mass) or math.isnan(self.mass):
+            return None
+        return self.modes(impedance, speed)
 
 
 def whole_length(case: Case) -> Case:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import ClassVar
 
@@ -19,12 +19,12 @@ from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.operating_point import OperatingPoint, Vector, applied_load, at, operating_point
 from petalfoil.analysis.records import branch, effort, failed_record, record_of
 from petalfoil.analysis.rotor_on_bearings import RotorOnBearings, whole_length
-from petalfoil.analysis.rotor_verdict import MassMargin, RotorVerdict, is_stable
+from petalfoil.analysis.rotor_verdict import MassMargin, RotorVerdict, stability_of
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.analysis.threshold import AtOwnSpeed, rotor_mass, threshold_speed, told_with_mach
-from petalfoil.case import Case
+from petalfoil.case import NEUTRAL, Case
 from petalfoil.dynamics.critical_mass import EVEN_FILM, Whirl
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.dynamics.natural_modes import Mode
@@ -79,7 +79,7 @@ CAMPBELL_TABLE = ArrayTable(
     dim="mode",
     columns={
         "speed\nrpm": lambda record, _: cell("speed", record.scalars["speed"]).value,
-        "rotor": lambda record, _: "stable" if is_stable(record) else "unstable",
+        "rotor": lambda record, _: stability_of(record),
         "branch": lambda record, k: str(int(record.coords["mode"][k])),
         **MODE_TABLE.columns,
         "critical speed\nrpm": lambda record, k: (
@@ -216,7 +216,8 @@ def point(
         modes = None if math.isnan(rotor.mass) else rotor.modes(impedance, speed)
         if amplitude is None:
             start = AtOwnSpeed(found.answer, impedance.motion, whirl)
-            threshold, ended = threshold_speed(rotor, load, start, grows=any_grows(modes))
+            growing = any(mode.s.real > 0.0 for mode in modes or ())
+            threshold, ended = threshold_speed(rotor, load, start, grows=growing)
         else:
             threshold, ended = math.nan, AT_AMPLITUDE
         ended = told_with_mach(case, threshold, ended)
@@ -244,6 +245,8 @@ def whirl_parts(
     any_mass = {0.0: half if even else "unstable for any rotor mass", math.inf: "stable for any rotor mass"}
     if any_grows(modes):
         any_mass[math.inf] = "a mode grows, though no mass is critical"
+    elif any(mode.is_neutral for mode in modes or ()):
+        any_mass[math.inf] = f"no rotor mass is critical; a mode is {NEUTRAL}"
     if ended == AT_AMPLITUDE:
         any_mass[math.inf] = "no whirl was found that goes on at the amplitude"
     remarks = ["converged", any_mass.get(whirl.mass, ""), ended]
@@ -252,8 +255,8 @@ def whirl_parts(
 
 
 def any_grows(modes: Sequence[Mode] | None) -> bool:
-    """Whether one of the natural modes, as far as there are any, grows."""
-    return any(mode.s.real > 0.0 for mode in modes or ())
+    """Whether one of the natural modes, as far as there are any, grows, and is not neutral."""
+    return any(mode.grows for mode in modes or ())
 
 
 def mode_fields(modes: list[Mode], speed: float, *, tilts: bool) -> tuple[dict[str, Array], dict[str, Array]]:
@@ -287,8 +290,11 @@ def _points(
                 try:
                     found, whirl, impedance = _followed(line, case, rotor)
                     contacts = ContactModel.of_motion(impedance.motion)
-                    told = RotorVerdict.of(case, whirl, rotor.mass), MassMargin.of(whirl, rotor.mass)
-                    parts = (*told, *whirl_parts(case, found, whirl, ""), contacts, effort(run.seconds))
+                    own = replace(rotor, mass=rotor_mass(case, load, None))
+                    modes = own.deciding_modes(whirl, impedance, case.operation.speed)
+                    judged = (rotor if modes is None else own).mass
+                    told = RotorVerdict.of(case, whirl, judged, modes), MassMargin.of(whirl, rotor.mass)
+                    parts = (*told, *whirl_parts(case, found, whirl, "", modes), contacts, effort(run.seconds))
                     record = record_of("stability", case, *parts)
                 except ConvergenceError as failure:
                     line.known = None

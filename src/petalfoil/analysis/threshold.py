@@ -80,7 +80,7 @@ def threshold_speed(
     if math.isnan(rotor.mass):
         return math.nan, "no threshold speed: give a mass or a load"
     if grows and margin(start.whirl, rotor.mass) > 0.0:
-        return math.nan, "no threshold speed: the rotor is unstable already, below the critical mass"
+        return math.nan, "no threshold speed: a mode of the rotor grows already, below the critical mass"
     margin_at = margins(rotor, load, start)
     known, here = rotor.case.operation.speed, margin(start.whirl, rotor.mass)
     factor = FACTOR if here > 0.0 else 1.0 / FACTOR

@@ -38,7 +38,7 @@ from petalfoil.case.free_shape import arc_radius, chordal_tilt
 from petalfoil.case.gas import Gas
 from petalfoil.case.growth import Bushing, Growth, Shaft
 from petalfoil.case.heat_table import Heat, HotGas
-from petalfoil.case.implausible_answers import warnings_of_errors
+from petalfoil.case.implausible_answers import NEUTRAL, NEUTRAL_DAMPING, neutral, warnings_of_errors
 from petalfoil.case.pack_geometry import PackGeometry, pack_of
 from petalfoil.case.parameters import Parameter, parameter_of, parameters_of, parameters_of_petals, with_values
 from petalfoil.case.petal_table import LinearAbout, Mount, Petals, PetalTheory
@@ -60,6 +60,8 @@ from petalfoil.case.sections import (
 from petalfoil.case.wall_tables import WallTable, register_table, unregister_table
 
 __all__ = [
+    "NEUTRAL",
+    "NEUTRAL_DAMPING",
     "Backing",
     "Bearing",
     "BumpFoil",
@@ -93,6 +95,7 @@ __all__ = [
     "Which",
     "arc_radius",
     "chordal_tilt",
+    "neutral",
     "pack_of",
     "parameter_of",
     "parameters_of",

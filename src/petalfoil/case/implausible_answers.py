@@ -38,6 +38,15 @@ parameter of mixed lubrication."""
 NO_FORCE = 1e-6
 """Force, over ambient pressure times radius times length, below which a bearing carries nothing: its journal is
 centred, and the force is what the solution leaves."""
+
+NEUTRAL = "neutral"
+"""Word of a verdict on the rotor that neither calls it stable nor unstable."""
+
+NEUTRAL_DAMPING = 1e-4
+"""Damping ratio within which a mode is called neutral. Solid metal alone damps by as much (loss factors of steel are
+1e-4 to 6e-4, twice the damping ratio), and a light rotor on stiff petals is damped by less from the film than grids
+tell: whatever else damps decides."""
+
 WIDE = 0.1
 """Error bar over the result above which the result is known to its order of magnitude only."""
 
@@ -56,6 +65,7 @@ def of_answer(case: Case, scalars: Scalars) -> Iterator[str]:
     yield from _contact(case, scalars)
     yield from _mixed_lubrication(case, scalars)
     yield from _pressed_bumps(case, scalars)
+    yield from neutral(scalars)
     if scalars.get("bottomed_out", False):
         yield (
             "bottomed_out: the foil pack has bottomed out, journal, petals and bushing touch as a solid stack, whose "
@@ -74,6 +84,16 @@ def of_answer(case: Case, scalars: Scalars) -> Iterator[str]:
             f"nodal_force_difference: the force is {format_percent(apart)} from that with contacts at nodes of the "
             "same grid, which in stiff packs miss it; that the equilibrium is the same one is known to so much only: "
             "refine model.cells_per_pitch until it falls"
+        )
+
+
+def neutral(scalars: Scalars) -> Iterator[str]:
+    """Yield what is to be said of a rotor whose modes neither grow nor decay by more than the results tell."""
+    if NEUTRAL in str(scalars.get("verdict", "")):
+        yield (
+            "verdict: film and contacts neither damp a mode of the rotor nor drive it by more than these results can "
+            "tell: any structural damping, of shaft, petals and mount, which is not modelled, decides whether it is "
+            "stable; add damping, or refine the grid until the growth rate stands clear of its error (--error)"
         )
 
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg as la
 
+from petalfoil.case import NEUTRAL_DAMPING
 from petalfoil.dynamics.critical_mass import SCAN, Complex
 from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.dynamics.rotor_motion import Inertia
@@ -63,6 +64,16 @@ class Mode:
     def damping_ratio(self) -> float:
         """`-Re s / |s|`."""
         return -self.s.real / abs(self.s)
+
+    @property
+    def is_neutral(self) -> bool:
+        """Whether what damps shaft and petals beside film and contacts decides if it grows."""
+        return abs(self.damping_ratio) < NEUTRAL_DAMPING
+
+    @property
+    def grows(self) -> bool:
+        """Whether it grows by more than that."""
+        return self.damping_ratio <= -NEUTRAL_DAMPING
 
 
 def natural_modes(impedance: Impedance, inertia: Inertia, speed: float) -> list[Mode]:

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from petalfoil.case import NEUTRAL_DAMPING
 from petalfoil.plot import labels, style
 from petalfoil.plot.labels import HERTZ, QUANTITIES, RPM
 from petalfoil.plot.views import Floats, array, needs_result_of, unconverged
@@ -98,13 +99,20 @@ def _draw_branches(above: Axes, below: Axes, ds: xr.Dataset) -> None:
         named.add(name)
         above.plot(rpm, hertz[:, branch], label=label, **look)
         below.plot(rpm, ratio[:, branch], **look)
-        growing = ratio[:, branch] < 0.0
-        if growing.any():
-            ring: style.Look = {"markersize": 10, "markeredgecolor": style.VERMILLION, "markerfacecolor": "none"}
-            above.plot(rpm[growing], hertz[growing, branch], "o", gid="growing", markeredgewidth=1.6, **ring)
-    if (ratio < 0.0).any():
-        ring = {"markersize": 10, "markeredgecolor": style.VERMILLION, "markerfacecolor": "none"}
-        above.plot([], [], "o", label="grows: unstable", markeredgewidth=1.6, **ring)
+    _ring_those(above, (rpm, hertz), ratio <= -NEUTRAL_DAMPING, ("growing", "grows: unstable", style.VERMILLION))
+    _ring_those(
+        above, (rpm, hertz), np.abs(ratio) < NEUTRAL_DAMPING, ("neutral", "neither grows nor decays", style.GREY)
+    )
+
+
+def _ring_those(ax: Axes, at: tuple[Floats, Floats], chosen: NDArray[np.bool_], named: tuple[str, str, str]) -> None:
+    """Ring chosen points of branches, (speed, branch), at speeds and frequencies; `named` by gid, label and colour."""
+    (rpm, hertz), (gid, label, colour) = at, named
+    ring: style.Look = {"markersize": 10, "markeredgecolor": colour, "markerfacecolor": "none", "markeredgewidth": 1.6}
+    for branch in np.flatnonzero(chosen.any(axis=0)):
+        ax.plot(rpm[chosen[:, branch]], hertz[chosen[:, branch], branch], "o", gid=gid, **ring)
+    if chosen.any():
+        ax.plot([], [], "o", label=label, **ring)
 
 
 def _draw_speed_lines(ax: Axes, ds: xr.Dataset) -> None:

@@ -9,7 +9,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
+from petalfoil.case import NEUTRAL
 from petalfoil.plot import labels, style
 from petalfoil.plot.campbell_diagram import campbell
 from petalfoil.plot.labels import HERTZ, QUANTITIES, RPM
@@ -20,6 +22,7 @@ WIDE = 5.0
 _USUAL_RATIO = 0.6
 """Whirl ratio up to which the axis goes at least: half-speed whirl is seen in its place."""
 _CALM = "stable for any rotor mass"
+_HARDLY_DAMPED = "no mass is critical, the rotor is neutral"
 _LEAST_LABEL = 0.25
 """Part of the axis of masses in which a label has space."""
 
@@ -35,9 +38,9 @@ def stability(ds: xr.Dataset) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Of a table: critical mass above, whirl ratio below; states that are stable for any rotor mass are marked at the
-        upper edge, or fill a map of speed and load where all are. Of a point: masses that are stable and those that
-        whirl, and the natural modes of the rotor.
+        Of a table: critical mass above, whirl ratio below; states in which no rotor mass is critical are marked at the
+        upper edge, those with neutral rotors apart, or fill a map of speed and load where all are. Of a point: masses
+        that are stable and those that whirl, and the natural modes of the rotor.
 
     Raises
     ------
@@ -65,6 +68,7 @@ def _over_speed(ds: xr.Dataset) -> Figure:
     order = np.argsort(array(ds, "speed"))
     rpm, loads = array(ds, "speed")[order] * RPM, array(ds, "load")
     masses, ratios = array(ds, "critical_mass")[:, order], array(ds, "whirl_ratio")[:, order]
+    neutral = _is_neutral(ds)[:, order]
     fig = style.figure(8.0, 6.4)
     above, below = fig.subplots(2, 1, sharex=True, height_ratios=[1.5, 1.0])
     colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, len(loads)))
@@ -73,9 +77,12 @@ def _over_speed(ds: xr.Dataset) -> Figure:
         label = f"load {loads[row]:.4g} N"
         above.plot(rpm, np.where(np.isfinite(masses[row]), masses[row], np.nan), label=label, **look)
         below.plot(rpm, ratios[row], **look)
-        _mark_calm(above, rpm[np.isinf(masses[row])], colour, 0.97 - 0.05 * row)
-    if np.isinf(masses).any():
-        above.plot([], [], "^", color=style.GREY, markersize=8, label=_CALM)
+        free, hardly = np.isinf(masses[row]), neutral[row]
+        _mark_calm(above, rpm[free & ~hardly], colour, 0.97 - 0.05 * row)
+        _mark_calm(above, rpm[free & hardly], colour, 0.97 - 0.05 * row, "d")
+    for marker, shown, label in (("^", ~neutral, _CALM), ("d", neutral, _HARDLY_DAMPED)):
+        if (np.isinf(masses) & shown).any():
+            above.plot([], [], marker, color=style.GREY, markersize=8, label=label)
     style.dress(above, "", QUANTITIES["critical_mass"].axis)
     style.dress(below, QUANTITIES["speed"].axis, QUANTITIES["whirl_ratio"].axis)
     _set_masses(above, masses[np.isfinite(masses)])
@@ -87,10 +94,17 @@ def _over_speed(ds: xr.Dataset) -> Figure:
     return fig
 
 
-def _mark_calm(ax: Axes, rpm: Floats, colour: Floats, height: float) -> None:
+def _is_neutral(ds: xr.Dataset) -> NDArray[np.bool_]:
+    """States whose verdict or status calls rotors neutral."""
+    told = [ds[name].values.astype(str) for name in ("verdict", "status") if name in ds]
+    neutral: NDArray[np.bool_] = np.any([np.char.find(words, NEUTRAL) >= 0 for words in told], axis=0)
+    return neutral
+
+
+def _mark_calm(ax: Axes, rpm: Floats, colour: Floats, height: float, marker: str = "^") -> None:
     if rpm.size:
         place: style.Look = {"transform": ax.get_xaxis_transform(), "clip_on": False, "markersize": 8, "gid": "calm"}
-        ax.plot(rpm, np.full(rpm.size, height), "^", color=colour, **place)
+        ax.plot(rpm, np.full(rpm.size, height), marker, color=colour, **place)
 
 
 def _set_masses(ax: Axes, finite: Floats) -> None:
@@ -116,10 +130,14 @@ def _calm_map(ds: xr.Dataset) -> Figure:
     fig = style.figure(8.0, 4.6)
     ax = fig.subplots()
     rpm, load = np.meshgrid(array(ds, "speed") * RPM, array(ds, "load"))
-    calm = np.isinf(mass)
-    ax.plot(rpm[calm], load[calm], "^", color=style.GREEN, markersize=9, label=_CALM, gid="calm")
-    if not calm.all():
-        ax.plot(rpm[~calm], load[~calm], "x", color=style.GREY, markersize=8, label="did not converge")
+    free, neutral = np.isinf(mass), _is_neutral(ds)
+    calm, hardly = free & ~neutral, free & neutral
+    if calm.any():
+        ax.plot(rpm[calm], load[calm], "^", color=style.GREEN, markersize=9, label=_CALM, gid="calm")
+    if hardly.any():
+        ax.plot(rpm[hardly], load[hardly], "d", color=style.ORANGE, markersize=9, label=_HARDLY_DAMPED, gid="neutral")
+    if not free.all():
+        ax.plot(rpm[~free], load[~free], "x", color=style.GREY, markersize=8, label="did not converge")
     style.dress(ax, QUANTITIES["speed"].axis, QUANTITIES["load"].axis)
     ax.margins(0.08)
     ax.set_ylim(bottom=0.0)
@@ -159,7 +177,8 @@ def _draw_masses(ax: Axes, ds: xr.Dataset) -> None:
     ends, mark = _places(ax, (left, calm, right)), _places(ax, (rotor,))[0]
     middle: style.Look = {"transform": ax.transAxes, "ha": "center", "va": "center", "color": style.INK}
     if ends[1] > _LEAST_LABEL:
-        text = _CALM if math.isinf(critical) else f"stable below\n{critical:.4g} kg"
+        free = _HARDLY_DAMPED if _is_neutral(ds).any() else _CALM
+        text = free if math.isinf(critical) else f"stable below\n{critical:.4g} kg"
         ax.text(_free_middle(0.0, ends[1], mark), 0.5, text, fontsize=style.LABEL, **middle)
     if ends[1] < 1.0 - _LEAST_LABEL:
         whirl = "" if math.isnan(ratio) else f"\nwhirl ratio {ratio:.3g}"

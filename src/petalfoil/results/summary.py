@@ -208,6 +208,8 @@ def cell(name: str, value: Scalar) -> TableRow:
         return TableRow(shown.label, "yes" if value else "no", shown.unit)
     if isinstance(value, str) or SCALARS[name].kind is DataType.INT:
         return TableRow(shown.label, str(value), shown.unit)
+    if math.isinf(value):
+        return TableRow(shown.label, shown.infinite, "")
     return TableRow(shown.label, number(value * shown.factor), shown.unit)
 
 
@@ -255,7 +257,8 @@ def _beside(bar: float, value: float) -> str:
 
 def shown_as(name: str) -> TableLabel:
     """How a scalar is shown: as the table says, as its analysis declares, or plainly in SI units."""
-    plain = TableLabel(name.replace("_", " "), SCALARS[name].units.removeprefix("1"))
+    unit, infinite = SCALARS[name].units.removeprefix("1"), "unlimited" if name == "mass_margin" else "none"
+    plain = TableLabel(name.replace("_", " "), unit, infinite=infinite)
     return _SHOWN.get(name) or SCALARS[name].shown or plain
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from petalfoil.results.answer import Answer
 from petalfoil.results.estimate import Estimate
 from petalfoil.results.grid import LoadSpeedGrid
-from petalfoil.results.layout import Cell, Layout, Series, SinglePoint
+from petalfoil.results.layout import Cell, Layout, Series, SinglePoint, load_of
 from petalfoil.results.record import Record, Scalar
 from petalfoil.results.rounding import without_rounding
 from petalfoil.results.study import GridStudy, grid_text
@@ -150,9 +150,10 @@ def _grids(layout: LoadSpeedGrid, records: Sequence[Record]) -> Iterator[TextTab
         if there and not any(name in scalars for scalars in there):
             continue
         table = TextTable((TextColumn("load", "N"), *speeds), title=title)
-        for load, line in zip(layout.loads(records), layout.over(records, name), strict=True):
-            values = (number(math.nan if value is None else float(value)) for value in line)
-            table.lines.append((number(load), *values))
+        at = {(load_of(one), float(one.scalars["speed"])): one.reported().get(name) for one in records}
+        for load in layout.loads(records):
+            values = (at.get((load, speed)) for speed in layout.speeds(records))
+            table.lines.append((number(load), *(cell(name, math.nan if v is None else v).value for v in values)))
         yield table
 
 

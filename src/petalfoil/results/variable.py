@@ -30,11 +30,12 @@ class Role(Enum):
 
 @dataclass(frozen=True, slots=True)
 class TableLabel:
-    """How a table shows a scalar: label, unit for engineers, factor from the SI unit."""
+    """How a table shows a scalar: label, unit for engineers, factor from the SI unit, and an infinite one in words."""
 
     label: str
     unit: str = ""
     factor: float = 1.0
+    infinite: str = "none"
 
 
 @dataclass(frozen=True, slots=True)

@@ -175,6 +175,11 @@ EVERY: dict[str, tuple[str, Callable[[], Told], Callable[[], Told]]] = {
         lambda: of(scalars={"nodal_force_difference": 0.11}),
         lambda: of(scalars={"nodal_force_difference": 0.09}),
     ),
+    "neutral verdict": (
+        "verdict",
+        lambda: of(scalars={"verdict": "rotor of 4 kg: neutral, growth rate 0.65 1/s at 9550 Hz"}),
+        lambda: of(scalars={"verdict": "rotor of 4 kg: stable (no mass is critical)"}),
+    ),
     "warnings_of_errors": (
         "min_film_thickness",
         lambda: warnings_of_errors({"min_film_thickness": 4e-6}, {"min_film_thickness": 0.41e-6}),

@@ -298,6 +298,18 @@ def test_a_chart_that_is_stable_for_any_mass_is_a_map_without_empty_panels(texts
     assert ax.get_ylim()[0] == 0.0
 
 
+def test_states_whose_rotors_are_neutral_are_marked_apart(texts: Texts) -> None:
+    ds = chart({(size, speed): math.inf for size in (5.0, 20.0) for speed in (100.0, 200.0)})
+    words = np.array([["converged; no mass is critical, neutral", "converged"], ["converged", "converged"]])
+    told = ds.assign(status=(ds["status"].dims, words))
+    marks = {item.get_gid(): np.size(item.get_xdata()) for item in plot.stability(told).axes[0].lines}
+    assert (marks["calm"], marks["neutral"]) == (3, 1)
+    mixed = told.assign(critical_mass=(ds["critical_mass"].dims, np.array([[math.inf, 1.0], [math.inf, 2.0]])))
+    said = texts(plot.stability(mixed))
+    assert "stable for any rotor mass" in said
+    assert "the rotor is neutral" in said
+
+
 def point(**own: Scalar) -> xr.Dataset:
     place = {"speed": 100.0, "eccentricity_x": 0.0, "eccentricity_y": -1e-5}
     return to_dataset(record("stability", **(place | own)))
@@ -362,6 +374,18 @@ def test_a_backward_mode_at_the_speed_is_no_critical_speed(texts: Texts) -> None
         forward, backward = backward, forward
     assert forward.get_linewidth() > backward.get_linewidth()
     assert backward.get_zorder() > forward.get_zorder()
+
+
+def test_modes_that_grow_are_ringed_and_those_that_are_neutral_otherwise(texts: Texts) -> None:
+    ratios = [[-2e-4, 5e-5], [-5e-5, 0.1]]
+    fig = plot.campbell(crossing(1.0).assign(damping_ratio=(("point", "mode"), ratios)))
+    rings = [
+        (item.get_gid(), np.size(item.get_xdata()))
+        for item in fig.axes[0].lines
+        if item.get_gid() in ("growing", "neutral")
+    ]
+    assert sorted(rings) == [("growing", 1), ("neutral", 1), ("neutral", 1)]
+    assert "neither grows nor decays" in texts(fig)
 
 
 def test_natural_modes_of_a_point_are_inside_their_axes(texts: Texts) -> None:

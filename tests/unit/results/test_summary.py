@@ -84,6 +84,12 @@ def test_rows_show_a_dash_for_a_missing_figure() -> None:
     assert rows["status"] == "the step length fell below its limit"
 
 
+@pytest.mark.parametrize("name", ["critical_mass", "liftoff_speed", "mass_margin"])
+def test_what_there_is_none_of_is_written_in_words(name: str) -> None:
+    """Infinite results, of which JSON has null."""
+    assert summary.cell(name, math.inf)[1:] == ("unlimited" if name == "mass_margin" else "none", "")
+
+
 def test_a_cell_of_a_name_without_a_unit_of_its_own_is_shown_in_si() -> None:
     assert summary.cell("mass_balance_error", 2e-12) == ("mass balance error", "2.00e-12", "")
     assert summary.cell("film_force_x", 1.0) == ("film force x", "1.000", "N")
