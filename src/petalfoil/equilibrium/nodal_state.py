@@ -19,6 +19,7 @@ from petalfoil.equilibrium.solution import RefinedState, Solution
 from petalfoil.mesh import hermite
 from petalfoil.physics.gap_curves import Facing
 from petalfoil.physics.petal_elements import clamped_beam, clamped_beam_bend
+from petalfoil.sparsity import add_up
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.unknowns import DEFLECTION
@@ -100,11 +101,11 @@ def sampled_solution(found: ElementEquilibrium, load: Array | None) -> Solution:
     `load` (n_position,) is what it carries, if anything. The state at its nodes is that of its elements: a start for
     others.
     """
-    problem, state = found.equations.problem, NodalState.of_elements(found)
+    problem = found.equations.problem
     x = np.zeros(problem.layout.n)
-    wall = with_motion_along(problem.layout.stiffness, state.deflection)
+    wall = with_motion_along(problem.layout.stiffness, sampled_deflection(found))
     x[problem.layout.unknowns[DEFLECTION]], x[problem.positive] = wall, found.equations.pressures
-    nodal = RefinedState(x, np.zeros(problem.layout.n_wall), state.lam)
+    nodal = RefinedState(x, np.zeros(problem.layout.n_wall), shared_reactions(found))
     return Solution(problem, nodal, found.residual, FOLLOWED, load=load, elements=found, elements_sought=True)
 
 
@@ -140,14 +141,14 @@ def shared_reactions(found: ElementEquilibrium) -> Array:
 
 def sampled_deflection(found: ElementEquilibrium) -> Array:
     """Deflections at the nodes of the pack, (n_wall,) [1], bending by the loads within each element (S7) included."""
-    pack, scales = found.pack, found.equations.problem.layout.scales
-    rows, element, t, beams, C = pack.sampling
-    smooth = (rows @ found.equations.deflection).reshape(pack.mesh.count, -1)
-    bent = pressing(found) @ beams
+    pack, scales, (element, t) = found.pack, found.equations.problem.layout.scales, found.pack.node_places
+    bent = (pack.bent_at_nodes @ pressing(found).ravel()).reshape(pack.mesh.count, -1)
     for loads in pack.contact_places(found.points):
-        bend = np.where(loads.element[:, None] == element, clamped_beam(t, loads.place[:, None]), 0.0)
-        np.add.at(bent, loads.petal, loads.force[:, None] * bend)
-    return np.asarray((smooth + C * (scales.force / scales.length) * bent).ravel())
+        load, node = np.nonzero(loads.element[:, None] == element)
+        bend = loads.force[load] * clamped_beam(t[node], loads.place[load])
+        petal = loads.petal[load]
+        np.add.at(bent, (petal, node), pack.compliance[petal, element[node]] * bend)
+    return np.asarray(pack.at_nodes @ found.equations.deflection + (scales.force / scales.length) * bent.ravel())
 
 
 def pressing(found: ElementEquilibrium) -> Array:
@@ -181,14 +182,15 @@ def curvatures(found: ElementEquilibrium, at: ElementLoads) -> Array:
     nodal = nodal_deflection(found)[at.petal[:, None], 2 * at.element[:, None] + np.arange(4)]
     nodal[:, 1::2] *= angle[:, None]
     value, second = (np.einsum("ki,ki->k", hermite.basis(at.place, k), nodal) for k in (0, 2))
-    element, t = hermite.located(pack.mesh.phi[1:], pack.elements.phi)
-    pressed = pressing(found)[at.petal]
-    bend = np.where(at.element[:, None] == element, clamped_beam_bend(at.place[:, None], t[None, :]), 0.0)
-    bent = (pressed * bend).sum(axis=1)
+    element, t = pack.node_places
+    here, node = np.nonzero(at.element[:, None] == element)
+    by_film = pressing(found)[at.petal[here], node] * clamped_beam_bend(at.place[here], t[node])
+    bent = add_up(here, by_film, len(at.petal))
     for loads in pack.contact_places(found.points):
-        same = (loads.petal == at.petal[:, None]) & (loads.element == at.element[:, None])
-        bent += np.where(same, clamped_beam_bend(at.place[:, None], loads.place[None, :]), 0.0) @ loads.force
-    C = np.stack([petal.point_compliance for petal in pack.petals])[at.petal, at.element] * layout.scales.force
+        here, load = np.nonzero((loads.petal == at.petal[:, None]) & (loads.element == at.element[:, None]))
+        by_point = loads.force[load] * clamped_beam_bend(at.place[here], loads.place[load])
+        bent += add_up(here, by_point, len(at.petal))
+    C = pack.compliance[at.petal, at.element] * layout.scales.force
     r_m, R_p = (
         np.array([getattr(petal, name) for petal in pack.petals])[at.petal] for name in ("metric_radius", "bend_radius")
     )

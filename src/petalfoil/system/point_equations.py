@@ -184,7 +184,8 @@ class PointEquations:
         """Generalised forces on the petals: elastic, by pressure and contacts, and magnitudes of these, (n_wall,)."""
         (acts, _), reaction, over = self.acting, self.state.points.reaction, self.state.P - 1.0
         loads = self.whole.push @ over + acts.T @ reaction
-        return self.whole.elastic(self.state.w), loads, abs(self.whole.push) @ np.abs(over) + abs(acts.T) @ reaction
+        size = self.whole.push.magnitude @ np.abs(over) + abs(acts.T) @ reaction
+        return self.whole.elastic(self.state.w), loads, size
 
     @cached_property
     def scaled(self) -> Array:

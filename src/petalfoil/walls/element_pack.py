@@ -82,27 +82,6 @@ class ElementPack:
                 known[id(petal)] = petal.bending
         return sp.csr_array(sp.block_diag([known[id(petal)] for petal in self.petals], format="csr"))
 
-    @cached_property
-    def sampling(self) -> tuple[SparseRows, Index, Array, Array, Array]:
-        """What deflections at the nodes of the pack, roots apart, are sampled with.
-
-        Returns
-        -------
-        rows : (petal * node, n) sparse
-            Weights of the unknowns.
-        element, place : (node,) array
-            Element of each node and place in it.
-        beams : (node, node) array
-            `b` between nodes on one element (S7) [1].
-        compliance : (petal, node) array
-            That of each element under a point load, which all petals share apart from their thickness [m/N].
-        """
-        element, t = hermite.located(self.mesh.phi[1:], self.elements.phi)
-        weights = hermite.rows(element, t, self.elements.element_angle)
-        rows = SparseRows(sp.kron(sp.eye_array(self.mesh.count), weights, format="csr") @ self.nodal)
-        beams = np.where(element[:, None] == element, clamped_beam(t[:, None], t), 0.0)
-        return rows, element, t, beams, np.stack([petal.point_compliance[element] for petal in self.petals])
-
     @property
     def n_unknown(self) -> int:
         """Unknowns of all petals."""
@@ -146,7 +125,7 @@ class ElementPack:
         towards_journal = np.stack([-np.cos(theta), -np.sin(theta), np.sin(theta), -np.cos(theta)], axis=1)
         by_e = towards_journal.reshape(-1, 2) * float(facing is Facing.JOURNAL)
         angle = np.append(self.elements.element_angle[nodes.start : nodes.stop - 1], 1.0)
-        C = np.array([np.append(petal.point_compliance[nodes.start : nodes.stop - 1], 0.0) for petal in self.petals])
+        C = np.pad(self.compliance[:, nodes.start : nodes.stop - 1], ((0, 0), (0, 1)))
         if facing is Facing.PETAL:  # both petals give
             C = C + C[np.arange(1, n + 1) % n]
         return facing, rest, by_e, self._by_w(facing), np.tile(angle, n), C.ravel(), len(phi)
@@ -176,6 +155,31 @@ class ElementPack:
         """Film thickness less the gap toward the journal at the film nodes: the contact film thickness [m]."""
         out: Array = self.wall.rest_film.ravel() - self.wall.contacts.rest[self.wall.contacts.journal]
         return out
+
+    @cached_property
+    def node_places(self) -> tuple[Index, Array]:
+        """Element of each node of `mesh` but the root, and place in it, (n_node - 1,)."""
+        return hermite.located(self.mesh.phi[1:], self.elements.phi)
+
+    @cached_property
+    def at_nodes(self) -> SparseRows:
+        """Deflections at the nodes of all petals from the unknowns, roots apart, cubics alone; (n_wall, n)."""
+        rows = hermite.rows(*self.node_places, self.elements.element_angle)
+        return SparseRows(sp.kron(sp.eye_array(self.mesh.count), rows, format="csr") @ self.nodal)
+
+    @cached_property
+    def bent_at_nodes(self) -> SparseRows:
+        """What forces on these nodes bend within their own element (S7), at the same nodes, (n_wall, n_wall) [m/N]."""
+        element, t = self.node_places
+        at, load = np.nonzero(element[:, None] == element)
+        bend, shape = clamped_beam(t[at], t[load]), (len(t), len(t))
+        parts = [sp.csr_array((C[element][at] * bend, (at, load)), shape=shape) for C in self.compliance]
+        return SparseRows(sp.block_diag(parts, format="csr"))
+
+    @cached_property
+    def compliance(self) -> Array:
+        """Point compliance of the elements of each petal, (petal, element) [m/N]."""
+        return np.stack([petal.point_compliance for petal in self.petals])
 
     def from_nodes(self, deflection: Array) -> Array:
         """Unknowns of petals whose nodes have `deflection` (n_wall,), by a cubic spline; (n,)."""

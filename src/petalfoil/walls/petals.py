@@ -197,8 +197,10 @@ class PetalWall(WallKind):
         on_bushing, on_neighbour = np.zeros(mesh.shape), np.zeros(mesh.shape)
         on_bushing[:, mesh.on_bushing] = pressure[rows.bushing].reshape(mesh.count, -1, mesh.n_z)
         on_neighbour[:, mesh.on_neighbour] = pressure[rows.petals].reshape(mesh.count, -1, mesh.n_z)
-        parts = zip(build_shells(case, mesh), W, petals.each, strict=True)
-        stress = np.stack([bending_stress(shell, w, one.youngs_modulus, one.thickness) for shell, w, one in parts])
+        shells, stress = build_shells(case, mesh), np.zeros_like(W)
+        for one in dict.fromkeys(petals.each):
+            mine = [k for k, petal in enumerate(petals.each) if petal == one]
+            stress[mine] = bending_stress(shells[mine[0]], W[mine], one.youngs_modulus, one.thickness)
         placed = {} if state.placed is None else self._placed(case, state.placed)
         return {
             **placed,
