@@ -68,7 +68,7 @@ def followed(near: PointContacts, problem: CoupledProblem, load: Array | None) -
     equations, tangent = replace(near.equations, problem=start), foretelling(near, load)
     foretold, before = NEAR, np.inf
     for count in range(TANGENTS):
-        _, largest = norm(equations, load)
+        size, largest = norm(equations, load)
         if count and largest <= RESIDUAL_TOLERANCE and not np.any(way(equations, problem, load)):
             points = revised(equations, closely=True)
             if distance(near.equations, equations) > FAR_FOLLOWED * foretold:
@@ -81,12 +81,13 @@ def followed(near: PointContacts, problem: CoupledProblem, load: Array | None) -
         before = largest
         if count or tangent is None:
             tangent = ElementTangent.at(equations, load, current_run().film_solver)
+        given = count == 0 or bool(np.any(way(equations, problem, load)))
         equations = stepped(equations, tangent, problem, load)
         if not count:
             foretold = max(distance(near.equations, equations), NEAR)
             points = evenly_divided(equations.state.points)
             equations = replace(equations, state=replace(equations.state, points=points))
-        equations = settled(equations, tangent, problem, load)
+        equations = settled(equations, tangent, problem, (load, 1.0 if given else norm(equations, load)[0] / size))
     raise NoPointsError(f"not followed with at most {TANGENTS} tangents")
 
 
@@ -131,18 +132,26 @@ def stepped(
 
 
 def settled(
-    equations: PointEquations, tangent: ElementTangent, problem: CoupledProblem, load: Array | None
+    equations: PointEquations, tangent: ElementTangent, problem: CoupledProblem, asked: tuple[Array | None, float]
 ) -> PointEquations:
-    """The equations after as many further steps with the same factor as leave `CHORD` of the residual each, or less."""
+    """The equations after as many further steps with the same factor as leave `CHORD` of the residual each, or less.
+
+    The last one is kept if it leaves less at all. Steps end where nothing but rounding is foretold: each leaves such a
+    part as the one before it. `asked` are the load and the part that the step before left.
+    """
+    load, part = asked
     if np.any(way(equations, problem, load)):
         return equations
-    size, largest = norm(equations, load)
-    while largest > POLISHED * RESIDUAL_TOLERANCE and tangent.n == equations.n:
+    size, left = norm(equations, load)
+    while left > POLISHED * RESIDUAL_TOLERANCE and tangent.n == equations.n:
         ahead = stepped(equations, tangent, problem, load)
         before, (size, largest) = size, norm(ahead, load)
-        if not size <= CHORD * before:
+        left = min(part * left, largest) if largest <= RESIDUAL_TOLERANCE else largest
+        part = size / before
+        if part < 1.0:
+            equations = ahead
+        if part > CHORD:
             break
-        equations = ahead
     return equations
 
 
