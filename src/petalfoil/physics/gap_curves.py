@@ -106,6 +106,27 @@ class GapCurves:
             self._sampled[per_element] = (curve, position, element, t, rows)
         return self._sampled[per_element]
 
+    @cached_property
+    def _padded(self) -> tuple[Index, Array]:
+        """`by_w` by rows of equal length: unknowns, in their order, and weights, zero where a row has fewer."""
+        held = np.diff(self.by_w.indptr)
+        number = np.arange(self.by_w.nnz) - np.repeat(self.by_w.indptr[:-1], held)
+        at = np.repeat(np.arange(len(held)), held), number
+        unknown, weight = (np.zeros((len(held), held.max(initial=1)), kind) for kind in (np.int32, np.float64))
+        unknown[at], weight[at] = self.by_w.indices, self.by_w.data
+        return unknown, weight
+
+    def rows_by_w(self, curve: Index, position: Array, derivative: int = 0) -> sp.csr_array:
+        """Weights of the unknowns in the gap at positions on curves, or in a derivative as in `rows`; (k, n)."""
+        columns, weights = hermite.entries(*self.locate(curve, position), self.angle, derivative)
+        unknown, weight = (part[columns].transpose(0, 2, 1) for part in self._padded)
+        values = weight * weights[:, None, :]
+        starts = np.arange(len(columns) + 1, dtype=np.int32) * (values.shape[1] * values.shape[2])
+        shape = (len(columns), self.by_w.shape[1])
+        rows = sp.csr_array((values.ravel(), unknown.ravel(), starts), shape=shape)
+        rows.eliminate_zeros()
+        return rows
+
     def nodal(self, w: Array, e: Array) -> Array:
         """Nodal (value, slope) of all gaps, (2 n_node,)."""
         gaps: Array = self.rest + self.by_e @ e + self.by_w @ w
@@ -299,10 +320,17 @@ class PointGaps:
         """Sum of a part of the pairs at each point, (j,)."""
         return add_up(self._pairs[0], part, len(self.points.reaction))
 
+    @cached_property
+    def _by_rows(self) -> tuple[Index, Index, Index]:
+        """Order of the pairs by their first points, the second ones in that order, and where each row begins."""
+        at, load = self._pairs
+        order, held = np.argsort(at, kind="stable"), np.bincount(at, minlength=len(self.points.reaction))
+        return order, load[order], np.concatenate([[0], np.cumsum(held)])
+
     def _matrix(self, part: Array) -> sp.csr_array:
         """A part of the pairs as a matrix, (j, j)."""
-        size = len(self.points.reaction)
-        return sp.csr_array((part, self._pairs), shape=(size, size))
+        size, (order, columns, starts) = len(self.points.reaction), self._by_rows
+        return sp.csr_array((part[order], columns, starts), shape=(size, size))
 
 
 def together(element: Index) -> tuple[Index, Index]:

@@ -9,14 +9,16 @@
 
 from petalfoil.sparsity.ordering import Elimination, Order, TiedOrder, postorder
 from petalfoil.sparsity.pattern import Pattern, add_up
-from petalfoil.sparsity.products import SparseRows, added_blocks, columns_times, rows_times
+from petalfoil.sparsity.products import SparseRows, SummedEntries, Triplets, added_blocks, columns_times, rows_times
 
 __all__ = [
     "Elimination",
     "Order",
     "Pattern",
     "SparseRows",
+    "SummedEntries",
     "TiedOrder",
+    "Triplets",
     "add_up",
     "added_blocks",
     "columns_times",

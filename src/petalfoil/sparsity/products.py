@@ -7,8 +7,9 @@ times as long as the sums. `SparseRows` goes to the compiled loop at once, and b
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from scipy.sparse import _sparsetools  # the loops behind `@`; SciPy has no public way to them
 
 Array = NDArray[np.float64]
+Index = NDArray[np.integer[Any]]
 
 
 class SparseRows(sp.csr_array):  # type: ignore[misc]
@@ -62,11 +64,69 @@ def columns_times(matrix: sp.csr_array, factor: Array) -> sp.csr_array:
     return sp.csr_array((matrix.data * factor[matrix.indices], matrix.indices, matrix.indptr), shape=matrix.shape)
 
 
-def added_blocks(blocks: Sequence[tuple[int, int, sp.sparray]], diagonal: Array) -> sp.csc_array:
-    """A square matrix from blocks, each with its first row and column, and what is added to its diagonal (n,)."""
+class Triplets(NamedTuple):
+    """Entries of a matrix: rows (k,), columns (k,), values (k,)."""
+
+    rows: Index
+    cols: Index
+    data: Array
+
+    @classmethod
+    def of(cls, matrix: sp.sparray) -> Triplets:
+        """Those of a sparse matrix, in the order in which it holds them."""
+        if matrix.format not in ("csr", "csc"):
+            coo = matrix.tocoo()
+            return cls(coo.row, coo.col, coo.data)
+        major = np.repeat(np.arange(len(matrix.indptr) - 1, dtype=matrix.indices.dtype), np.diff(matrix.indptr))
+        rows, cols = (major, matrix.indices) if matrix.format == "csr" else (matrix.indices, major)
+        return cls(rows, cols, matrix.data)
+
+
+@dataclass(frozen=True)
+class SummedEntries:
+    """Entries of a matrix, no place named twice, each a weighted sum of values that change.
+
+    Attributes
+    ----------
+    rows, cols : (k,) array
+        Places, column by column.
+    weights : (k, values) sparse
+        Weights of the values.
+    """
+
+    rows: Index
+    cols: Index
+    weights: SparseRows
+
+    @classmethod
+    def of_product(cls, rows: Index, cols: Index, right: sp.csr_array) -> SummedEntries:
+        """Entries of `L @ right`, `L` with values at the places `rows`, `cols`, some of them perhaps named twice."""
+        held = np.diff(right.indptr)[cols]
+        value = np.repeat(np.arange(len(cols)), held)
+        taken = np.repeat(right.indptr[cols] - np.cumsum(held) + held, held) + np.arange(len(value))
+        size = int(rows.max(initial=-1)) + 1
+        place, entry = np.unique(right.indices[taken].astype(np.int64) * size + rows[value], return_inverse=True)
+        weights = sp.csr_array((right.data[taken], (entry, value)), shape=(len(place), len(cols)))
+        col, row = np.divmod(place, max(size, 1))
+        return cls(row.astype(np.int32), col.astype(np.int32), SparseRows(weights))
+
+    def at(self, values: Array) -> Triplets:
+        """The entries at some values."""
+        return Triplets(self.rows, self.cols, self.weights @ values)
+
+
+def added_blocks(blocks: Sequence[tuple[int, int, sp.sparray | Triplets]], diagonal: Array) -> sp.csc_array:
+    """A square matrix from blocks, each with its first row and column, and what is added to its diagonal (n,).
+
+    It goes to the compiled loop at once, like products.
+    """
     size, on_diagonal = len(diagonal), np.flatnonzero(diagonal)
-    parts = [(row, column, block.tocoo()) for row, column, block in blocks]
-    rows = np.concatenate([*(row + part.row for row, _, part in parts), on_diagonal])
-    columns = np.concatenate([*(column + part.col for _, column, part in parts), on_diagonal])
+    parts = [(row, col, part if isinstance(part, Triplets) else Triplets.of(part)) for row, col, part in blocks]
+    rows = np.concatenate([*(row + part.rows for row, _, part in parts), on_diagonal], dtype=np.int32)
+    cols = np.concatenate([*(col + part.cols for _, col, part in parts), on_diagonal], dtype=np.int32)
     data = np.concatenate([*(part.data for _, _, part in parts), diagonal[on_diagonal]])
-    return sp.csc_array((data, (rows, columns)), shape=(size, size))
+    indptr, indices, sorted_data = np.empty(size + 1, np.int32), np.empty_like(rows), np.empty_like(data)
+    _sparsetools.coo_tocsr(size, size, len(data), cols, rows, data, indptr, indices, sorted_data)
+    matrix = sp.csc_array((sorted_data, indices, indptr), shape=(size, size))
+    matrix.sum_duplicates()
+    return matrix

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from petalfoil.physics.gap_curves import ContactPoints, PointGaps
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
-from petalfoil.sparsity import added_blocks, columns_times, rows_times
+from petalfoil.sparsity import Triplets, added_blocks, columns_times, rows_times
 from petalfoil.system.coupled import WALL_ROUNDING, CoupledProblem
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.point_layout import PointLayout
@@ -139,8 +139,9 @@ class PointEquations:
     @cached_property
     def by_w(self) -> tuple[sp.csr_array, sp.csr_array]:
         """`n`, `n'` of all points."""
-        value, slope = (sp.csr_array(weights @ self.whole.curves.by_w) for weights in self._weights)
-        return value, slope
+        points, curves = self.state.points, self.whole.curves
+        at = points.every_curve, points.every_position
+        return curves.rows_by_w(*at), curves.rows_by_w(*at, 1)
 
     @cached_property
     def by_e(self) -> tuple[Array, Array]:
@@ -207,50 +208,48 @@ class PointEquations:
     def steady(self) -> sp.csc_array:
         """The tangent."""
         (n, n_slope), gaps, points, whole = self.by_w, self.gaps, self.state.points, self.whole
-        (pull, pull_by_place), acts, free, ends = self.acting, 1.0 - self.idle, self.travels, points.ends
-        travel = columns_times(points.spread, free)  # positions of all points by those that travel
-        by_P, by_w = self._film_tangent
+        (pull, pull_by_place), acts, free = self.acting, 1.0 - self.idle, self.travels
+        turned = rows_times(pull_by_place, points.reaction)
+        by_P, by_w = (entries.at(values) for entries, values in zip(whole.film_entries, self.film.tangent, strict=True))
         film = whole.n_wall
         lam = film + whole.n_film
         place = lam + len(acts)
-        blocks = [
+        blocks: list[tuple[int, int, sp.sparray | Triplets]] = [
             (0, 0, whole.stiffness),
             (0, film, -whole.push),
             (0, lam, -pull.T),
-            (0, place, -(rows_times(pull_by_place, points.reaction).T @ travel)),
+            (0, place, self._by_travel(-turned.T)),
             (film, 0, by_w),
             (film, film, by_P),
             (lam, 0, rows_times(n, acts)),
             (lam, lam, rows_times(gaps.bend, acts)),
-            (lam, place, rows_times(gaps.value_by_place @ travel, acts)),
-            (place, 0, rows_times(n_slope[ends], free)),
-            (place, lam, rows_times(gaps.bend_slope[ends], free)),
-            (place, place, rows_times(gaps.slope_by_place[ends] @ travel, free)),
+            (lam, place, self._by_travel(rows_times(gaps.value_by_place, acts))),
+            (place, 0, rows_times(self._at_ends(n_slope), free)),
+            (place, lam, rows_times(self._at_ends(gaps.bend_slope), free)),
+            (place, place, self._by_travel(rows_times(self._at_ends(gaps.slope_by_place), free))),
         ]
         diagonal = np.concatenate([np.zeros(lam), self.idle, 1.0 - free])
         return added_blocks(blocks, diagonal)
 
-    @cached_property
-    def _film_tangent(self) -> tuple[sp.csr_array, sp.csr_array]:
-        """Derivatives of the film's rows by pressures and by the petals' unknowns."""
-        rows, (by_P, by_H) = self.whole.layout.film_rows, self.film.tangent
-        n, nodes = self.whole.n_film, self.film_thickness.size
-        pressure = sp.coo_array((by_P, (rows.by_pressure.rows, rows.by_pressure.cols)), shape=(n, n))
-        film = sp.coo_array((by_H, (rows.by_film.rows, rows.by_film.cols)), shape=(n, nodes))
-        return pressure.tocsr(), sp.csr_array(film.tocsr() @ self.whole.film_by_w)
+    def _by_travel(self, by_place: sp.sparray) -> sp.sparray | Triplets:
+        """Derivatives by the places of the travelling points from those by the places of all points."""
+        points = self.state.points
+        if len(points.ends) == len(points.reaction):
+            rows, columns, values = Triplets.of(by_place)
+            return Triplets(rows, columns, values * self.travels[columns])
+        return by_place @ columns_times(points.spread, self.travels)
+
+    def _at_ends(self, matrix: sp.csr_array) -> sp.csr_array:
+        """Rows of the travelling points, of those of all points."""
+        ends = self.state.points.ends
+        return matrix if len(ends) == matrix.shape[0] else matrix[ends]
 
     @cached_property
     def stored(self) -> sp.csc_array:
         """Derivative of what the film stores, in the place of the tangent."""
-        rows, (by_P, by_H) = self.whole.layout.film_rows, self.film.storage
-        n, nodes, n_wall = self.whole.n_film, self.film_thickness.size, self.whole.n_wall
-        at_P, at_H = rows.storage_by_pressure, rows.storage_by_film
-        pressure = sp.coo_array((by_P, (at_P.rows, at_P.cols)), shape=(n, n)).tocsr()
-        film = sp.coo_array((by_H, (at_H.rows, at_H.cols)), shape=(n, nodes)).tocsr() @ self.whole.film_by_w
-        extra = self.n - n_wall - n
-        top, bottom = sp.csr_array((n_wall, self.n)), sp.csr_array((extra, self.n))
-        middle = sp.hstack([film, pressure, sp.csr_array((n, extra))])
-        return sp.csc_array(sp.vstack([top, middle, bottom], format="csc"))
+        pairs = zip(self.whole.storage_entries, self.film.storage, strict=True)
+        (by_P, by_w), film = (entries.at(values) for entries, values in pairs), self.whole.n_wall
+        return added_blocks([(film, 0, by_w), (film, film, by_P)], np.zeros(self.n))
 
     def forcing(self, rate: float = 0.0) -> Array:
         """Derivative of the rows by the journal's displacement, with `rate` times that of what the film stores."""

@@ -12,7 +12,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.physics.gap_curves import GapCurves
-from petalfoil.sparsity import SparseRows
+from petalfoil.physics.mass_balance import Entries
+from petalfoil.sparsity import SparseRows, SummedEntries
 from petalfoil.walls.element_pack import ElementPack
 
 if TYPE_CHECKING:
@@ -99,6 +100,25 @@ class PointLayout:
     def film_by_w(self) -> SparseRows:
         """Derivative of the film thickness by the petals' unknowns, (film nodes, n_wall)."""
         return SparseRows(self.pack.film_rows @ self.curves.by_w)
+
+    @cached_property
+    def film_entries(self) -> tuple[SummedEntries, SummedEntries]:
+        """Entries of the film's tangent by pressures and by the petals' unknowns, from those of `FilmState.tangent`."""
+        rows = self.layout.film_rows
+        return self._film_entries(rows.by_pressure, rows.by_film)
+
+    @cached_property
+    def storage_entries(self) -> tuple[SummedEntries, SummedEntries]:
+        """The same of what the film stores, from those of `FilmState.storage`."""
+        rows = self.layout.film_rows
+        return self._film_entries(rows.storage_by_pressure, rows.storage_by_film)
+
+    def _film_entries(self, by_pressure: Entries, by_film: Entries) -> tuple[SummedEntries, SummedEntries]:
+        same = sp.csr_array(sp.eye_array(self.n_film))
+        return (
+            SummedEntries.of_product(by_pressure.rows, by_pressure.cols, same),
+            SummedEntries.of_product(by_film.rows, by_film.cols, self.film_by_w),
+        )
 
     @cached_property
     def film_by_e(self) -> Array:

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose, assert_array_equal
 
-from petalfoil.sparsity import SparseRows, added_blocks, columns_times, rows_times
+from petalfoil.sparsity import SparseRows, SummedEntries, Triplets, added_blocks, columns_times, rows_times
 
 
 def random_rows(m: int, n: int, seed: int) -> sp.csr_array:
@@ -62,3 +62,26 @@ def test_blocks_that_overlap_add_up() -> None:
     whole[1:4, 1:3] += other.toarray()
     added = added_blocks([(0, 2, one), (1, 1, other.tocsc())], np.array([0.0, 0.0, 7.0, 8.0, 0.0]))
     assert_array_equal(added.toarray(), whole)
+
+
+def test_blocks_given_by_their_entries() -> None:
+    one = random_rows(2, 3, seed=5)
+    for held in (one, one.tocsc(), one.tocoo()):
+        added = added_blocks([(1, 0, Triplets.of(held)), (1, 0, held)], np.zeros(3))
+        assert added.has_canonical_format
+        assert_array_equal(added.toarray()[1:], 2.0 * one.toarray())
+
+
+def test_entries_of_a_product_follow_its_values() -> None:
+    """Places of the left factor named twice, and a place of the product that several of them reach."""
+    rng, right = np.random.default_rng(8), random_rows(5, 7, seed=9)
+    rows, cols = rng.integers(0, 4, 12), rng.integers(0, 5, 12)
+    rows[-1], cols[-1] = rows[0], cols[0]
+    entries = SummedEntries.of_product(rows, cols, right)
+    assert len(np.unique(entries.rows + 4 * entries.cols)) == len(entries.rows)
+    for _ in range(2):
+        values, left, found = rng.standard_normal(12), np.zeros((4, 5)), np.zeros((4, 7))
+        np.add.at(left, (rows, cols), values)
+        at = entries.at(values)
+        found[at.rows, at.cols] = at.data
+        assert_allclose(found, left @ right.toarray(), rtol=1e-14, atol=1e-15)
