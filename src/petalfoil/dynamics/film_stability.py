@@ -7,8 +7,6 @@ The wall has no mass; the film has. With the contacts that carry load kept activ
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import TangentEquations
@@ -17,9 +15,6 @@ from petalfoil.solvers.constraints import ContactConstraints, constrain
 from petalfoil.solvers.eigenvalues import Pencil, rightmost
 from petalfoil.system.unknowns import DEFLECTION
 
-TIME_STEP = 0.15
-"""Step of the eigenvalue's time map, radians of rotation: what grows or decays within a few steps converges first."""
-
 
 def leading_eigenvalue(solution: Solution) -> complex:
     """Leading eigenvalue in radians of rotation; nan at zero speed, where the film does not move."""
@@ -27,7 +22,7 @@ def leading_eigenvalue(solution: Solution) -> complex:
     if problem.bearing_number == 0.0:
         return complex(np.nan, np.nan)
     if solution.elements is not None:
-        return rightmost(pencil_of(solution.elements.equations), TIME_STEP, current_run().probe_solver)
+        return rightmost(pencil_of(solution.elements.equations), current_run().probe_solver)
     linearized = problem.linearize(solution.x)
     steady = linearized.matrix(np.zeros(len(problem.weight)))
     contacts = solution.contacts
@@ -37,7 +32,7 @@ def leading_eigenvalue(solution: Solution) -> complex:
     solver = current_run().probe_solver
     order = constraints.elimination_order(solver, problem.elimination_key)
     return rightmost(
-        Pencil(constraints.reduce(steady), constraints.reduce(linearized.stored), first, order), TIME_STEP, solver
+        Pencil(constraints.reduce(steady), constraints.reduce(linearized.stored), slice(first, None), order), solver
     )
 
 
@@ -52,16 +47,6 @@ def held_contacts(solution: Solution) -> ContactConstraints:
 
 
 def pencil_of(equations: TangentEquations) -> Pencil:
-    """The matrices of petals with continuous slopes: what stores nothing first, then the film."""
-    film = np.arange(equations.n) < len(equations.deflection) + len(equations.pressures)
-    film[: len(equations.deflection)] = False
-    first = int(np.count_nonzero(~film))
-    place = np.where(film, first + np.cumsum(film), np.cumsum(~film)) - 1
-    steady, stored = (moved_to(place, matrix) for matrix in (equations.steady, equations.stored))
-    return Pencil(steady, stored, first)
-
-
-def moved_to(place: NDArray[np.intp], matrix: sp.csc_array) -> sp.csc_array:
-    """The matrix with row and column `k` at `place[k]`."""
-    coo = matrix.tocoo()
-    return sp.csc_array((coo.data, (place[coo.row], place[coo.col])), shape=matrix.shape)
+    """The matrices of petals with continuous slopes: the rows of the film are those that store."""
+    first = len(equations.deflection)
+    return Pencil(equations.steady, equations.stored, slice(first, first + len(equations.pressures)))
