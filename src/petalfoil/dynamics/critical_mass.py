@@ -86,6 +86,11 @@ class Balance:
         """Masses times the square of the whirl frequency that balance the impedance at whirl ratio `nu`, (d,) [N/m]."""
         return eigenvalues(self.impedance.at_ratio(nu), nu, self.inertia)
 
+    def over(self, ratios: FloatArray) -> list[Complex]:
+        """The same at several whirl ratios."""
+        Z = self.impedance.at_each((1j * ratios).tolist())
+        return [eigenvalues(one, nu, self.inertia) for one, nu in zip(Z, ratios, strict=True)]
+
 
 def eigenvalues(Z: Complex, nu: float, inertia: Inertia | None) -> Complex:
     """Masses times the square of the whirl frequency that balance an impedance `Z` (d, d) at whirl ratio `nu`, (d,)."""
@@ -133,7 +138,7 @@ def grows(values: Complex) -> bool:
 def neutral_whirls(balance: Balance, ratios: FloatArray, speed: float) -> tuple[list[Whirl], Complex]:
     """All neutral whirls between some whirl ratios, and the eigenvalues at the last one, (d,)."""
     roots: list[Whirl] = []
-    values = [balance.eigenvalues(nu) for nu in ratios]
+    values = balance.over(ratios)
     for k in range(len(ratios) - 1):
         ahead = matched(values[k], values[k + 1])
         for branch in range(len(ahead)):

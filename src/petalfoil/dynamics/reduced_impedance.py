@@ -1,7 +1,7 @@
 """Impedance `Z(s)` of the bearing about an equilibrium, `dF = -Z de`, from a reduced model of the equations.
 
-The model is compared with the factorised equations at two whirl ratios. One that misses more than `MODEL_ERROR` is not
-used: then every `Z(s)` costs a factorisation. Error and size are in the run log.
+The model is compared with the factorised equations at the largest whirl ratio. One that misses more than `MODEL_ERROR`
+is not used: then every `Z(s)` costs a factorisation. Error and size are in the run log.
 """
 
 from __future__ import annotations
@@ -43,9 +43,12 @@ class Impedance:
 
     @classmethod
     def over(cls, motion: JournalMotion, ratios: Sequence[float]) -> Impedance:
-        """For whirl `ratios`, checked at the first and the last; one real factorisation and two complex ones."""
+        """For whirl `ratios`, checked at the last, farthest from the rest that the model begins at.
+
+        One real factorisation and one complex.
+        """
         model = reduce_system(motion.moved_system(current_run().probe_solver), [1j * nu for nu in ratios])
-        error = max(model_error(motion, model, 1j * nu) for nu in (ratios[0], ratios[-1]))
+        error = model_error(motion, model, 1j * ratios[-1])
         current_run().note("reduced model", vectors=model.size, error=error)
         return cls(motion, model, error)
 
@@ -56,8 +59,13 @@ class Impedance:
 
     def at(self, s: complex) -> Complex:
         """`Z`, (d, d) [N/m]."""
-        gradient = self.model.at(s) if self.reduced else factorised(self.motion, s).force_gradient
-        return self._si(gradient)
+        return np.asarray(self.at_each([s])[0], dtype=np.complex128)
+
+    def at_each(self, points: Sequence[complex]) -> Complex:
+        """The same at several `s`, (k, d, d) [N/m]."""
+        if self.reduced:
+            return self._si(self.model.at_each(points))
+        return self._si(np.array([factorised(self.motion, s).force_gradient for s in points]))
 
     def at_ratio(self, nu: float) -> Complex:
         """`Z` at whirl ratio `nu`, (d, d) [N/m]."""

@@ -91,12 +91,17 @@ class ReducedModel:
 
     def at(self, s: complex) -> Complex:
         """`F` by unit displacements, (d, d)."""
-        moved = self._moved(s)
+        return np.asarray(self.at_each([s])[0], dtype=np.complex128)
+
+    def at_each(self, points: Sequence[complex]) -> Complex:
+        """The same at several `s`, (k, d, d): small systems solved in one call."""
+        s = np.asarray(points, dtype=np.complex128)[:, None, None]
+        moved = -np.linalg.solve(np.eye(self.size) + s * self.H, _at(self.forcing, s))
         return np.asarray(_at(self.force, s) @ moved + _at(self.direct, s), dtype=np.complex128)
 
     def derivative(self, s: complex) -> Complex:
         """Derivative of `at` by `s`, (d, d)."""
-        moved = self._moved(s)
+        moved = -self._solve(s, _at(self.forcing, s))
         rate = -self._solve(s, self.H @ moved + self.forcing[1])
         return np.asarray(self.force[1] @ moved + _at(self.force, s) @ rate + self.direct[1], dtype=np.complex128)
 
@@ -123,14 +128,11 @@ class ReducedModel:
         finite = np.abs(beta) > np.finfo(float).eps * np.abs(alpha)
         return np.asarray(alpha[finite] / beta[finite], dtype=np.complex128)
 
-    def _moved(self, s: complex) -> Complex:
-        return -self._solve(s, _at(self.forcing, s))
-
     def _solve(self, s: complex, right: NDArray[np.complexfloating]) -> Complex:
         return np.asarray(np.linalg.solve(np.eye(self.size) + s * self.H, right), dtype=np.complex128)
 
 
-def _at(pair: tuple[Values, Values], s: complex) -> Complex:
+def _at(pair: tuple[Values, Values], s: complex | Complex) -> Complex:
     return np.asarray(pair[0] + s * pair[1], dtype=np.complex128)
 
 
@@ -146,7 +148,7 @@ def reduce_system(system: MovedSystem, points: Sequence[complex]) -> ReducedMode
                 break
             space.extend([system.solve(system.S @ space.next())])
         model = projected(system, space, start)
-        now = np.array([model.at(s) for s in points])
+        now = model.at_each(points)
         settled = last is not None and np.max(np.abs(now - last)) <= SETTLED * np.max(np.abs(now))
         if settled or space.complete:
             return model
