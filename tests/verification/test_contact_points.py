@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from petalfoil.analysis.coefficients import coefficients
 from petalfoil.analysis.impedance import elastic, elastic_and_sliding, impedance
 from petalfoil.analysis.operating_point import operating_point
+from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.equilibrium.asperity_contacts import AsperityContacts, with_asperities
 from petalfoil.equilibrium.continuation import advance
 from petalfoil.equilibrium.element_contacts import near_nodes, start_at, with_elements
@@ -137,6 +138,20 @@ def test_points_led_to_the_next_position_are_those_found_from_nodes(name: str) -
     assert again.contacts is not None
     assert again.elements is ahead.elements
     assert_allclose(again.x, nodal.x, rtol=1e-8, atol=1e-8)
+
+
+def test_points_led_to_a_far_speed_in_two_parts_are_those_balanced_from_nothing() -> None:
+    """Eight petals under 15 N, from 444 to 1778 rad/s: at once the points do not lead there."""
+    bearing, speed = case("paper_n8", **{"model.cells_per_pitch": 16}), 16000.0 / 9.0
+    with running():
+        start, anew = (SpeedLine(bearing, (0.0, -15.0)).at(at) for at in (speed / 4.0, speed))
+    there = start.problem.at(bearing_number=start.problem.layout.bearing_number(speed))
+    with running() as run:
+        ahead = led(start, there, start.load)
+    assert ahead is not None
+    assert [row["parts"] for row in run.history if row["phase"] == "followed"] == [1]
+    assert_allclose(ahead.position, anew.position, rtol=0.0, atol=1e-7)
+    assert ahead.force_residual < 1e-8
 
 
 def test_points_do_not_lead_across_a_jump() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -23,6 +24,12 @@ from petalfoil.system.coupled import CoupledProblem
 Array = NDArray[np.float64]
 
 
+PARTS = (1, 2)
+"""Parts into which the way to another speed is cut under a load. One point of the rig's run-up, at four times the speed
+of the one before, is reached in two, in fewer factorisations than with contacts at nodes. At given positions of ten
+petals none was."""
+
+
 def led(known: Solution, problem: CoupledProblem, load: Array | None = None) -> Solution | None:
     """The solution of `problem` whose contact points follow those of `known`, under a `load` (n_position,) or not.
 
@@ -31,12 +38,23 @@ def led(known: Solution, problem: CoupledProblem, load: Array | None = None) -> 
     near = known.elements
     if not isinstance(near, PointContacts) or near.equations.problem.layout is not problem.layout:
         return None
-    try:
-        found = clear_of_journal(followed(near, placed(problem, near, load), load))
-    except NoPointsError as failure:
-        current_run().note("followed", outcome=str(failure))
-        return None
-    return sampled_solution(found, load)
+    for parts in PARTS if load is not None else PARTS[:1]:
+        try:
+            found = near
+            for between in on_the_way(near.equations.problem, problem, parts):
+                found = followed(found, placed(between, found, load), load)
+            return sampled_solution(clear_of_journal(found), load)
+        except NoPointsError as failure:
+            current_run().note("followed", parts=parts, outcome=str(failure))
+    return None
+
+
+def on_the_way(start: CoupledProblem, end: CoupledProblem, parts: int) -> Iterator[CoupledProblem]:
+    """The problems at equal parts of the way in speed from `start` to `end`, which comes last."""
+    slow, fast = start.bearing_number, end.bearing_number
+    for part in range(1, parts):
+        yield end.at(bearing_number=slow + part / parts * (fast - slow))
+    yield end
 
 
 def with_nodal_contacts(known: Solution) -> Solution:
