@@ -183,9 +183,8 @@ def _quartic(rise: Array, lines: tuple[NodalProfile, NodalProfile]) -> tuple[flo
 
     Newton's method from the node, in the directions that have neighbours on both sides.
     """
-    along, across = (_interpolating(*line.local.tolist()) for line in lines)
+    ((first, last), along), ((near, far), across) = (_stencil(line.nodes.tobytes(), line.at) for line in lines)
     c = (along @ rise @ across.T).tolist()  # sum c[a][b] x^a y^b
-    (first, last), (near, far) = (line.reach for line in lines)
     x = y = 0.0
     for _ in range(STEPS):
         value, slope, bend = _taylor(c, x, y)
@@ -201,8 +200,14 @@ def _quartic(rise: Array, lines: tuple[NodalProfile, NodalProfile]) -> tuple[flo
 
 
 @lru_cache(maxsize=4096)
+def _stencil(nodes: bytes, at: int) -> tuple[tuple[float, float], Array]:
+    """Reach and polynomial about a node of `nodes`; a motion asks at the same nodes every step."""
+    line = NodalProfile.of(np.frombuffer(nodes), np.frombuffer(nodes), at)
+    return line.reach, _interpolating(*line.local.tolist())
+
+
 def _interpolating(*places: float) -> Array:
-    """Coefficients of the polynomial through values at `places`, (k, k); a motion asks at the same nodes every step."""
+    """Coefficients of the polynomial through values at `places`, (k, k)."""
     return np.asarray(np.linalg.inv(np.vander(places, increasing=True)))
 
 

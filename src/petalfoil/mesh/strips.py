@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,7 @@ from petalfoil.mesh.pack import PackMesh
 from petalfoil.mesh.quadrature import trapezoid
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class FilmMesh:
     """Film strips with equal local angles. Nodal arrays are (strip, node, axial).
 
@@ -40,12 +41,12 @@ class FilmMesh:
         """Shape of nodal arrays, (strip, node, axial)."""
         return self.unknown.shape
 
-    @property
+    @cached_property
     def n_unknown(self) -> int:
         """Number of pressure unknowns."""
         return int(self.unknown.max()) + 1
 
-    @property
+    @cached_property
     def arc_weight(self) -> NDArray[np.float64]:
         """Weights of the trapezoidal rule along a strip, shape (n_node,) [rad]."""
         return trapezoid(self.phi)

@@ -82,8 +82,12 @@ class FilmBalance:
         """
         along = circumferential_flux(P, H, Lam, self.dphi, self.knudsen)
         across = axial_flux(P, H, self.dZ, self.knudsen)
-        width_phi = self.mesh.arc_weight[:, None] * self.mesh.axial.copies
-        return along.times(self.width_Z), across.times(width_phi)
+        return along.times(self.width_Z), across.times(self._width_phi)
+
+    @cached_property
+    def _width_phi(self) -> Array:
+        """Arc of the cells, that of both halves on a half model, shape (node, 1) [rad]."""
+        return self.mesh.arc_weight[:, None] * self.mesh.axial.copies
 
     def residual(self, fluxes: tuple[Flux, Flux]) -> Array:
         """Residual of the mass balance (F4): net outflow of the cell of each pressure unknown, (n_unknown,) [1]."""
@@ -187,4 +191,6 @@ class FilmBalance:
 
     def nodal_pressure(self, unknowns: Array) -> Array:
         """Pressure at every film node, (strip, node, axial) [1]: the unknowns, and 1 at ambient nodes."""
-        return np.append(unknowns, 1.0)[self.mesh.unknown]
+        padded = np.ones(len(unknowns) + 1)
+        padded[:-1] = unknowns
+        return padded[self.mesh.unknown]  # the last one where the number is -1

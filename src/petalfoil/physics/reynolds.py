@@ -133,8 +133,9 @@ class FilmFaces(NamedTuple):
 
     @classmethod
     def between(cls, P: tuple[Array, Array], H: tuple[Array, Array], Kn: float) -> FilmFaces:
-        """The faces between nodes."""
-        return cls(*P, *H, mean_cube(*H), 0.5 * (P[0] + P[1]), slip_pressure(*H, Kn))
+        """The faces between nodes, in arrays of their own: views of the nodes' take twice as long in every term."""
+        (P0, P1), (H0, H1) = ([np.ascontiguousarray(side) for side in sides] for sides in (P, H))
+        return cls(P0, P1, H0, H1, mean_cube(H0, H1), 0.5 * (P0 + P1), slip_pressure(H0, H1, Kn))
 
     def by_films(self, Kn: float) -> tuple[Array, Array, Array, Array]:
         """Derivatives of `cube`, then of `slip`, by the films on both sides."""
