@@ -30,7 +30,7 @@ from petalfoil.physics.petal_elements import (
     clamped_beam_slope,
     clamped_beam_twist,
 )
-from petalfoil.sparsity import SparseRows, add_up
+from petalfoil.sparsity import SparseRows, Triplets, add_up
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -167,15 +167,30 @@ class ContactPoints:
         return np.arange(len(self.curve)) + np.cumsum(self.inner) - self.inner
 
     @cached_property
+    def _between(self) -> tuple[Index, Array]:
+        """The travelling point before each point or at it, and the part of the way to the next one, (j,) each."""
+        before = np.repeat(np.arange(len(self.curve)), self.inner + 1)
+        return before, (np.arange(len(self.reaction)) - self.ends[before]) / (self.inner[before] + 1.0)
+
+    @cached_property
     def spread(self) -> sp.csr_array:
         """Derivative of all positions by those of the travelling points, (j, k)."""
-        k, n = len(self.curve), len(self.reaction)
-        before, number = np.repeat(np.arange(k), self.inner + 1), np.arange(n)
-        part = (number - self.ends[before]) / (self.inner[before] + 1.0)
-        shared = np.flatnonzero(part > 0.0)
-        weights = np.concatenate([1.0 - part, part[shared]])
-        where = np.concatenate([number, shared]), np.concatenate([before, before[shared] + 1])
-        return sp.csr_array((weights, where), shape=(n, k))
+        number = np.arange(len(self.reaction))
+        rows, cols, weights = self.by_travel(Triplets(number, number, np.ones(len(number))))
+        return sp.csr_array((weights, (rows, cols)), shape=(len(number), len(self.curve)))
+
+    def by_travel(self, by_place: Triplets) -> Triplets:
+        """Derivatives by the positions of the travelling points, from those by all positions (columns)."""
+        (rows, cols, values), (before, part) = by_place, self._between
+        first, behind = before[cols], part[cols]
+        if not self.inner.any():
+            return Triplets(rows, first, values)
+        shared = np.flatnonzero(behind)
+        return Triplets(
+            np.concatenate([rows, rows[shared]]),
+            np.concatenate([first, first[shared] + 1]),
+            np.concatenate([values * (1.0 - behind), (values * behind)[shared]]),
+        )
 
     @cached_property
     def every_curve(self) -> Index:
@@ -187,10 +202,8 @@ class ContactPoints:
         """Position of every point, (j,)."""
         if len(self.curve) == len(self.reaction):
             return self.position
-        k, number = len(self.curve), np.arange(len(self.reaction))
-        before = np.repeat(np.arange(k), self.inner + 1)
-        part = (number - self.ends[before]) / (self.inner[before] + 1.0)
-        ahead = np.minimum(before + 1, k - 1)
+        before, part = self._between
+        ahead = np.minimum(before + 1, len(self.curve) - 1)
         return np.asarray((1.0 - part) * self.position[before] + part * self.position[ahead])
 
 
@@ -230,17 +243,17 @@ class PointGaps:
         return self._smooth(1) + self._at_points(self._bent(clamped_beam_slope) * self._load)
 
     @cached_property
-    def bend(self) -> sp.csr_array:
+    def bend(self) -> Triplets:
         """Derivatives of values by the reactions, (j, j)."""
         return self._matrix(self._bent(clamped_beam))
 
     @cached_property
-    def bend_slope(self) -> sp.csr_array:
+    def bend_slope(self) -> Triplets:
         """Derivatives of slopes by the reactions, (j, j)."""
         return self._matrix(self._bent(clamped_beam_slope))
 
     @cached_property
-    def value_by_place(self) -> sp.csr_array:
+    def value_by_place(self) -> Triplets:
         """Derivatives of values by the places, (j, j).
 
         By the place of another point `b(t, t_d)` changes with `t_d`, and `b` is symmetric; by the own place it changes
@@ -254,7 +267,7 @@ class PointGaps:
         return self._matrix(by_place)
 
     @cached_property
-    def slope_by_place(self) -> sp.csr_array:
+    def slope_by_place(self) -> Triplets:
         """Derivatives of slopes by the places, (j, j).
 
         By the own place `b_s(t, t)` changes by `u (1 - 2 t)^2 - u^2`, `u = t (1 - t)`.
@@ -320,17 +333,9 @@ class PointGaps:
         """Sum of a part of the pairs at each point, (j,)."""
         return add_up(self._pairs[0], part, len(self.points.reaction))
 
-    @cached_property
-    def _by_rows(self) -> tuple[Index, Index, Index]:
-        """Order of the pairs by their first points, the second ones in that order, and where each row begins."""
-        at, load = self._pairs
-        order, held = np.argsort(at, kind="stable"), np.bincount(at, minlength=len(self.points.reaction))
-        return order, load[order], np.concatenate([[0], np.cumsum(held)])
-
-    def _matrix(self, part: Array) -> sp.csr_array:
+    def _matrix(self, part: Array) -> Triplets:
         """A part of the pairs as a matrix, (j, j)."""
-        size, (order, columns, starts) = len(self.points.reaction), self._by_rows
-        return sp.csr_array((part[order], columns, starts), shape=(size, size))
+        return Triplets(*self._pairs, part)
 
 
 def together(element: Index) -> tuple[Index, Index]:

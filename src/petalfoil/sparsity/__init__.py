@@ -9,7 +9,7 @@
 
 from petalfoil.sparsity.ordering import Elimination, Order, TiedOrder, postorder
 from petalfoil.sparsity.pattern import Pattern, add_up
-from petalfoil.sparsity.products import SparseRows, SummedEntries, Triplets, added_blocks, columns_times, rows_times
+from petalfoil.sparsity.products import SparseRows, SummedEntries, Triplets, added_blocks
 
 __all__ = [
     "Elimination",
@@ -21,7 +21,5 @@ __all__ = [
     "Triplets",
     "add_up",
     "added_blocks",
-    "columns_times",
     "postorder",
-    "rows_times",
 ]

@@ -53,17 +53,6 @@ class SparseRows(sp.csr_array):  # type: ignore[misc]
         return SparseRows(abs(self))
 
 
-def rows_times(matrix: sp.csr_array, factor: Array) -> sp.csr_array:
-    """The matrix with its rows times `factor` (n,)."""
-    data = matrix.data * np.repeat(factor, np.diff(matrix.indptr))
-    return sp.csr_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
-
-
-def columns_times(matrix: sp.csr_array, factor: Array) -> sp.csr_array:
-    """The matrix with its columns times `factor` (n,)."""
-    return sp.csr_array((matrix.data * factor[matrix.indices], matrix.indices, matrix.indptr), shape=matrix.shape)
-
-
 class Triplets(NamedTuple):
     """Entries of a matrix: rows (k,), columns (k,), values (k,)."""
 
@@ -80,6 +69,25 @@ class Triplets(NamedTuple):
         major = np.repeat(np.arange(len(matrix.indptr) - 1, dtype=matrix.indices.dtype), np.diff(matrix.indptr))
         rows, cols = (major, matrix.indices) if matrix.format == "csr" else (matrix.indices, major)
         return cls(rows, cols, matrix.data)
+
+    @property
+    def T(self) -> Triplets:
+        """Those of the transpose."""
+        return Triplets(self.cols, self.rows, self.data)
+
+    def times(self, *, rows: Array | float = 1.0, cols: Array | None = None) -> Triplets:
+        """Those of the matrix with its rows times factors (n,) or one for all, and its columns times others (m,)."""
+        data = self.data * (rows if isinstance(rows, float) else rows[self.rows])
+        return Triplets(self.rows, self.cols, data if cols is None else data * cols[self.cols])
+
+    def from_rows(self, chosen: Index, size: int) -> Triplets:
+        """Those of some rows, of `size` in all, as a matrix of their own."""
+        if len(chosen) == size:
+            return self
+        number = np.full(size, -1)
+        number[chosen] = np.arange(len(chosen))
+        inside = number[self.rows] >= 0
+        return Triplets(number[self.rows[inside]], self.cols[inside], self.data[inside])
 
 
 @dataclass(frozen=True)

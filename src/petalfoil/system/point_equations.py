@@ -16,7 +16,7 @@ the film. The tangent has exact second derivatives, `-lam n'` among them: it is 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from petalfoil.physics.gap_curves import ContactPoints, PointGaps
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
-from petalfoil.sparsity import Triplets, added_blocks, columns_times, rows_times
+from petalfoil.sparsity import Triplets, added_blocks
 from petalfoil.system.coupled import WALL_ROUNDING, CoupledProblem
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.point_layout import PointLayout
@@ -207,42 +207,33 @@ class PointEquations:
     @cached_property
     def steady(self) -> sp.csc_array:
         """The tangent."""
-        (n, n_slope), gaps, points, whole = self.by_w, self.gaps, self.state.points, self.whole
-        (pull, pull_by_place), acts, free = self.acting, 1.0 - self.idle, self.travels
-        turned = rows_times(pull_by_place, points.reaction)
+        gaps, points, whole = self.gaps, self.state.points, self.whole
+        n, n_slope = map(Triplets.of, self.by_w)
+        pull, pull_by_place = (n, n_slope) if self.acting is self.by_w else map(Triplets.of, self.acting)
         by_P, by_w = (entries.at(values) for entries, values in zip(whole.film_entries, self.film.tangent, strict=True))
+        acts, free, ends = (
+            1.0 - self.idle,
+            self.travels,
+            partial(Triplets.from_rows, chosen=points.ends, size=self.idle.size),
+        )
         film = whole.n_wall
         lam = film + whole.n_film
         place = lam + len(acts)
-        blocks: list[tuple[int, int, sp.sparray | Triplets]] = [
-            (0, 0, whole.stiffness),
-            (0, film, -whole.push),
-            (0, lam, -pull.T),
-            (0, place, self._by_travel(-turned.T)),
+        blocks = [
+            (0, 0, whole.fixed),
+            (0, lam, pull.T.times(rows=-1.0)),
+            (0, place, points.by_travel(pull_by_place.T.times(cols=-points.reaction)).times(cols=free)),
             (film, 0, by_w),
             (film, film, by_P),
-            (lam, 0, rows_times(n, acts)),
-            (lam, lam, rows_times(gaps.bend, acts)),
-            (lam, place, self._by_travel(rows_times(gaps.value_by_place, acts))),
-            (place, 0, rows_times(self._at_ends(n_slope), free)),
-            (place, lam, rows_times(self._at_ends(gaps.bend_slope), free)),
-            (place, place, self._by_travel(rows_times(self._at_ends(gaps.slope_by_place), free))),
+            (lam, 0, n.times(rows=acts)),
+            (lam, lam, gaps.bend.times(rows=acts)),
+            (lam, place, points.by_travel(gaps.value_by_place).times(rows=acts, cols=free)),
+            (place, 0, ends(n_slope).times(rows=free)),
+            (place, lam, ends(gaps.bend_slope).times(rows=free)),
+            (place, place, points.by_travel(ends(gaps.slope_by_place)).times(rows=free, cols=free)),
         ]
         diagonal = np.concatenate([np.zeros(lam), self.idle, 1.0 - free])
         return added_blocks(blocks, diagonal)
-
-    def _by_travel(self, by_place: sp.sparray) -> sp.sparray | Triplets:
-        """Derivatives by the places of the travelling points from those by the places of all points."""
-        points = self.state.points
-        if len(points.ends) == len(points.reaction):
-            rows, columns, values = Triplets.of(by_place)
-            return Triplets(rows, columns, values * self.travels[columns])
-        return by_place @ columns_times(points.spread, self.travels)
-
-    def _at_ends(self, matrix: sp.csr_array) -> sp.csr_array:
-        """Rows of the travelling points, of those of all points."""
-        ends = self.state.points.ends
-        return matrix if len(ends) == matrix.shape[0] else matrix[ends]
 
     @cached_property
     def stored(self) -> sp.csc_array:

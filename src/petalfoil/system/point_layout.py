@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from petalfoil.physics.gap_curves import GapCurves
 from petalfoil.physics.mass_balance import Entries
-from petalfoil.sparsity import SparseRows, SummedEntries
+from petalfoil.sparsity import SparseRows, SummedEntries, Triplets
 from petalfoil.walls.element_pack import ElementPack
 
 if TYPE_CHECKING:
@@ -100,6 +100,11 @@ class PointLayout:
     def film_by_w(self) -> SparseRows:
         """Derivative of the film thickness by the petals' unknowns, (film nodes, n_wall)."""
         return SparseRows(self.pack.film_rows @ self.curves.by_w)
+
+    @cached_property
+    def fixed(self) -> Triplets:
+        """Entries of the rows of the wall by deflections and pressures, which come first: `K`, `-A`."""
+        return Triplets.of(sp.hstack([self.stiffness, -self.push], format="csr"))
 
     @cached_property
     def film_entries(self) -> tuple[SummedEntries, SummedEntries]:

@@ -5,7 +5,7 @@ import pytest
 import scipy.sparse as sp
 from numpy.testing import assert_allclose, assert_array_equal
 
-from petalfoil.sparsity import SparseRows, SummedEntries, Triplets, added_blocks, columns_times, rows_times
+from petalfoil.sparsity import SparseRows, SummedEntries, Triplets, added_blocks
 
 
 def random_rows(m: int, n: int, seed: int) -> sp.csr_array:
@@ -48,11 +48,18 @@ def test_a_vector_of_another_length_is_refused() -> None:
         SparseRows(random_rows(20, 30, seed=5)) @ np.ones(20)
 
 
-def test_rows_and_columns_times_factors() -> None:
+def test_entries_times_factors_transposed_and_of_some_rows() -> None:
     plain, rng = random_rows(20, 30, seed=4), np.random.default_rng(3)
-    row, column = rng.standard_normal(20), rng.standard_normal(30)
-    assert_array_equal(rows_times(plain, row).toarray(), row[:, None] * plain.toarray())
-    assert_array_equal(columns_times(plain, column).toarray(), plain.toarray() * column)
+    row, column, some = rng.standard_normal(20), rng.standard_normal(30), np.array([2, 3, 17])
+
+    def whole(entries: Triplets, shape: tuple[int, int]) -> np.ndarray:
+        return sp.coo_array((entries.data, (entries.rows, entries.cols)), shape=shape).toarray()
+
+    entries, dense = Triplets.of(plain), plain.toarray()
+    assert_array_equal(whole(entries.times(rows=row, cols=column), (20, 30)), row[:, None] * dense * column)
+    assert_array_equal(whole(entries.T.times(rows=-1.0), (30, 20)), -dense.T)
+    assert_array_equal(whole(entries.from_rows(some, 20), (3, 30)), dense[some])
+    assert entries.from_rows(np.arange(20), 20) is entries
 
 
 def test_blocks_that_overlap_add_up() -> None:
