@@ -11,13 +11,17 @@ import petalfoil
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
+from petalfoil.equilibrium.continuation import advance
+from petalfoil.equilibrium.followed_lines import followed_lines, foretold
+from petalfoil.equilibrium.led_points import led, with_nodal_contacts
 from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
 from petalfoil.equilibrium.line_sets import between_nodes, settled, with_lines
-from petalfoil.equilibrium.line_signs import covered, parted, revised
+from petalfoil.equilibrium.line_signs import bearing_alone, covered, freed, gaining, parted, revised
 from petalfoil.equilibrium.run_context import current_run, running
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold
 from petalfoil.system.build import build_problem
+from petalfoil.system.coupled import CoupledProblem
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -101,6 +105,7 @@ def test_a_reaction_that_pulls_leaves_and_an_overlap_gains_a_point(lines: LineCo
     assert len(fewer.reaction) == len(lines.reaction) - 1
     away = np.ones(len(lines.gaps), dtype=bool)
     away[lines.points.beside.ravel()] = away[lines.held] = False
+    away[np.concatenate([kind.number[:, [0, -1]].ravel() for kind in lines.points.lines])] = False
     deep = replace(lines)
     deep.__dict__["gaps"] = np.where(np.arange(len(away)) == np.flatnonzero(away)[0], -1.0, lines.gaps)
     more = revised(deep)
@@ -196,3 +201,104 @@ def test_two_bearings_on_a_shaft_tell_what_each_tells_alone(cells: int) -> None:
     one, both = petalfoil.balance.record(alone).scalars, petalfoil.balance.record(pair).scalars
     for name in ("nodal_force_difference", "eccentricity_y", "min_film_thickness"):
         assert_allclose(both[name], one[name], rtol=1e-6)
+
+
+def further_down(problem: CoupledProblem, down: float) -> CoupledProblem:
+    """The problem with the journal moved down [m]."""
+    return problem.at(displacement=problem.displacement - np.array([0.0, down / problem.layout.scales.length]))
+
+
+def test_lines_led_to_the_next_position_are_those_found_there_and_lead_back(nodal: Solution) -> None:
+    """In few factorisations; contacts at nodes are found beside them where asked."""
+    with running() as run:
+        start = with_lines(nodal)
+        before = run.film.factorizations
+        there = led(start, further_down(nodal.problem, 5e-6))
+        assert there is not None
+        assert run.film.factorizations - before <= 4
+        back = led(there, nodal.problem)
+        assert back is not None
+        at_nodes = with_nodal_contacts(there)
+        nodal_there, jump = advance(nodal, there.problem)
+    assert isinstance(there.lines, LineContacts)
+    assert isinstance(back.lines, LineContacts)
+    assert isinstance(start.lines, LineContacts)
+    assert there.lines.residual < 1e-8
+    assert revised(there.lines) is None
+    assert_allclose(back.lines.force, start.lines.force, rtol=1e-8, atol=1e-8 * np.abs(start.lines.force).max())
+    assert_allclose(back.x, start.lines.x, atol=1e-7)
+    assert at_nodes.contacts is not None
+    assert at_nodes.lines is there.lines
+    assert not jump
+    assert_allclose(at_nodes.x, nodal_there.x, rtol=1e-7, atol=1e-7)
+
+
+def test_what_is_foretold_is_right_to_second_order(lines: LineContacts) -> None:
+    """Half of the way leaves a quarter of the residual; places of points and the journal's are foretold too."""
+    with running():
+        far, near = (foretold(lines, further_down(lines.problem, down), None).residual for down in (2e-7, 1e-7))
+    assert 3.0 < far / near < 5.0
+
+
+@pytest.mark.slow
+def test_lines_followed_to_another_speed_carry_the_load() -> None:
+    with running():
+        problem = build_problem(bearing(**{"operation.eccentricity": ["0 um", "0 um"]}))
+        load = np.array([0.0, -10.0]) / problem.layout.scales.force
+        found = between_nodes(balance_cold(problem, load))
+        assert found is not None
+        there = followed_lines(found, problem.at(bearing_number=1.1 * problem.bearing_number), load)
+    assert_allclose(there.force, -load, atol=1e-8 * np.abs(load).max())
+    assert there.residual < 1e-8
+    assert np.linalg.norm(there.problem.displacement - found.problem.displacement) > 1e-3
+
+
+def test_lines_do_not_lead_through_the_shaft_or_to_another_grid(nodal: Solution) -> None:
+    with running():
+        start = with_lines(nodal)
+        assert led(start, further_down(nodal.problem, 1e-3)) is None
+        assert led(start, build_problem(bearing(**{"model.cells_per_pitch": 16}))) is None
+
+
+def test_contacts_foretold_to_pull_leave(lines: LineContacts) -> None:
+    assert bearing_alone(lines) is lines
+    pulling = replace(lines, reaction=np.where(np.arange(len(lines.reaction)) == 2, -1e-3, lines.reaction))
+    left = bearing_alone(pulling)
+    assert len(left.reaction) == len(lines.reaction) - 1
+    assert left.held.sum() == lines.held.sum()
+
+
+def test_a_contact_at_a_single_node_becomes_a_point_that_travels(lines: LineContacts) -> None:
+    assert freed(lines) is lines
+    node = int(lines.points.nearest[3])
+    held = lines.held.copy()
+    held[node] = True
+    reaction = np.zeros(len(held))
+    reaction[lines.held], reaction[node] = lines.held_reaction, lines.reaction[3]
+    others = np.arange(len(lines.reaction)) != 3
+    pinned = replace(
+        lines,
+        points=lines.points.kept(others),
+        reaction=lines.reaction[others],
+        held=held,
+        held_reaction=reaction[held],
+    )
+    travels = freed(pinned)
+    assert_allclose(travels.held, lines.held)
+    assert_allclose(travels.reaction[-1], lines.reaction[3])
+    with running():
+        again = settled(travels)
+    assert_allclose(again.force, lines.force, rtol=1e-8, atol=1e-8 * np.abs(lines.force).max())
+
+
+def test_a_gap_that_closes_at_the_end_of_a_line_is_a_contact_at_its_node(lines: LineContacts) -> None:
+    """A point there could not travel to where the slope vanishes."""
+    kind = lines.points.lines[0]
+    ends, inner = kind.number[:, [0, -1]].ravel(), kind.number[:, 5:-5].ravel()
+    end = int(ends[~covered(lines)[ends]][0])
+    middle = int(inner[~covered(lines)[inner]][0])
+    more = gaining(lines, np.array([end, middle]))
+    assert more.held[end]
+    assert more.held.sum() == lines.held.sum() + 1
+    assert len(more.reaction) == len(lines.reaction) + 1
+    assert_allclose(more.held_reaction.sum(), lines.held_reaction.sum(), rtol=1e-12)

@@ -12,6 +12,7 @@ from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
 from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.equilibrium.element_contacts import near_nodes
 from petalfoil.equilibrium.element_response import ElementMotion
+from petalfoil.equilibrium.led_points import with_nodal_contacts
 from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import HELD_AT_NODES, ElementEquilibrium, Motion
@@ -54,12 +55,13 @@ def elastic_and_sliding(case: Case, answer: Solution) -> tuple[Motion, SlidingCo
     found = None if answer.friction is not None else near_nodes(answer)
     if found is not None:
         return on_elements(case, found)
+    if answer.lines is not None and friction_of(case, answer.problem.layout) is None:
+        return answer.lines.motion, None
+    answer = with_nodal_contacts(answer)
     sliding = sliding_at(case, answer)
     if answer.friction is not None and sliding is not None:  # a contact that sticks does not travel
         stuck = SmallMotion.at_nodes(answer, sliding.sticking(len(answer.x)))
         return replace(stuck, contact_model=HELD_AT_NODES, stuck=sliding.friction), sliding
-    if sliding is None and answer.lines is not None:
-        return answer.lines.motion, None
     motion = SmallMotion.about(answer, None if sliding is None else sliding.sticking(len(answer.x)))
     if not motion.contacts.constraints.determinate:
         raise ConvergenceError(

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import nothing_found
+from petalfoil.equilibrium.led_points import with_nodal_contacts
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution, from_contacts
 from petalfoil.solvers.contact_newton import solve_contacts
@@ -69,7 +70,8 @@ def same_state(answer: Solution, equations_at: Callable[[Array], CoupledProblem]
     ConvergenceError
         The equations are not solved there.
     """
-    found, lines = at_same_state(equations_at(answer.problem.displacement), answer), answer.lines
+    answer, lines = with_nodal_contacts(answer), answer.lines
+    found = at_same_state(equations_at(answer.problem.displacement), answer)
     if lines is None:
         return found
     lines = lines.under(at_operation_of(answer, equations_at(lines.problem.displacement)), None)

@@ -37,6 +37,7 @@
 `line_contacts.py`         3-D equilibria whose contact lines cross stations between nodes: equations, Newton's step
 `line_sets.py`             these found from active nodes
 `line_signs.py`            which contacts they have: corrected by signs
+`followed_lines.py`        these followed to a neighbouring position, speed or load
 `line_rates.py`            how such an equilibrium follows a parameter of its case
 `nodal_state.py`           film, deflections and reactions at nodes, wherever contacts are
 `element_response.py`      the response about these

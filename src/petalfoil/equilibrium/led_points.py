@@ -1,4 +1,4 @@
-"""Contact points led from one equilibrium to the next, contacts at nodes left out."""
+"""Contact points and contact lines led from one equilibrium to the next, contacts at nodes left out."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 from petalfoil.equilibrium.continuation import WARM
 from petalfoil.equilibrium.element_contacts import clear_of_journal, placed
 from petalfoil.equilibrium.element_tangent import NoPointsError
+from petalfoil.equilibrium.followed_lines import followed_lines
 from petalfoil.equilibrium.followed_points import followed
-from petalfoil.equilibrium.nodal_state import sampled_solution
+from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
+from petalfoil.equilibrium.nodal_state import sampled_lines, sampled_solution
 from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution, from_contacts
@@ -31,13 +33,19 @@ petals none was."""
 
 
 def led(known: Solution, problem: CoupledProblem, load: Array | None = None) -> Solution | None:
-    """The solution of `problem` whose contact points follow those of `known`, under a `load` (n_position,) or not.
+    """The solution of `problem` whose contacts between nodes follow those of `known`; None where they lead nowhere.
 
-    None where they do not lead there.
+    Under a `load` (n_position,) or not.
     """
-    near = known.elements
-    if not isinstance(near, PointContacts) or near.equations.problem.layout is not problem.layout:
+    if known.problem.layout is not problem.layout:
         return None
+    if isinstance(known.elements, PointContacts):
+        return led_by_points(known.elements, problem, load)
+    return led_by_lines(known.lines, problem, load) if isinstance(known.lines, LineContacts) else None
+
+
+def led_by_points(near: PointContacts, problem: CoupledProblem, load: Array | None) -> Solution | None:
+    """The same from contact points."""
     for parts in PARTS if load is not None else PARTS[:1]:
         try:
             found = near
@@ -47,6 +55,15 @@ def led(known: Solution, problem: CoupledProblem, load: Array | None = None) -> 
         except NoPointsError as failure:
             current_run().note("followed", parts=parts, outcome=str(failure))
     return None
+
+
+def led_by_lines(near: LineContacts, problem: CoupledProblem, load: Array | None) -> Solution | None:
+    """The same from contact lines."""
+    try:
+        return sampled_lines(followed_lines(near, problem, load), load)
+    except NoLinesError as failure:
+        current_run().note("followed", outcome=str(failure))
+        return None
 
 
 def on_the_way(start: CoupledProblem, end: CoupledProblem, parts: int) -> Iterator[CoupledProblem]:
@@ -59,7 +76,7 @@ def on_the_way(start: CoupledProblem, end: CoupledProblem, parts: int) -> Iterat
 
 def with_nodal_contacts(known: Solution) -> Solution:
     """The equilibrium with contacts at nodes near one whose nodes are only sampled; the same where there is none."""
-    if known.contacts is not None or known.elements is None:
+    if known.contacts is not None or (known.elements is None and known.lines is None):
         return known
     problem, run = known.problem, current_run()
     if known.load is not None:
@@ -68,4 +85,6 @@ def with_nodal_contacts(known: Solution) -> Solution:
         contacts, outcome = solve_contacts(problem, (known.x, known.active), run.film_solver, WARM)
         run.note("contacts", outcome=outcome.value)
         found = from_contacts(problem, contacts, known.solution_path)
-    return known if found is None else replace(found, elements=known.elements, elements_sought=True)
+    if found is None:
+        return known
+    return replace(found, elements=known.elements, lines=known.lines, elements_sought=True)

@@ -14,7 +14,7 @@ exact derivative of these equilibria. Under a load the journal's position is bor
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -63,6 +63,8 @@ class LineContacts:
         Their reactions.
     load : (n_position,) array or None
         Load over the unit of force; None at a fixed position.
+    tangent : LinearResponse or None
+        The last tangent that led here, with the same contacts; None of others.
     """
 
     problem: CoupledProblem
@@ -72,6 +74,7 @@ class LineContacts:
     held: Mask
     held_reaction: Array
     load: Array | None
+    tangent: LinearResponse | None = field(default=None, repr=False, compare=False)
 
     @cached_property
     def linearized(self) -> Linearization:
@@ -118,6 +121,13 @@ class LineContacts:
         lam: Array = self.points.shares.T @ self.reaction
         lam[self.held] += self.held_reaction
         return lam
+
+    @property
+    def active(self) -> Mask:
+        """Contacts at nodes that are nearest to these, (m,)."""
+        active = self.held.copy()
+        active[self.points.nearest] = True
+        return active
 
     @cached_property
     def rows(self) -> Array:
@@ -258,15 +268,15 @@ class LineChange:
     phi: Array
 
 
-def correction(response: LinearResponse, left: LineResiduals, bending: Array, *, under_load: bool) -> LineChange:
+def correction(response: LinearResponse, left: LineResiduals, bending: Array, way: Array | None) -> LineChange:
     """The change that takes away what is `left`, by a tangent (E12); `bending` (k,) divides slopes.
 
-    Under a load the journal's position follows too.
+    The journal goes a given `way` (n_position,), as in (C14); where that is None, its position follows under the load.
     """
     tangent, contacts = response.tangent, response.motion.contacts
     travel = contacts.travel_stiffness * left.slopes
-    rows, move = left.rows + contacts.slope_by_x.T @ travel, np.zeros(len(left.force))
-    if under_load:
+    rows, move = left.rows + contacts.slope_by_x.T @ travel, way
+    if move is None:
         dx, dlam = tangent.respond(rows, left.closed)
         force = left.force + tangent.border.rows(dx, dlam) - contacts.slope_by_e.T @ travel
         move = np.linalg.solve(-response.force_gradient, force)
@@ -283,11 +293,24 @@ def stepped(state: LineContacts, response: LinearResponse) -> LineContacts:
     NoLinesError
         The film has closed, or the step is no number.
     """
-    change = correction(response, LineResiduals.of(state), state.bending, under_load=state.load is not None)
-    trust = TRUST * state.points.cell_length
+    way = np.zeros_like(state.force) if state.load is None else None
+    return changed(state, response, correction(response, LineResiduals.of(state), state.bending, way), TRUST)
+
+
+def changed(state: LineContacts, response: LinearResponse, change: LineChange, trust: float) -> LineContacts:
+    """The state after a change by a tangent, shortened where pressures would vanish.
+
+    Points travel `trust` cells at most.
+
+    Raises
+    ------
+    NoLinesError
+        The film has closed, or the step is no number.
+    """
+    farthest = trust * state.points.cell_length
     length = positive_step(state.problem, state.x, change.x)
-    there = replace(change, phi=np.clip(length * change.phi, -trust, trust) / length)
-    ahead = state.moved(there, length, state.problem)
+    there = replace(change, phi=np.clip(length * change.phi, -farthest, farthest) / length)
+    ahead = replace(state.moved(there, length, state.problem), tangent=response)
     if not np.all(np.isfinite(ahead.x)) or not ahead.problem.admits(ahead.x):
         raise NoLinesError("the film closes in a Newton step")
     return ahead

@@ -105,7 +105,7 @@ def line_response(found: LineContacts) -> LinearResponse | None:
 def line_rate(found: LineContacts, response: LinearResponse, rates: LineRates) -> LineRate:
     """The derivative from the rates of the equations at a fixed state; one solve, two under a load."""
     under_load = found.load is not None
-    change = correction(response, rates.left, found.bending, under_load=under_load)
+    change = correction(response, rates.left, found.bending, None if under_load else np.zeros_like(rates.displacement))
     if not under_load:
         change = replace(change, displacement=rates.displacement)
     problem = found.problem

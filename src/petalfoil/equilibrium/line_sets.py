@@ -15,6 +15,7 @@ from petalfoil.equilibrium.element_contacts import over_normal_forces
 from petalfoil.equilibrium.heated import stiffness
 from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError, stepped
 from petalfoil.equilibrium.line_signs import parted, revised
+from petalfoil.equilibrium.linear_response import LinearResponse
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.travelling_contacts import placed_points
@@ -30,10 +31,10 @@ STEPS = 10
 PATIENCE = 2
 """Tangents after which a point at which the gap still does not curve upward is two contacts."""
 
-CHORDS = 4
+CHORDS = 6
 """Most steps with one tangent: a step costs a solve, a fiftieth of another factorisation."""
 
-GAIN = 0.1
+GAIN = 0.3
 """Factor that a further step with one tangent must take off the residual."""
 
 REVISIONS = 16
@@ -108,8 +109,8 @@ def start_at(solution: Solution) -> LineContacts:
     return LineContacts(problem, solution.x, points, reaction, held, solution.lam[held], solution.load)
 
 
-def settled(state: LineContacts) -> LineContacts:
-    """Newton's method, and other contacts as long as signs ask for them.
+def settled(state: LineContacts, steps: int = STEPS) -> LineContacts:
+    """Newton's method of as many `steps` at most, and other contacts as long as signs ask for them.
 
     Raises
     ------
@@ -117,7 +118,7 @@ def settled(state: LineContacts) -> LineContacts:
         Newton's method does not converge, or contacts keep changing.
     """
     for _ in range(REVISIONS):
-        state = newton(state)
+        state = newton(state, steps)
         other = revised(state) if state.balanced else parted(state)
         if other is None:
             return state
@@ -125,7 +126,7 @@ def settled(state: LineContacts) -> LineContacts:
     raise NoLinesError(f"contacts still change after {REVISIONS} sets of them")
 
 
-def newton(state: LineContacts) -> LineContacts:
+def newton(state: LineContacts, steps: int) -> LineContacts:
     """Newton's method with the contacts as they are; it stops early where a point is two contacts (`doubled`).
 
     Raises
@@ -135,7 +136,7 @@ def newton(state: LineContacts) -> LineContacts:
     """
     if not state.problem.admits(state.x):
         raise NoLinesError("the film closes")
-    for count in range(STEPS):
+    for count in range(steps):
         if state.balanced or (count >= PATIENCE and np.any(state.doubled)):
             return state
         if not state.contacts.constraints.determinate:
@@ -144,12 +145,19 @@ def newton(state: LineContacts) -> LineContacts:
             response = state.motion.growing(0.0, current_run().film_solver)
         except SingularMatrixError:
             raise NoLinesError("the contacts do not determine the petals") from None
-        ahead = stepped(state, response)
-        for _ in range(CHORDS):
-            if ahead.balanced:
-                return ahead
-            state, further = ahead, stepped(ahead, response)
-            if not further.residual <= GAIN * state.residual:
-                break
-            ahead = further
-    raise NoLinesError(f"the residual is {state.residual:.1e} after {STEPS} tangents")
+        state = chords(stepped(state, response), response)
+        if state.balanced:
+            return state
+    raise NoLinesError(f"the residual is {state.residual:.1e} after {steps} tangents")
+
+
+def chords(state: LineContacts, response: LinearResponse) -> LineContacts:
+    """The state after further steps with a tangent, as long as each takes `GAIN` off the residual."""
+    for _ in range(CHORDS):
+        if state.balanced:
+            break
+        further = stepped(state, response)
+        if not further.residual <= GAIN * state.residual:
+            break
+        state = further
+    return state

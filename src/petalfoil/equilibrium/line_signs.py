@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.line_contacts import LineContacts
+from petalfoil.physics.contact_points import MARGIN
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 
 Index = NDArray[np.intp]
@@ -28,7 +29,7 @@ def parted(state: LineContacts) -> LineContacts:
     shared = state.points.shares.T @ np.where(state.doubled, state.reaction, 0.0)
     shared[state.held] += state.held_reaction
     points, reaction = state.points.kept(~state.doubled), state.reaction[~state.doubled]
-    return replace(state, points=points, reaction=reaction, held=held, held_reaction=shared[held])
+    return replace(state, points=points, reaction=reaction, held=held, held_reaction=shared[held], tangent=None)
 
 
 def revised(state: LineContacts) -> LineContacts | None:
@@ -45,11 +46,58 @@ def revised(state: LineContacts) -> LineContacts | None:
     fresh = lowest_of_runs(state, (state.gaps < -PENETRATION) & ~covered(state))
     if bears.all() and pushes.all() and not len(fresh):
         return None
+    return gaining(without(state, ~bears, ~pushes), fresh)
+
+
+def gaining(state: LineContacts, fresh: Index) -> LineContacts:
+    """The state with contacts at the nodes of some gaps: points, but at the ends of lines, where nothing travels."""
+    ends = np.concatenate([lines.number[:, [0, -1]].ravel() for lines in state.points.lines])
+    at_ends = np.isin(fresh, ends)
+    held, carried = state.held.copy(), np.zeros(len(state.held))
+    carried[held] = state.held_reaction
+    held[fresh[at_ends]] = True
+    reaction = np.concatenate([state.reaction, np.zeros(np.count_nonzero(~at_ends))])
+    points = state.points.with_nodes(fresh[~at_ends])
+    return replace(state, points=points, reaction=reaction, held=held, held_reaction=carried[held], tangent=None)
+
+
+def bearing_alone(state: LineContacts) -> LineContacts:
+    """The state without contacts whose reactions are below zero, foretold ones: they would leave a tangent later."""
+    pulls, also = state.held_reaction < 0.0, state.reaction < 0.0
+    return without(state, pulls, also) if pulls.any() or also.any() else state
+
+
+def without(state: LineContacts, nodes: Mask, points: Mask) -> LineContacts:
+    """The state without some of its contacts, `nodes` (j,) and `points` (k,)."""
     held = state.held.copy()
-    held[np.flatnonzero(held)] = bears
-    points = state.points.kept(pushes).with_nodes(fresh)
-    reaction = np.concatenate([state.reaction[pushes], np.zeros(len(fresh))])
-    return replace(state, points=points, reaction=reaction, held=held, held_reaction=state.held_reaction[bears])
+    held[np.flatnonzero(held)] = ~nodes
+    return replace(
+        state,
+        points=state.points.kept(~points),
+        reaction=state.reaction[~points],
+        held=held,
+        held_reaction=state.held_reaction[~nodes],
+        tangent=None,
+    )
+
+
+def freed(state: LineContacts) -> LineContacts:
+    """With points in place of contacts at single nodes away from the ends of their lines: they are free to travel."""
+    alone, near = np.zeros(len(state.held), dtype=np.bool_), np.zeros(len(state.held), dtype=np.bool_)
+    near[state.points.beside.ravel()] = True
+    for lines in state.points.lines:
+        held = np.pad(state.held[lines.number], ((0, 0), (1, 1)))
+        single = held[:, 1:-1] & ~held[:, :-2] & ~held[:, 2:] & ~near[lines.number]
+        single[:, :MARGIN] = single[:, len(lines.phi) - MARGIN :] = False
+        alone[lines.number[single]] = True
+    if not alone.any():
+        return state
+    carried = np.zeros(len(alone))
+    carried[state.held] = state.held_reaction
+    left = without(state, alone[state.held], np.zeros(len(state.reaction), dtype=np.bool_))
+    points = left.points.with_nodes(np.flatnonzero(alone))
+    fresh = carried[points.nearest[len(left.reaction) :]]
+    return replace(left, points=points, reaction=np.concatenate([left.reaction, fresh]))
 
 
 def covered(state: LineContacts) -> Mask:

@@ -109,6 +109,12 @@ def sampled_solution(found: ElementEquilibrium, load: Array | None) -> Solution:
     return Solution(problem, nodal, found.residual, FOLLOWED, load=load, elements=found, elements_sought=True)
 
 
+def sampled_lines(found: LineEquilibrium, load: Array | None) -> Solution:
+    """The solution of an equilibrium with contact lines, no equilibrium with contacts at nodes beside it."""
+    nodal = RefinedState(found.x, np.zeros(found.problem.layout.n_wall), found.shared)
+    return Solution(found.problem, nodal, found.residual, FOLLOWED, load=load, lines=found, elements_sought=True)
+
+
 def with_motion_along(stiffness: sp.csr_array, deflection: Array) -> Array:
     """All unknowns of the petals (n_wall,) at a deflection.
 

@@ -173,6 +173,10 @@ class LineEquilibrium(Protocol):
         """Reactions shared by the nodes beside each point, none of them below zero, (m,) [1]."""
 
     @property
+    def active(self) -> NDArray[np.bool_]:
+        """Contacts at nodes that are nearest to these, (m,)."""
+
+    @property
     def force(self) -> Array:
         """Force of film and contacts on the journal over the unit of force, (n_position,) [1]."""
 

@@ -168,6 +168,8 @@ class Solution:
         """Contacts that carry load, (m,)."""
         if self.contacts is not None:
             return self.contacts.active
+        if self.lines is not None:
+            return self.lines.active
         if self.friction is not None:
             return self.friction.active
         return self.lam / self.problem.weight > self.problem.gaps(self.x)

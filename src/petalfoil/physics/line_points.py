@@ -94,6 +94,12 @@ class LinePoints:
             out[points] = lines.number[self.line[points][:, None], cell[:, None] + np.arange(2)]
         return out
 
+    @property
+    def nearest(self) -> Index:
+        """Number of the gap at the node nearest to each point, (k,)."""
+        before, after = self.to_nodes
+        return np.where(before <= after, self.beside[:, 0], self.beside[:, 1])
+
     @cached_property
     def to_nodes(self) -> tuple[Array, Array]:
         """Angle from each point to the node before and after it, (k,) each [rad]."""
