@@ -157,17 +157,33 @@ def damping_ratio(s: complex) -> float:
 @pytest.mark.slow
 @pytest.mark.parametrize("friction", [pytest.param(0.02, marks=pytest.mark.long), 0.1])
 def test_a_rotor_on_the_rig_decays_as_harmonic_balance_says(friction: float) -> None:
-    """Swings of 5 to 9 um: damping ratios within 5 %, with contacts at the same nodes and with contact points."""
+    """Swings of 5 to 9 um with contact points that travel: damping ratios within 5 %."""
     bearing = rubbing("rig", friction, 24)
     with running():
         answer, decay = swung(bearing, 10e-6, 0.8)
-        points, at_points = elastic_and_sliding(bearing, answer)
-        nodes = SmallMotion.at_nodes(answer), sliding_at(bearing, answer)
-        for motion, sliding in (nodes, (points.frictionless, at_points)):
-            assert sliding is not None
-            for amplitude, s in decay[:3]:
-                expected = damping_ratio(passing(motion, sliding, amplitude, s))
-                assert damping_ratio(s) == pytest.approx(expected, rel=0.05)
+        points, sliding = elastic_and_sliding(bearing, answer)
+        assert sliding is not None
+        for amplitude, s in decay[:3]:
+            expected = damping_ratio(passing(points.frictionless, sliding, amplitude, s))
+            assert damping_ratio(s) == pytest.approx(expected, rel=0.05)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("cells", [48, 128])
+def test_small_swings_on_fine_grids_decay_as_harmonic_balance_says(cells: int) -> None:
+    """Eight petals, swings of 7 to 9 um, nearly all of the damping friction: within 3 %, frequencies within 2 %.
+
+    Contacts at nodes hold the journal by 11 % less damping on 128 cells, within whose cells their points stay.
+    """
+    bearing = rubbing("paper_n8", 0.0025, cells)
+    with running():
+        answer, decay = swung(bearing, 10e-6, 13.0)
+        points, sliding = elastic_and_sliding(bearing, answer)
+        assert sliding is not None
+        for amplitude, s in decay[:2]:
+            expected = passing(points.frictionless, sliding, amplitude, s)
+            assert damping_ratio(s) == pytest.approx(damping_ratio(expected), rel=0.03)
+            assert s.imag == pytest.approx(expected.imag, rel=0.02)
 
 
 @pytest.mark.long

@@ -49,7 +49,7 @@ def test_energy_that_friction_takes_is_accounted_for() -> None:
 def test_friction_damps_the_swing() -> None:
     """The more of it, the less is left of the motion, where faces turn; petals that slide stick at once.
 
-    With friction contacts of a motion are at nodes; they have to be without it too.
+    Under friction of faces that only turn contacts of a motion are at nodes; they have to be without it too.
     """
     alike = {"petals.theory": "inextensible", "model.contacts": "nodes"}
     left = [swing(bounce(mu, **alike)) for mu in (0.0, 0.1, 0.2)]

@@ -73,6 +73,7 @@ What they share:
 `parameter_change.py`  changes of parameters whose effects are told
 `film_force.py`        film and petals for another program's integrator
 `release.py`           where a large motion begins
+`release_at_points.py`   the same with contact points
 `film_figures.py`      film, contacts and friction of one bearing in it
 `orbit_motion.py`      a large motion, step by step
 `restart.py`           a motion that goes on from a result

@@ -17,6 +17,7 @@ from petalfoil.physics.forces import node_area, viscous_torque
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.on_shaft import ShaftStep
 from petalfoil.system.point_equations import PointEquations
+from petalfoil.system.point_friction import stretching_energy
 from petalfoil.system.point_layout import PointLayout
 from petalfoil.system.time_step import StepProblem
 from petalfoil.system.unknowns import DEFLECTION
@@ -36,19 +37,24 @@ class BearingState:
         Unknowns and reactions, those at the nodes.
     points : PointEquations or None
         The same with contact points, of which unknowns and reactions are samples; None where contacts are at nodes.
+    stretching : float
+        Energy of petals that friction at contact points stretches [1].
     """
 
     problem: StepProblem
     x: Array
     lam: Array
     points: PointEquations | None = None
+    stretching: float = 0.0
 
     @classmethod
     def each_of(cls, problem: StepProblem | ShaftStep, instant: Instant, whole: PointLayout | None) -> list[Self]:
         """Every bearing of a `problem` at the speed and position of an instant."""
         if instant.points is None or whole is None or not isinstance(problem, StepProblem):
             return [cls(*part) for part in problem.each(instant.x, instant.lam)]
-        return [cls(problem, instant.x, instant.lam, PointEquations(whole, problem, instant.points))]
+        pulls, equations = instant.friction, PointEquations(whole, problem, instant.points)
+        stretching = 0.0 if pulls is None else stretching_energy(whole, instant.points.points, pulls.force)
+        return [cls(problem, instant.x, instant.lam, equations, stretching)]
 
     @cached_property
     def pressure(self) -> Array:
@@ -73,7 +79,8 @@ class BearingState:
         if self.points is None:
             return 0.5 * float(self.deflection @ self.problem.layout.elastic_force(self.deflection))
         reaction, curvature = self.points.state.points.reaction, self.points.whole.bending @ self.points.state.w
-        return 0.5 * float(curvature @ curvature + reaction @ self.points.gaps.bending)
+        bent = 0.5 * float(curvature @ curvature + reaction @ self.points.gaps.bending)
+        return bent + self.stretching
 
     @cached_property
     def thinnest(self) -> float:

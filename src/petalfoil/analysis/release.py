@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from petalfoil.analysis.friction_told import follows_path
 from petalfoil.analysis.heat_results import at_temperatures
 from petalfoil.analysis.operating_point import Vector, at, at_position, under_load
+from petalfoil.analysis.release_at_points import points_in_time, released_at_points
 from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.case import Case
 from petalfoil.dynamics.adaptive_steps import MarchOptions
-from petalfoil.dynamics.point_path import at_points_instant
 from petalfoil.dynamics.rotor_motion import RotorMotion, constant_load
 from petalfoil.dynamics.speed_schedule import Schedule
 from petalfoil.dynamics.time_state import Instant, TimeState
@@ -24,16 +24,12 @@ from petalfoil.equilibrium.element_contacts import near_nodes, with_elements
 from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import UsageError
-from petalfoil.physics.dry_friction import Friction
-from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.build import build_pair, build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.friction import FrictionState, friction_of
 from petalfoil.system.heat_network import HeatNetwork
 from petalfoil.system.on_shaft import ShaftStep
 from petalfoil.system.point_equations import PointState
-from petalfoil.system.point_layout import PointLayout
-from petalfoil.system.point_step import PointStepEquations
 from petalfoil.system.shaft_layout import friction_on_shaft, joined
 from petalfoil.system.temperatures import Temperatures
 from petalfoil.system.time_step import StepProblem
@@ -262,11 +258,6 @@ def system_of(case: Case, supports: tuple[Case, ...], schedule: Schedule, load: 
     return RotorBearing(alone, rotor, friction, points_in_time(problem.layout, friction))
 
 
-def points_in_time(layout: BearingLayout, friction: Friction | None) -> PointLayout | None:
-    """Where contacts of a motion lie between nodes: of petals without friction, whom no journal drags; else None."""
-    return None if friction is not None or layout.case.drags_petals else layout.elements
-
-
 def at_rest(case: Case, system: RotorBearing, request: OrbitRequest, *, at_points: bool = True) -> Instant:
     """The journal held where it is, film and petals in equilibrium, and released at time zero.
 
@@ -325,16 +316,3 @@ def released(
     change = TimeState(problem.storing(x, lam), v, speeding)
     friction = None if system.friction is None else FrictionState.fresh(system.friction, x, lam)
     return Instant(tau, x, lam, closed, TimeState(problem.stored(x), e, v), change, friction)
-
-
-def released_at_points(system: RotorBearing, tau: float, state: PointState, moving: tuple[Array, Array]) -> Instant:
-    """The same from petals, film and contact points."""
-    (e, v), rotor, whole = moving, system.rotor, system.points
-    problem = system.problem.at(displacement=e, bearing_number=rotor.bearing_number(tau))
-    if whole is None or not isinstance(problem, StepProblem):
-        raise TypeError("contacts of this motion are at nodes")
-    equations = PointStepEquations(whole, problem, state)
-    force = equations.force + rotor.outside(tau) - rotor.gyroscopic(tau) @ v
-    speeding = np.asarray(np.linalg.solve(rotor.inertia, force), dtype=np.float64)
-    change = TimeState(-equations.film.residual, v, speeding)
-    return at_points_instant(tau, equations, TimeState(equations.film.mass, e, v), change)

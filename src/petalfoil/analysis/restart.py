@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.analysis.release import Kept, released, released_at_points
+from petalfoil.analysis.release import Kept, released
+from petalfoil.analysis.release_at_points import equations_at, released_at_points
 from petalfoil.case import Case
 from petalfoil.dynamics.point_stage import balanced
 from petalfoil.dynamics.speed_schedule import Schedule
@@ -20,9 +21,7 @@ from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 from petalfoil.system.friction import against_slip
 from petalfoil.system.point_equations import PointState
-from petalfoil.system.point_step import PointStepEquations
 from petalfoil.system.temperatures import Temperatures
-from petalfoil.system.time_step import StepProblem
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE
 
 if TYPE_CHECKING:
@@ -91,11 +90,10 @@ def instant_of(result: xr.Dataset, system: RotorBearing, tau: float) -> Instant:
         satisfy the equations of the wall.
     """
     scales, layout = system.problem.layout.scales, system.problem.layout
-    slides = 0 if system.friction is None else system.friction.slip.shape[0]
-    sizes = (layout.unknowns.n, len(system.problem.weight), len(system.problem.displacement), slides)
-    x, lam, e, friction = (
+    sizes = (layout.unknowns.n, len(system.problem.weight), len(system.problem.displacement))
+    x, lam, e = (
         _state(result, f"last_{name}", size)
-        for name, size in zip(("state", "reactions", "position", "friction"), sizes, strict=True)
+        for name, size in zip(("state", "reactions", "position"), sizes, strict=True)
     )
     v = _state(result, "last_velocity", len(e)) / (scales.length * system.rotor.clock.rate)
     if np.any(lam < 0.0):
@@ -106,7 +104,8 @@ def instant_of(result: xr.Dataset, system: RotorBearing, tau: float) -> Instant:
         return at_points_of(result, system, tau, (x, e / scales.length, v))
     start = released(system, tau, (x, lam, lam > 0.0), (e / scales.length, v))
     if start.friction is not None:
-        start = replace(start, friction=replace(start.friction, force=friction))
+        force = _state(result, "last_friction", len(start.friction.force))
+        start = replace(start, friction=replace(start.friction, force=force))
     imbalance, allowed = wall_imbalance(start, system), BALANCED if system.friction is None else BALANCED_SLIDING
     if not imbalance <= allowed:
         raise _damaged(f"petals and loads are out of balance by {imbalance:.2g} of ambient pressure, over {allowed:g}")
@@ -129,11 +128,11 @@ def at_points_of(result: xr.Dataset, system: RotorBearing, tau: float, at: tuple
     if points is None:
         raise _damaged("last_points are no contact points")
     state = PointState(w, x[whole.layout.unknowns[PRESSURE]], points)
-    start = released_at_points(system, tau, state, (e, v))
-    problem = system.problem.at(displacement=e, bearing_number=system.rotor.bearing_number(tau))
-    equations = PointStepEquations(whole, problem, state) if isinstance(problem, StepProblem) else None
-    if equations is None or np.min(equations.film_thickness) <= 0.0 or not balanced(equations):
+    pulls = None if system.friction is None else _state(result, "last_friction", len(points.reaction))
+    equations = equations_at(system, tau, state, e, pulls)
+    if np.min(equations.film_thickness) <= 0.0 or not balanced(equations):
         raise _damaged("petals, loads and contacts are out of balance")
+    start = released_at_points(system, tau, state, (e, v), pulls)
     if not np.allclose(start.x, x, rtol=0.0, atol=SAME * float(np.max(np.abs(x)))):
         raise _damaged("petals and loads are out of balance: deflections at nodes are not those between them")
     return start

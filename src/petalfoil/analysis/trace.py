@@ -12,11 +12,13 @@ from scipy.integrate import cumulative_trapezoid
 
 from petalfoil.analysis.film_figures import BearingState, FilmFigures, dragging_work, film_work, growth_work
 from petalfoil.case import Case
+from petalfoil.dynamics.point_path import nodal_friction
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.physics.forces import contact_fraction
 from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.friction import energy_lost
+from petalfoil.system.point_friction import PointFriction
 from petalfoil.system.unknowns import DEFLECTION
 from petalfoil.walls import wall_kind
 
@@ -200,9 +202,7 @@ class Trace:
         system, unit = self.system, self._units[2] * self._units[0]
         pairs = list(zip(self._parts, parts, strict=True))
         loads = 0.5 * (system.rotor.outside(before.tau) + system.rotor.outside(instant.tau))
-        friction, worn = system.friction, self._lost(before, instant)
-        if friction is not None and before.friction is not None and instant.friction is not None:
-            worn += energy_lost(friction.in_step(before.lam), before.friction, instant.friction)
+        worn = self._lost(before, instant) + self._rubbed(before, instant)
         return {
             "film_step": sum(film_work(*pair) for pair in pairs) * unit,
             "load_step": float(loads @ (instant.e - before.e)) * unit,
@@ -210,6 +210,17 @@ class Trace:
             "growth_step": sum(growth_work(*pair) for pair in pairs) * unit,
             "dragging_step": sum(dragging_work(*pair) for pair in pairs) * unit,
         }
+
+    def _rubbed(self, before: Instant, instant: Instant) -> float:
+        """Energy that friction between petals takes between two instants [1]."""
+        friction, whole = self.system.friction, self.system.points
+        if friction is None or before.friction is None or instant.friction is None:
+            return 0.0
+        if whole is None or instant.points is None or before.points is None:
+            then = nodal_friction(friction, before)
+            return energy_lost(friction.in_step(before.lam), then, instant.friction)
+        law = PointFriction(whole, friction.coefficient, before.points, before.friction.force)
+        return law.lost(instant.friction, instant.points.points)
 
     def _lost(self, before: Instant, instant: Instant) -> float:
         """Energy that walls with a loss factor lose between two instants [1]."""

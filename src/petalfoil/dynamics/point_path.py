@@ -12,9 +12,13 @@ from petalfoil.equilibrium.contact_runs import from_active_nodes
 from petalfoil.equilibrium.contact_sets import merged
 from petalfoil.equilibrium.nodal_state import sampled_deflection, shared_reactions, with_motion_along
 from petalfoil.equilibrium.point_contacts import PointContacts
+from petalfoil.physics.dry_friction import Friction
+from petalfoil.system.friction import FrictionState
 from petalfoil.system.point_equations import PointEquations, PointState
+from petalfoil.system.point_friction import RubbingStepEquations
 from petalfoil.system.point_layout import PointLayout
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE
+from petalfoil.walls.pack_slip import stretched_along
 
 Array = NDArray[np.float64]
 
@@ -31,9 +35,21 @@ def at_points_instant(
         return Instant(tau, none, none, none.astype(bool), moving, change, points=equations.state)
     found, layout = PointContacts(equations, 0.0), equations.whole.layout
     x, lam = np.zeros(layout.n), shared_reactions(found)
-    x[layout.unknowns[DEFLECTION]] = with_motion_along(layout.stiffness, sampled_deflection(found))
+    wall = with_motion_along(layout.stiffness, sampled_deflection(found))
+    if isinstance(equations, RubbingStepEquations):
+        scales = layout.scales
+        along = stretched_along(equations.whole.pack, equations.state.points, equations.friction_force * scales.force)
+        wall[-along.size :] += along.ravel() / scales.length
+    x[layout.unknowns[DEFLECTION]] = wall
     x[equations.problem.positive] = equations.state.P
     return Instant(tau, x, lam, lam > 0.0, moving, change, points=equations.state)
+
+
+def nodal_friction(friction: Friction, instant: Instant) -> FrictionState:
+    """Friction at the nodes from an instant on: of contact points their material keeps its place, sampled there."""
+    if instant.friction is not None and instant.points is None:
+        return instant.friction
+    return FrictionState.fresh(friction, instant.x, instant.lam)
 
 
 def point_guesses(whole: PointLayout, path: list[Instant], tau: float) -> list[tuple[PointState, Array]]:

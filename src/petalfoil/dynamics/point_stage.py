@@ -19,8 +19,10 @@ from petalfoil.dynamics.time_state import TimeState
 from petalfoil.equilibrium.contact_sets import revised
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError, unbalanced
 from petalfoil.equilibrium.point_contacts import refuse_closed, stepped
+from petalfoil.equilibrium.rubbing_tangent import RubbingTangent
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.system.point_equations import PointState
+from petalfoil.system.point_friction import RubbingStepEquations, carried
 from petalfoil.system.point_layout import PointLayout
 from petalfoil.system.point_step import PointStepEquations
 from petalfoil.system.time_step import StepProblem
@@ -88,7 +90,11 @@ class PointStage:
         problem = self.stage.problem.at(displacement=e)
         if not isinstance(problem, StepProblem):
             raise TypeError("contacts of a shaft in two bearings are at nodes")
-        return PointStepEquations(self.whole, problem, state, resists=self.stage.border_stiffness)
+        resists, friction = self.stage.border_stiffness, self.stage.point_friction
+        if friction is None:
+            return PointStepEquations(self.whole, problem, state, resists=resists)
+        force = carried(friction.force, friction.begin.points, state.points)
+        return RubbingStepEquations(self.whole, problem, state, resists=resists, friction_force=force)
 
     def solved(self, start: tuple[PointState, Array], tangent: ElementTangent | None) -> PointStageSolution | None:
         """The stage's state near `start`, a state and a displacement; None if there is none near it."""
@@ -100,7 +106,7 @@ class PointStage:
                 points = revised(equations, accuracy)
                 if points is None:
                     return PointStageSolution(equations, self.moving(equations), tangent)
-                equations = replace(equations, state=replace(equations.state, points=points))
+                equations = with_contacts(equations, replace(equations, state=replace(equations.state, points=points)))
         except NoPointsError as e:
             current_run().note("stage", outcome=str(e))
         return None
@@ -118,17 +124,17 @@ class PointStage:
         options, made = self.stage.options, 0
         while made < TANGENTS:
             if tangent is None or not serves(tangent, equations):
-                tangent, made = ElementTangent.at(equations, load, current_run().film_solver), made + 1
+                tangent, made = self.tangent_at(equations, load), made + 1
             last = np.inf
             for number in range(CORRECTIONS):
                 before = equations.film_imbalance
-                change = tangent.correction(equations.newton_residual, unbalanced(equations, load))
+                change, rubbing = self.correction(equations, tangent, load)
                 size = self.size(change)
                 if not np.isfinite(size) or size > GROWING * last:
                     break
                 if number and before > 0.0:
                     tangent = replace(tangent, response=max(tangent.response, size / before))
-                equations = stepped(equations, change, load, whole_step=True)
+                equations = with_contacts(rubbing, stepped(rubbing, change, load, whole_step=True))
                 if not serves(tangent, equations):
                     break
                 contraction = size / last if number else options.slow
@@ -141,6 +147,37 @@ class PointStage:
             tangent = None
         raise NoPointsError("the corrections of a stage do not contract")
 
+    def tangent_at(self, equations: PointStepEquations, load: Array) -> ElementTangent:
+        """The factorised equations at a state.
+
+        Raises
+        ------
+        NoPointsError
+            They have no inverse.
+        """
+        solver = current_run().film_solver
+        if isinstance(equations, RubbingStepEquations):
+            return RubbingTangent.about(equations, load, solver)
+        return ElementTangent.at(equations, load, solver)
+
+    def correction(
+        self, equations: PointStepEquations, tangent: ElementTangent, load: Array
+    ) -> tuple[tuple[Array, Array], PointStepEquations]:
+        """Changes of unknowns and position, and the equations they belong to: with their friction forces (M13).
+
+        Raises
+        ------
+        NoPointsError
+            Contacts and friction do not determine them.
+        """
+        friction = self.stage.point_friction
+        if friction is None or not isinstance(equations, RubbingStepEquations):
+            return tangent.correction(equations.newton_residual, unbalanced(equations, load)), equations
+        if not isinstance(tangent, RubbingTangent):
+            raise TypeError("a tangent without friction")
+        change, force = tangent.step(equations, friction, load)
+        return change, replace(equations, friction_force=force)
+
     def size(self, change: tuple[Array, Array]) -> float:
         """Size of a correction [reference films, ambient pressures]."""
         (dX, move), n = change, self.whole.n_wall + self.whole.n_film
@@ -152,17 +189,35 @@ class PointStage:
         return TimeState(equations.film.mass, e, self.stage.rate * (e - self.stage.base.e))
 
 
+def with_contacts(before: PointStepEquations, equations: PointStepEquations) -> PointStepEquations:
+    """The equations after their contacts have changed from those `before`, with the friction forces of each."""
+    if not isinstance(equations, RubbingStepEquations) or not isinstance(before, RubbingStepEquations):
+        return equations
+    if same_contacts(before.state, equations.state):
+        return equations
+    return replace(
+        equations, friction_force=carried(before.friction_force, before.state.points, equations.state.points)
+    )
+
+
 def serves(tangent: ElementTangent, equations: PointStepEquations) -> bool:
     """Whether a tangent is that of the same contacts."""
     was = tangent.equations
     if not isinstance(was, PointStepEquations) or was.whole is not equations.whole:
+        return False
+    if isinstance(equations, RubbingStepEquations) and not isinstance(tangent, RubbingTangent):
         return False
     alike = np.array_equal(was.travels, equations.travels) and np.array_equal(was.idle, equations.idle)
     return alike and same_contacts(was.state, equations.state)
 
 
 def told(tangent: ElementTangent, equations: PointStepEquations) -> float:
-    """Correction that what is left of the film's rows asks for, as far as the tangent has been seen to answer."""
+    """Correction that what is left of the film's rows asks for, as far as the tangent has been seen to answer.
+
+    With friction it is not told: slips are known to follow Coulomb's law by the next correction alone.
+    """
+    if isinstance(equations, RubbingStepEquations):
+        return np.inf
     return TOLD * tangent.response * equations.film_imbalance if tangent.response else np.inf
 
 

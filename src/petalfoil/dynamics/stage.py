@@ -34,6 +34,7 @@ from petalfoil.solvers.problem import Border, ContactProblem, fraction_to_bounda
 from petalfoil.solvers.tangent import BorderedTangent
 from petalfoil.system.friction import FrictionProblem, FrictionState, FrictionStep
 from petalfoil.system.on_shaft import ShaftStep
+from petalfoil.system.point_friction import PointFriction
 from petalfoil.system.time_step import StepProblem
 
 Array = NDArray[np.float64]
@@ -107,6 +108,8 @@ class Stage(ContactEquations):
         Friction between the petals.
     tangents : int
         Tangents made so far with the contact set at hand.
+    point_friction : PointFriction or None
+        The same at contact points, of a stage that has them.
     """
 
     problem: StepProblem | ShaftStep
@@ -117,6 +120,7 @@ class Stage(ContactEquations):
     options: StageOptions
     friction: FrictionStep | None = None
     tangents: int = 0
+    point_friction: PointFriction | None = None
 
     @property
     def rate(self) -> float:

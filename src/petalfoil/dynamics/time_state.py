@@ -63,7 +63,7 @@ class Instant:
     change : TimeState
         Their rates of change.
     friction : FrictionState or None
-        Slip and friction of the petals.
+        Slip and friction of the petals; of contact points the slip is that of the step which led here.
     points : PointState or None
         Petals, film and contacts where these are points between nodes, of which unknowns, reactions and active contacts
         are samples then; None where contacts are at nodes.

@@ -14,7 +14,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.dynamics.point_path import KNOTS, at_points_instant, foretelling, point_guesses
+from petalfoil.dynamics.point_path import KNOTS, at_points_instant, foretelling, nodal_friction, point_guesses
 from petalfoil.dynamics.point_stage import PointStage
 from petalfoil.dynamics.rotor_motion import RotorMotion
 from petalfoil.dynamics.stage import Stage, StageOptions, StageSolution, solve_sliding_stage, solve_stage
@@ -25,6 +25,7 @@ from petalfoil.solvers.contact_newton import border_change
 from petalfoil.solvers.tangent import BorderedTangent
 from petalfoil.system.friction import FrictionStep
 from petalfoil.system.on_shaft import ShaftStep
+from petalfoil.system.point_friction import PointFriction, RubbingStepEquations
 from petalfoil.system.point_layout import PointLayout
 from petalfoil.system.time_step import StepProblem
 from petalfoil.system.unknowns import PRESSURE
@@ -73,9 +74,12 @@ class RotorBearing:
 
     def stage(self, base: TimeState, tau: float, step: float, begin: Instant, options: StageOptions) -> Stage:
         """The implicit stage at `tau` from `base` in a step from `begin`; friction goes on from there."""
-        rotor, friction = self.rotor, None
+        rotor, friction, at_points = self.rotor, None, None
         if self.friction is not None and begin.friction is not None:
-            friction = FrictionStep.beginning(self.friction, begin.friction, begin.lam)
+            if self.points is not None and begin.points is not None:
+                at_points = PointFriction(self.points, self.friction.coefficient, begin.points, begin.friction.force)
+            else:
+                friction = FrictionStep.beginning(self.friction, nodal_friction(self.friction, begin), begin.lam)
         problem = replace(
             self.problem,
             bearing_number=rotor.bearing_number(tau),
@@ -83,7 +87,8 @@ class RotorBearing:
             rate=1.0 / (IMPLICIT * step),
             start=base.stored,
         )
-        return Stage(problem, base, rotor.inertia, rotor.gyroscopic(tau), rotor.outside(tau), options, friction)
+        still = (problem, base, rotor.inertia, rotor.gyroscopic(tau), rotor.outside(tau), options)
+        return Stage(*still, friction, point_friction=at_points)
 
 
 @dataclass(frozen=True)
@@ -164,6 +169,9 @@ def advance_points(
         if found is not None:
             change = found.moving.minus(stage.stage.base, stage.stage.rate)
             instant = at_points_instant(tau, found.equations, found.moving, change, inner=inner)
+            if stage.stage.point_friction is not None and isinstance(found.equations, RubbingStepEquations):
+                slid = stage.stage.point_friction.state(found.equations.state, found.equations.friction_force)
+                instant = replace(instant, friction=slid)
             return Reached(instant, found.residual, found.tangent)
     return None
 

@@ -26,6 +26,7 @@
 `contact_runs.py`          contact points and stretches from runs of active nodes
 `contact_sets.py`          the same corrected by the signs of reactions and gaps
 `element_tangent.py`       a step of Newton's method for petals with continuous slopes, under a load or not
+`rubbing_tangent.py`       the same with friction at contact points
 `point_contacts.py`        equilibria with contact points as unknowns
 `followed_points.py`       these followed to a neighbouring position, speed or load
 `led_points.py`            from solution to solution so, contacts at nodes left out

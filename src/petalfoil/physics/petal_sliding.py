@@ -116,3 +116,16 @@ def face_compliance(faces: Faces, at: FacePlaces, angle: Array, length: float) -
     share, stretch = faces.share(at.petal, at.side), faces.membrane[at.petal] * length
     same = at.petal[:, None] == at.petal
     return np.where(same, np.minimum.outer(arc, arc) / stretch * np.multiply.outer(share, share), 0.0)
+
+
+def face_compliance_by_place(faces: Faces, at: FacePlaces, angle: Array, length: float) -> Array:
+    """Derivative of `face_compliance` by the place in the element of the first face of each pair, (f, f) [m/N].
+
+    It jumps where two faces are at the same place, and has the mean there.
+    """
+    nodes = np.append(0.0, np.cumsum(angle))
+    along = faces.metric_radius[at.petal] * angle[at.element]
+    arc = faces.metric_radius[at.petal] * (nodes[at.element] + at.place * angle[at.element])
+    share, stretch = faces.share(at.petal, at.side), faces.membrane[at.petal] * length
+    before, same = 0.5 - 0.5 * np.sign(arc[:, None] - arc), at.petal[:, None] == at.petal
+    return np.where(same, before * (along / stretch)[:, None] * np.multiply.outer(share, share), 0.0)

@@ -14,6 +14,7 @@
 `friction.py`            residual of the friction forces between petals, and a problem with it
 `time_step.py`           an implicit step in time: the film stores gas
 `point_step.py`          the same with contact points; the journal has mass
+`point_friction.py`       friction between petals at contact points that travel (M13)
 `shaft_layout.py`        what stays the same of two bearings on one shaft
 `on_shaft.py`            both side by side in a step in time
 `temperatures.py`        temperatures of film, shaft, pack and bushing

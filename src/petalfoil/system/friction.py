@@ -50,9 +50,15 @@ def slipping(friction: Friction, state: FrictionState) -> NDArray[np.intp]:
 
     Of contacts that slip in two directions 1 where they slip, once for each direction.
     """
-    slides = (state.limit > 0.0) & (friction.magnitude(state.force) >= (1.0 - SLIDES) * state.limit)
-    sign = np.sign(state.force) if friction.directions == 1 else 1.0
-    return np.where(slides, sign, 0.0).astype(np.intp)
+    if friction.directions == 1:
+        return slips_forward(state.force, state.limit)
+    return np.abs(slips_forward(friction.magnitude(state.force), state.limit))
+
+
+def slips_forward(force: NDArray[np.float64], limit: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Direction of slip by friction forces along a line and their limits, 0 where a contact sticks or is open, (k,)."""
+    slides = (limit > 0.0) & (np.abs(force) >= (1.0 - SLIDES) * limit)
+    return np.where(slides, np.sign(force), 0.0).astype(np.intp)
 
 
 def slips(friction: Friction, x: NDArray[Any]) -> NDArray[Any]:

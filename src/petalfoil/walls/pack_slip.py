@@ -26,6 +26,7 @@ from petalfoil.physics.petal_sliding import (
     OUTER,
     FacePlaces,
     face_compliance,
+    face_compliance_by_place,
     face_slip,
     face_slip_by_place,
 )
@@ -56,6 +57,12 @@ def slip_rows(pack: ElementPack, points: ContactPoints) -> sp.csr_array:
     """`B`: slip at all contact points from the unknowns, (j, n) [1]; rows of contacts on the journal are empty."""
     contact, at = touching_faces(pack, points)
     return from_unknowns(pack, face_slip(pack.faces, at, pack.elements.element_angle), (contact, at), points)
+
+
+def slip_by_place(pack: ElementPack, points: ContactPoints) -> sp.csr_array:
+    """Derivative of `slip_rows` by the place of each contact, counted in elements; (j, n) [1]."""
+    contact, at = touching_faces(pack, points)
+    return from_unknowns(pack, face_slip_by_place(pack.faces, at, pack.elements.element_angle), (contact, at), points)
 
 
 def dragged_faces(pack: ElementPack, points: ContactPoints) -> tuple[sp.csr_array, sp.csr_array]:
@@ -90,6 +97,33 @@ def slip_compliance(pack: ElementPack, points: ContactPoints) -> Array:
     """`C`: slip that friction forces take back by stretching the petals, (j, j) [m/N]."""
     contact, at = touching_faces(pack, points)
     of_faces = face_compliance(pack.faces, at, pack.elements.element_angle, pack.mesh.axial.length)
-    out = np.zeros((len(points.reaction), len(points.reaction)))
+    return at_contacts(of_faces, contact, len(points.reaction))
+
+
+def slip_compliance_by_place(pack: ElementPack, points: ContactPoints) -> Array:
+    """Derivative of `slip_compliance` by the place of the first contact of each pair, in elements, (j, j) [m/N]."""
+    contact, at = touching_faces(pack, points)
+    of_faces = face_compliance_by_place(pack.faces, at, pack.elements.element_angle, pack.mesh.axial.length)
+    return at_contacts(of_faces, contact, len(points.reaction))
+
+
+def at_contacts(of_faces: Array, contact: Index, count: int) -> Array:
+    """Pairs of faces (f, f) summed at the pairs of their contacts, (count, count)."""
+    out = np.zeros((count, count))
     np.add.at(out, (contact[:, None], contact), of_faces)
     return out
+
+
+def stretched_along(pack: ElementPack, points: ContactPoints, force: Array) -> Array:
+    """How far friction forces `force` (j,) [N] move the nodes of the pack along their petals, roots apart (M2).
+
+    Shape (count, n_node - 1) [m].
+    """
+    contact, at = touching_faces(pack, points)
+    faces, phi = pack.faces, pack.elements.phi
+    pulls = -faces.share(at.petal, at.side) * force[contact]
+    arc = phi[at.element] + at.place * pack.elements.element_angle[at.element]
+    reached = np.minimum(pack.mesh.phi[1:, None], arc) * pulls  # (node, face)
+    own = at.petal[:, None] == np.arange(pack.mesh.count)
+    over = faces.metric_radius / (faces.membrane * pack.mesh.axial.length)
+    return np.asarray(over[:, None] * (reached @ own).T)
