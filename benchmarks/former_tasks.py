@@ -1,6 +1,8 @@
 """One task of the comparison with an earlier state, in the sources that PYTHONPATH names: prints its figures as JSON.
 
-    python benchmarks/former_tasks.py TASK [--quick]
+    python benchmarks/former_tasks.py TASK [--quick] [KEY=VALUE ...]
+
+Keys and values change the cases of the task, such as model.contacts=nodes.
 
 Processor time is that of the call alone, after a small solution has loaded all that is needed. Factorisations are those
 of the results.
@@ -26,11 +28,16 @@ EXAMPLES = (SOURCES if (SOURCES / "examples").is_dir() else Path(__file__).paren
 """The cases as the sources read them: the same bearings, in an earlier state under earlier keys."""
 
 
+CHANGES: dict[str, object] = {}
+"""Other keys of the cases, by path."""
+
+
 def pack(name: str, cells: int, axial: int = 0, down: float = 0.0) -> Case:
     """One of the example packs on a grid, the journal displaced by `down` [m]; `cells` 0 leaves the default grid."""
     changes: dict[str, object] = {"operation.eccentricity": (0.0, -down)}
     changes |= {"model.cells_per_pitch": cells} if cells else {}
     changes |= {"model.axial_cells": axial} if axial else {}
+    changes |= CHANGES
     return Case.load(EXAMPLES / f"{name}.toml").replace(**changes)
 
 
@@ -119,16 +126,17 @@ VERBS = ("solve", "curve", "coefficients", "stability", "liftoff", "runup", "orb
 """What the tasks ask, loaded before the clock starts: an earlier state loads all at once, the present one as asked."""
 
 
-def main(name: str, quick: bool) -> None:
-    """Run a task and print its processor time."""
+def main(name: str, quick: bool, changes: dict[str, str]) -> None:
+    """Run a task, its cases with other keys, and print its processor time."""
     warnings.simplefilter("ignore")
     for verb in VERBS:
         getattr(petalfoil, verb)
     petalfoil.solve(pack("paper_n8", 16))
+    CHANGES.update(changes)
     begin = time.process_time()
     own = TASKS[name](quick)
     print(json.dumps({"seconds": time.process_time() - begin if own is None else own}))
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], "--quick" in sys.argv)
+    main(sys.argv[1], "--quick" in sys.argv, dict(word.split("=", 1) for word in sys.argv[2:] if "=" in word))
