@@ -51,7 +51,8 @@ def test_the_share_is_crossed_within_a_hundred_thousandth_of_the_speed(lifted: R
 def test_a_heavier_load_lifts_off_later(lifted: Record) -> None:
     """Where load rules and not preload: above 10 N on the paper's eight petals."""
     near = BEARING.replace(**{"operation.speed": number(lifted, "liftoff_speed")})
-    lighter, heavier = (crossings(near, load, CONTACT_FRACTION)[0] for load in (0.8 * LOAD, 1.25 * LOAD))
+    lines = (SpeedLine(near, (0.0, -load)) for load in (0.8 * LOAD, 1.25 * LOAD))
+    lighter, heavier = (crossings(line, CONTACT_FRACTION)[0] for line in lines)
     assert lighter < number(lifted, "liftoff_speed") < heavier
 
 

@@ -57,16 +57,15 @@ class Bracket:
     known: Solution
 
 
-def crossings(case: Case, load: float, limit: float) -> tuple[float, float]:
-    """Lift-off speed and touchdown speed [rad/s]; infinite where it never lifts off, zero where it always has.
+def crossings(line: SpeedLine, limit: float) -> tuple[float, float]:
+    """Lift-off speed and touchdown speed [rad/s] along a line; infinite where it never lifts off, zero where it has.
 
     Raises
     ------
     ConvergenceError
         A balance on the way was not found.
     """
-    start = min(max(case.operation.speed, 10.0 * SLOWEST), fastest(case))
-    line = SpeedLine(case, (0.0, -load))
+    start = min(max(line.case.operation.speed, 10.0 * SLOWEST), fastest(line.case))
     touching = line.contact_fraction(start) > limit
     found = crossing(line, start, limit, upward=touching)
     if found is None:
@@ -137,14 +136,20 @@ def aim(near: tuple[float, float], far: tuple[float, float], limit: float) -> fl
     return near[0] + min(max(part, least), 1.0 - least) * (far[0] - near[0])
 
 
-def sensitivity(case: Case, load: float, at: tuple[float, float]) -> tuple[float, float]:
-    """Logarithmic derivatives of the lift-off speed by contact film thickness and limit [1]; nan where not found."""
-    limit, up = at
+def sensitivity(line: SpeedLine, limit: float, up: float) -> tuple[float, float]:
+    """Logarithmic derivatives of the lift-off speed by contact film thickness and limit [1]; nan where not found.
+
+    Those by the limit are along the `line` that found it, which goes on; where its way or its temperatures count, along
+    another from nothing.
+    """
+    case, load = line.case, line.load
     thick = case.replace(
         **{"surface.contact_film_thickness": case.surface.contact_film_thickness * (1.0 + SENSITIVITY)}
     )
-    by_film = slope(up, rising(thick, load, limit, up), 1.0 + SENSITIVITY)
-    return by_film, slope(up, rising(case, load, 0.5 * limit, up), 0.5)
+    by_film = slope(up, rising(SpeedLine(thick, load), limit, up), 1.0 + SENSITIVITY)
+    goes_on = line.path is None and line.rotor is None and case.heat is None
+    same = line if goes_on else SpeedLine(case, load)
+    return by_film, slope(up, rising(same, 0.5 * limit, up), 0.5)
 
 
 def slope(before: float, after: float | None, factor: float) -> float:
@@ -154,11 +159,11 @@ def slope(before: float, after: float | None, factor: float) -> float:
     return math.log(after / before) / math.log(factor)
 
 
-def rising(case: Case, load: float, limit: float, near: float) -> float | None:
+def rising(line: SpeedLine, limit: float, near: float) -> float | None:
     """Lift-off speed of a bearing like the one that lifts off at `near` [rad/s]; None if it is not found."""
     if not 0.0 < near < math.inf:
         return None
-    line, start = SpeedLine(case, (0.0, -load)), near / FACTOR
+    start = near / FACTOR
     try:
         while line.contact_fraction(start) <= limit and start > SLOWEST:
             start /= FACTOR

@@ -22,6 +22,7 @@ from petalfoil.analysis.operating_point import at, beyond_capacity
 from petalfoil.analysis.records import effort, geometry, record_of
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
+from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import ConvergenceError, UsageError
@@ -131,8 +132,9 @@ def _points(
     for number, load in enumerate(loads[len(done) :], len(done)):
         with running(part(progress, number, len(loads)), f"liftoff {load:g} N") as run:
             try:
-                up, down = crossings(case, load, limit)
-                found: tuple[object, ...] = (LiftoffSpeeds(up, down, *sensitivity(case, load, (limit, up))),)
+                line = SpeedLine(case, (0.0, -load))
+                up, down = crossings(line, limit)
+                found: tuple[object, ...] = (LiftoffSpeeds(up, down, *sensitivity(line, limit, up)),)
                 ended = RunOutcome(status=in_words(case, up))
             except ConvergenceError as failure:
                 found, ended = (), RunOutcome(converged=False, status=f"not converged: {why_none(case, load, failure)}")

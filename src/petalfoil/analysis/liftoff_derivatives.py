@@ -38,7 +38,8 @@ def speed_derivatives(case: Case, load: float, limit: float, *, as_points: bool 
         A balance was not found, the journal never lifts off or never touches, or the contact fraction jumps.
     """
     loaded = case.replace(**{"operation.load": (0.0, -load), "operation.eccentricity": (0.0, 0.0)})
-    speeds = dict(zip(("liftoff_speed", "touchdown_speed"), crossings(loaded, load, limit), strict=True))
+    both = crossings(SpeedLine(loaded, (0.0, -load)), limit)
+    speeds = dict(zip(("liftoff_speed", "touchdown_speed"), both, strict=True))
     found = [
         of_contacts(
             refined(name, SpeedLine(loaded, (0.0, -load), leads=False), (speed, limit), as_points), as_points=as_points
