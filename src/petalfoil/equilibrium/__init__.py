@@ -28,9 +28,11 @@
 `element_tangent.py`       a step of Newton's method for petals with continuous slopes, under a load or not
 `rubbing_tangent.py`       the same with friction at contact points
 `point_contacts.py`        equilibria with contact points as unknowns
+`point_prospects.py`       when a search for these is given up
 `followed_points.py`       these followed to a neighbouring position, speed or load
 `led_points.py`            from solution to solution so, contacts at nodes left out
 `asperity_contacts.py`     equilibria with contact pressures over low asperities
+`asperity_path.py`         these from nothing, along a central path
 `at_limit.py`              the load at which a result reaches its limit, followed with these contacts
 `largest_load.py`          the largest load of a branch, there or where the branch turns back
 `element_contacts.py`      which of the two is near an equilibrium with contacts at nodes

@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError, scaled_force, unbalanced
-from petalfoil.equilibrium.point_contacts import FARTHEST_MOVE, diverged, refuse_closed
+from petalfoil.equilibrium.point_contacts import FARTHEST_MOVE, refuse_closed
 from petalfoil.equilibrium.point_contacts import admitted as film_admits
+from petalfoil.equilibrium.point_prospects import diverged
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import AT_ASPERITIES
 from petalfoil.physics.asperity_contact import FULL_PRESSURE, ContactSamples
@@ -59,11 +60,18 @@ LEAST = 1e-9
 
 @dataclass(frozen=True)
 class AsperityContacts:
-    """An equilibrium with contact pressures; attributes as of `PointContacts`."""
+    """An equilibrium with contact pressures; further attributes are those of `PointContacts`.
+
+    Attributes
+    ----------
+    shortest_step : float or None
+        Shortest step over Newton's of the path that led to it from the free shape; None where another state did [1].
+    """
 
     equations: AsperityEquations
     residual: float
     gradient: Array | None = None
+    shortest_step: float | None = None
 
     @property
     def pack(self) -> ElementPack:
@@ -128,8 +136,7 @@ def with_asperities(
     NoPointsError
         None was found.
     """
-    mesh = whole.pack.mesh
-    samples = ContactSamples(whole.curves, SAMPLES, 2.0 * np.pi / (mesh.count * mesh.cells))
+    samples = samples_of(whole)
     smooth = PointEquations(whole, problem, replace(state, points=ContactPoints.none()))
     gaps = samples.gaps(smooth.nodal_gaps, np.zeros((len(samples.element), SAMPLES)))
     pressure = FULL_PRESSURE * np.exp(-np.clip(gaps / HEIGHTS[0], -6.0, 80.0))
@@ -138,6 +145,12 @@ def with_asperities(
         equations, steps, _ = newton(replace(equations, height=height), ROUGH)
         current_run().note("asperities", height=height, steps=steps)
     return settled(equations, load)
+
+
+def samples_of(whole: PointLayout) -> ContactSamples:
+    """Where contact pressures are."""
+    mesh = whole.pack.mesh
+    return ContactSamples(whole.curves, SAMPLES, 2.0 * np.pi / (mesh.count * mesh.cells))
 
 
 def settled(equations: AsperityEquations, load: Array | None) -> AsperityContacts:

@@ -26,7 +26,8 @@ from petalfoil.equilibrium.asperity_contacts import admitted as asperities_admit
 from petalfoil.equilibrium.asperity_contacts import changed as asperities_changed
 from petalfoil.equilibrium.contact_sets import revised
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError, scaled_force, unbalanced
-from petalfoil.equilibrium.point_contacts import FARTHEST_STATE, PointContacts, admitted, changed
+from petalfoil.equilibrium.point_contacts import PointContacts, admitted, changed
+from petalfoil.equilibrium.point_prospects import FARTHEST_STATE
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import ElementEquilibrium
 from petalfoil.solvers.near_factor import FactorAtHand, Inverse, NotNearError

@@ -24,9 +24,9 @@ from petalfoil.equilibrium.point_contacts import (
     PointContacts,
     admitted,
     changed,
-    diverged,
     norm,
 )
+from petalfoil.equilibrium.point_prospects import diverged
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from petalfoil.equilibrium.contact_sets import SAMPLES, beside_contacts, merged, revised
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError, scaled_force, unbalanced
+from petalfoil.equilibrium.point_prospects import SearchedSets, check_prospects
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import AT_POINTS
 from petalfoil.physics.gap_curves import ContactPoints, sampled
@@ -37,16 +38,19 @@ TRUST = 0.35
 MOST_GROWTH = 4.0
 """Largest growth of a film pressure in a step, over the pressure."""
 
-FARTHEST_STATE = 1e4
-"""Film pressure over ambient pressure, and deflection over the reference film (0.1 m), past which Newton's method
-diverges."""
-
 CLOSED = 1e-6
 """Film thickness over that of a contact below which the film has closed: steps that take four fifths of it each end at
 zero by rounding. A solution has at least the film of a contact less `element_contacts.DEEPEST`."""
 
 SHORTEST = 0.1
 """Shortest step over Newton's; it is taken even if the residual does not fall."""
+
+CREEP = 0.9
+"""Residual after a tangent over that before it above which Newton's method creeps."""
+
+CREEPING = 4
+"""Tangents that creep after which a whole step is taken, whatever its residual: where points meet or pass a node
+no short step lessens it. 13 of 122 random packs took up to 42 steps there, to the same points."""
 
 FARTHEST_MOVE = 0.5
 """Longest move of the journal under a load in a step, in units of the reference film (5 um)."""
@@ -142,11 +146,12 @@ def with_points(
     NoPointsError
         None was found.
     """
-    left, changes = STEPS, 0
+    left, changes, seen = STEPS, 0, SearchedSets()
     equations = PointEquations(whole, problem, state)
     while True:
         equations, steps, tangent = newton(equations, left, load)
         points, left = revised(equations), left - steps
+        seen.check(equations, points)
         if points is None:
             residual, found = float(np.max(np.abs(equations.scaled))), equations.state.points
             current_run().note(
@@ -173,18 +178,19 @@ def newton(
     NoPointsError
         It does not converge.
     """
-    (size, largest), tangent = norm(equations, load), None
+    (size, largest), tangent, creeping = norm(equations, load), None, 0
     for count in range(most):
         if largest <= RESIDUAL_TOLERANCE and count:
             return equations, count, tangent
-        if diverged(equations.state):
-            raise NoPointsError("Newton's method diverges")
-        tangent, gain = ElementTangent.at(equations, load, current_run().film_solver), 0.0
+        check_prospects(equations, STEPS - most + count)
+        tangent, gain, first = ElementTangent.at(equations, load, current_run().film_solver), 0.0, size
+        whole_step = creeping == CREEPING
         while gain <= CHORD and largest > POLISHED * RESIDUAL_TOLERANCE and tangent.n == equations.n:
             step = tangent.correction(equations.newton_residual, unbalanced(equations, load))
-            equations = stepped(equations, step, load)
+            equations = stepped(equations, step, load, whole_step=whole_step and not gain)
             before, (size, largest) = size, norm(equations, load)
             gain = size / before
+        creeping = creeping + 1 if size > CREEP * first and not whole_step else 0
     raise NoPointsError(f"contacts or the residual, {largest:.1e}, still change after {STEPS} steps")
 
 
@@ -212,12 +218,6 @@ def refuse_closed(equations: PointEquations) -> None:
     floor = equations.whole.pack.floor / equations.whole.layout.scales.length
     if not np.all(equations.film_thickness.ravel() > CLOSED * floor):
         raise NoPointsError("the film closes")
-
-
-def diverged(state: PointState) -> bool:
-    """Whether a state is that of no bearing."""
-    far = max(float(np.max(np.abs(state.w), initial=0.0)), float(np.max(state.P, initial=0.0)))
-    return not far <= FARTHEST_STATE
 
 
 def stepped(
