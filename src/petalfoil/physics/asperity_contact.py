@@ -154,13 +154,13 @@ class ContactResponse:
     left: Array
 
     @classmethod
-    def at(cls, samples: ContactSamples, pressure: Array, height: float, mismatch: Array) -> ContactResponse:
-        """At pressures (E, S), asperities of `height`, and the mismatch `g / s + ln(q / q_0)` (E, S)."""
+    def at(cls, samples: ContactSamples, pressure: Array, height: float | Array, mismatch: Array) -> ContactResponse:
+        """At pressures (E, S), asperities of `height`, one or (E, S), and the mismatch `g / s + ln(q / q_0)` (E, S)."""
         stiffness = samples.weight * pressure / height
         loaded = np.flatnonzero(np.max(stiffness, axis=1, initial=0.0) > NOTHING)
         k, C = stiffness[loaded], samples.compliance[loaded]
         coupled = np.eye(samples.per_element) + k[:, :, None] * (C[:, None, None] * samples.bending)
-        right = k[:, :, None] * samples.rows[loaded], (k * height * mismatch[loaded])[:, :, None]
+        right = k[:, :, None] * samples.rows[loaded], (stiffness * height * mismatch)[loaded][:, :, None]
         solved = np.asarray(np.linalg.solve(coupled, np.concatenate(right, axis=2)), dtype=np.float64)
         return cls(samples, loaded, solved[:, :, :4], solved[:, :, 4])
 
