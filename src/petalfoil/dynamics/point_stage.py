@@ -38,6 +38,10 @@ TANGENTS = 5
 CORRECTIONS = 10
 """Most corrections with one tangent."""
 
+MORE = 2
+"""Corrections that contract slowly and are still taken where they lead to the accuracy of a stage: a factorisation
+costs as much as six of them."""
+
 TOUCHING = 1e-4
 """Largest gap, and slope by the place in an element, at the points of a stage's state, in reference films."""
 
@@ -141,7 +145,7 @@ class PointStage:
                 left = size * min(1.0, contraction / max(1.0 - contraction, 0.1))
                 if min(left, told(tangent, equations)) <= options.accuracy and balanced(equations):
                     return equations, tangent
-                if number and contraction > options.slow:
+                if number and contraction > options.slow and left * contraction**MORE > options.accuracy:
                     break
                 last = size
             tangent = None
