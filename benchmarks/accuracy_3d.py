@@ -74,9 +74,10 @@ that this page is no test of them.
 """
 
 NOTES = {
-    "shell": """The row of ten petals is of stations adapted to a coarse solution. With them, and
-with those that are now the default, crowded at the petals' sides ([decision 018](../decisions/018-axial-stations.md)),
-ten petals find no contact lines on 64 × 24 cells.
+    "shell": """The row of ten petals is of stations adapted to a coarse solution, with contacts at nodes
+on 64 × 24 cells. On those that are now the default, crowded at the petals' sides
+([decision 018](../decisions/018-axial-stations.md)), ten petals have contact lines on 64 × 24 cells too
+([decision 023](../decisions/023-contact-lines.md)).
 
 Lift-off of the rig: 1255 rad/s on 64 × 24 cells, 1265 on 64 × 48, 1256 on 96 × 36 (as the row below is made, 26
 November 2026).

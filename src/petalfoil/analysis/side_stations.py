@@ -16,8 +16,8 @@ from petalfoil.case import Case
 
 LAYER = 1.4
 """Distance from the side at which the density is half of that there, over sqrt(R_m delta). On 64 × 24 cells the contact
-fraction of the rig at 8800 rpm is 0.0244, 0.0241, 0.0238, 0.0216 with 0.7, 1.4, 1.5, 2, on 128 × 48 it is 0.0240 (with
-2); with 1 contact lines are not found. Minimum film of eight petals at 200 um: 5.745, 5.765, 5.779 um with 1, 1.4, 2,
+fraction of the rig at 8800 rpm is 0.0244, 0.0241, 0.0241, 0.0238, 0.0216 with 0.7, 1, 1.4, 1.5, 2, on 128 × 48 it is
+0.0240 (with 2). Minimum film of eight petals at 200 um: 5.745, 5.765, 5.779 um with 1, 1.4, 2,
 for 5.805 um on 128 × 48 adapted stations."""
 
 POINTS = 33
