@@ -7,6 +7,9 @@ With errors `C h**p` and cells divided by `r`, three values give the order and t
 The bar is the grid convergence index (Roache 1994) of the finest value, `1.75 |f - f3|`, where `p` is credible: close
 to the order of the discretisation. Contacts begin at nodes, so figures may jump by a cell as grids are refined, and two
 differences may be small or large by accident. Then the bar is the largest that the differences allow.
+
+More grids than three tell scatter from error: the limit is then that of a line in `h**2` by least squares (Eça and
+Hoekstra 2014), whatever their ratios.
 """
 
 from __future__ import annotations
@@ -15,6 +18,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+
+import numpy as np
 
 DECLARED_ORDER = 2.0
 """Order of shell and film where they are smooth."""
@@ -31,6 +36,9 @@ SAFETY = 1.75
 
 SUSPICION = 3.0
 """Safety factor where the order is not credible, or not known (Roache 1994)."""
+
+FITTED = 1.25
+"""Safety factor of a bar from a fit whose values scatter less than they change from grid to grid (Eça and Hoekstra)."""
 
 AGREEMENT = 1e-8
 """Relative difference below which values are equal: residuals are solved to this."""
@@ -102,6 +110,50 @@ def richardson(
     if abs(order - DECLARED_ORDER) <= CREDIBLE:
         return Extrapolation(limit, order, max(SAFETY * abs(limit - finest), resolved), True)
     return Extrapolation(limit, order, max(SUSPICION * cautious(differences, ratio, used), resolved), False)
+
+
+def fitted(values: Sequence[float], cells: Sequence[int], resolution: float = 0.0) -> Extrapolation:
+    """Extrapolate values that scatter, from four or more grids: least squares of `f + C h**2` with weights `1 / h`.
+
+    The bar is that of Eça and Hoekstra (2014): `1.25 |f_n - f| + sigma + |f_n - fit_n|` with the finest value `f_n`
+    and the standard deviation `sigma` from the fit; where that is not below the mean change from grid to grid, three
+    times that with all terms in proportion.
+
+    Parameters
+    ----------
+    values : sequence of float
+        Values, coarsest grid first.
+    cells : sequence of int
+        Cells of each grid along one direction [1].
+    resolution : float
+        Difference below which values are equal whatever their size, in the unit of the values.
+
+    Returns
+    -------
+    Extrapolation
+        Limit, no order, error bar, and whether the values scatter less than they change.
+
+    Raises
+    ------
+    ValueError
+        Fewer than four values, or one that is not finite.
+    """
+    if len(values) < 4 or len(values) != len(cells) or not all(map(math.isfinite, values)):
+        raise ValueError(f"a fit needs four finite values at least, one for each grid, got {list(values)}")
+    f, h = np.array(values), cells[-1] / np.array(cells)
+    resolved = max(resolution, AGREEMENT * float(np.max(np.abs(f))))
+    if np.ptp(f) <= resolved:
+        return Extrapolation(float(f[-1]), math.nan, resolved, True)
+    weight = len(f) / (h * np.sum(1.0 / h))
+    line = np.stack([np.ones(len(f)), h**2], axis=1)
+    root = np.sqrt(weight)
+    limit, slope = np.linalg.lstsq(line * root[:, None], f * root)[0]
+    off = f - limit - slope * h**2
+    sigma = math.sqrt(float(np.sum(weight * off**2)) / (len(f) - 2))
+    scatter = sigma * (len(f) - 1) / float(np.ptp(f))
+    terms = (abs(limit - f[-1]), sigma, abs(off[-1]))
+    bar = FITTED * terms[0] + terms[1] + terms[2] if scatter < 1.0 else SUSPICION * scatter * sum(terms)
+    return Extrapolation(float(limit), math.nan, max(float(bar), resolved), scatter < 1.0)
 
 
 def observed_order(differences: Sequence[float], ratio: float) -> float:

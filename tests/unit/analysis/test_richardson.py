@@ -2,15 +2,18 @@
 
 import math
 
+import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from petalfoil.analysis.richardson import (
+    FITTED,
     LARGEST_ORDER,
     LEAST_ORDER,
     SAFETY,
     SUSPICION,
     cautious,
+    fitted,
     observed_order,
     richardson,
 )
@@ -138,3 +141,40 @@ def test_where_contacts_are_described_otherwise_no_order_is_believed() -> None:
     assert believed.error < abs(-15525.0 - values[-1]) < cautious.error
     assert (cautious.limit, cautious.trusted) == (values[-1], False)
     assert cautious.error == pytest.approx(values[1] - values[0])
+
+
+GRIDS = (48, 64, 96, 128)
+
+
+@pytest.mark.parametrize("cells", [GRIDS, (32, 40, 72, 80, 200)])
+@pytest.mark.parametrize(("limit", "slope"), [(3.0, 1.0), (-3.0, 0.1), (1e-6, 1e-4)])
+def test_a_fit_of_second_order_values_is_exact(cells: tuple[int, ...], limit: float, slope: float) -> None:
+    values = [limit + slope / n**2 for n in cells]
+    found = fitted(values, cells)
+    assert_allclose(found.limit, limit, rtol=1e-10)
+    assert_allclose(found.error, FITTED * abs(values[-1] - limit), rtol=1e-4)
+    assert found.trusted
+
+
+def test_bars_of_a_fit_hold_where_values_scatter() -> None:
+    """Normal scatter of a size up to that of the error: 95 % and more hold, and none without scatter is narrower."""
+    rng = np.random.default_rng(5)
+    held, widest = 0, FITTED * 1.0
+    for _ in range(400):
+        values = [10.0 + (128.0 / n) ** 2 + rng.normal(scale=rng.uniform(0.0, 1.0)) for n in GRIDS]
+        found = fitted(values, GRIDS)
+        held += abs(found.limit - 10.0) <= found.error
+        widest = max(widest, found.error)
+    assert 380 <= held < 400
+    assert widest > 3.0
+
+
+def test_a_fit_of_equal_values_is_that_value() -> None:
+    assert fitted([2.0, 2.0, 2.0, 2.0], GRIDS).limit == 2.0
+    assert fitted([2.0, 2.0, 2.0, 2.0 + 1e-9], GRIDS).error == pytest.approx(2e-8, rel=1e-6)
+
+
+@pytest.mark.parametrize("values", [[1.0, 2.0, 3.0], [1.0, 2.0, 3.0, math.nan]])
+def test_a_fit_needs_four_finite_values(values: list[float]) -> None:
+    with pytest.raises(ValueError, match="four finite values"):
+        fitted(values, GRIDS)
