@@ -80,6 +80,9 @@ LONG = {
 }
 """Pairs that take more than a second."""
 
+STAGES = 1e-6
+"""Largest residual of a motion: its stages end by the correction that is left, a hundredth of the tolerance (O2)."""
+
 PAIRS = [
     pytest.param(verb, wall, marks=pytest.mark.slow if (verb, wall) in LONG else ()) for verb in VERBS for wall in WALLS
 ]
@@ -97,7 +100,7 @@ def test_a_verb_answers_or_says_what_the_wall_lacks(verb: str, wall: str, bearin
     if verb != "check":
         assert np.all(result["converged"])
     if verb not in ("check", "liftoff"):  # a search of speeds has no state of its own
-        assert float(np.max(result["residual"])) <= 1e-8
+        assert float(np.max(result["residual"])) <= (STAGES if verb == "orbit" else 1e-8)
 
 
 @pytest.mark.parametrize("verb", ["solve", "check"])
