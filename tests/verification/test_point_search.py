@@ -7,12 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from petalfoil.analysis.operating_point import at_position
 from petalfoil.equilibrium.element_contacts import start_at
 from petalfoil.equilibrium.element_tangent import NoPointsError
 from petalfoil.equilibrium.point_contacts import with_points
 from petalfoil.equilibrium.point_prospects import SearchedSets, are_same, turned_points
 from petalfoil.equilibrium.run_context import running
 from petalfoil.physics.gap_curves import ContactPoints
+from tests.random_packs import random_case
 from tests.verification.random_answers import answer_of
 
 
@@ -25,6 +27,19 @@ def test_a_search_that_creeps_takes_a_whole_step(number: int, most: int) -> None
         found = with_points(whole, answer.problem, start_at(whole, answer))
     assert found.residual <= 1e-8
     assert run.film.factorizations <= most
+
+
+@pytest.mark.slow
+def test_a_search_that_creeps_to_its_end_begins_again() -> None:
+    """A pack on 128 cells whose first search took 23 factorisations or more than 48 by the order of a sum."""
+    pack = random_case(np.random.default_rng(1), **{"model.cells_per_pitch": 128})
+    with running() as run:
+        answer = at_position(pack).answer
+        whole, before = answer.problem.layout.elements, run.film.factorizations
+        assert whole is not None
+        found = with_points(whole, answer.problem, start_at(whole, answer))
+    assert found.residual <= 1e-8
+    assert run.film.factorizations - before <= 72
 
 
 @pytest.mark.slow
