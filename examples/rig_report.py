@@ -72,7 +72,7 @@ def lift_off(case: Case, experiment: Experiment, share: float = CONTACT_FRACTION
     """Lift-off speed under the load of an experiment, looked for from the measured one on [rpm]."""
     near = case.replace(**{"operation.speed": experiment.speed * RPM})
     with one_thread():
-        return crossings(near, experiment.load, share)[0] / RPM
+        return crossings(SpeedLine(near, (0.0, -experiment.load)), share)[0] / RPM
 
 
 # ------------------------------------------------------------------------------------------- tables

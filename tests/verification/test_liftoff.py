@@ -61,7 +61,7 @@ def test_from_below_and_from_above_the_same_crossings_are_found(lifted: Record) 
     """The case touches at its own speed, so that `lifted` ascended first; a faster one descends first."""
     faster = BEARING.replace(**{"operation.speed": 1.3 * number(lifted, "liftoff_speed")})
     assert share(BEARING.operation.speed, LOAD) > CONTACT_FRACTION >= share(faster.operation.speed, LOAD)
-    found = crossings(faster, LOAD, CONTACT_FRACTION)
+    found = crossings(SpeedLine(faster, (0.0, -LOAD)), CONTACT_FRACTION)
     wanted = [number(lifted, name) for name in ("liftoff_speed", "touchdown_speed")]
     assert_allclose(found, wanted, rtol=1e-5, atol=0.0)
 
@@ -83,7 +83,7 @@ def test_sensitivity_is_that_of_another_floor_and_share(lifted: Record) -> None:
     near = BEARING.replace(
         **{"operation.speed": up, "surface.contact_film_thickness": factor * BEARING.surface.contact_film_thickness}
     )
-    by_floor = math.log(crossings(near, LOAD, CONTACT_FRACTION)[0] / up) / math.log(factor)
+    by_floor = math.log(crossings(SpeedLine(near, (0.0, -LOAD)), CONTACT_FRACTION)[0] / up) / math.log(factor)
     assert_allclose(number(lifted, "liftoff_by_contact_film_thickness"), by_floor, rtol=0.0, atol=0.05)
     assert -0.2 < number(lifted, "liftoff_by_contact_fraction") < 0.0  # a smaller share is reached later, if little
 
