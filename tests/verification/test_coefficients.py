@@ -208,13 +208,13 @@ def by_differences(answer: Solution, nu: float, step: float = 1e-5) -> NDArray[n
 # ---------------------------------------------------------------------------------------------- cost, refusals
 
 
-def test_twenty_frequencies_cost_two_factorisations_more_than_one() -> None:
-    """A real one for the reduced model and two complex ones that check it."""
+def test_twenty_frequencies_cost_one_factorisation_more_than_one() -> None:
+    """A real one for the reduced model and a complex one that checks it, for the complex one of a single frequency."""
     bearing = case("paper_n8", **PETALS)
     few, many = (coefficients.record(bearing, np.linspace(0.0, 9e3, n).tolist(), load=(0.0, -20.0)) for n in (1, 20))
     counts = [int(run.scalars["probe_factorizations"]) for run in (few, many)]
-    assert counts[1] - counts[0] == 2
-    assert counts[1] <= 5
+    assert counts[1] - counts[0] == 1
+    assert counts[1] <= 4
 
 
 @pytest.mark.slow
