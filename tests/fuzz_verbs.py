@@ -236,13 +236,16 @@ def ran_as(which: tuple[int, str], seconds: float) -> Ran:
 
 @contextmanager
 def limited(seconds: float) -> Iterator[None]:
-    """End what runs within when it has had its processor time."""
+    """End what runs within when it has had its processor time.
+
+    A callback that Python calls by itself swallows what ends it, so that it is told again.
+    """
 
     def stop(*_: object) -> NoReturn:
         raise OutOfTime
 
     former = signal.signal(signal.SIGPROF, stop)
-    signal.setitimer(signal.ITIMER_PROF, seconds)
+    signal.setitimer(signal.ITIMER_PROF, seconds, 1.0)
     try:
         yield
     finally:
