@@ -170,9 +170,7 @@ def circumferential_flux(P: Array, H: Array, Lam: float, dphi: Array, Kn: float 
     value = poiseuille + couette + upwinding
     scale = np.abs(poiseuille) + couette + np.abs(upwinding) + ROUNDING * conductance * mean_P / dphi
     flux = Flux(value, scale, lambda: circumferential_derivatives(faces, x, Lam, dphi, Kn))
-
-    bound = DRAIN * (Lam * H0 + conductance / dphi) * P0
-    return limited(flux, supplied(faces, Lam, dphi, Kn)) if (value > bound).any() else flux
+    return limited(flux, supplied(faces, Lam, dphi, Kn))
 
 
 def circumferential_derivatives(faces: FilmFaces, x: Array, Lam: float, dphi: Array, Kn: float) -> FluxDerivatives:
@@ -206,7 +204,8 @@ def supplied(faces: FilmFaces, Lam: float, dphi: Array, Kn: float) -> Flux:
         by_H0 = Lam * P0 + by_cube * cube_H0 + by_slip * slip_H0
         return FluxDerivatives(rate + by_P, by_P, by_H0, by_cube * cube_H1 + by_slip * slip_H1)
 
-    return Flux(rate * P0, rate * P0, derivatives)
+    supply = rate * P0
+    return Flux(supply, supply, derivatives)
 
 
 def limited(flux: Flux, supply: Flux) -> Flux:
@@ -219,6 +218,8 @@ def limited(flux: Flux, supply: Flux) -> Flux:
     """
     bound = DRAIN * supply.value
     over = flux.value > bound
+    if not over.any():
+        return flux
     ratio = np.where(over, bound / np.where(over, flux.value, 1.0), 1.0)  # flux = bound (2 - bound / flux)
     value = np.where(over, bound * (2.0 - ratio), flux.value)
 
