@@ -162,18 +162,21 @@ def pushes_otherwise(known: Solution, found: Solution) -> bool:
 
 def by_small_steps(known: Solution, problem: CoupledProblem, count: int, farthest: float) -> Solution | None:
     """Follow the branch in `count` equal parts, none of them beyond `farthest`; None where it does not lead on so."""
-    start, current = known.problem, known
+    current = known
     for part in range(1, count + 1):
-        fraction = part / count
-        between = problem.at(
-            bearing_number=start.bearing_number + fraction * (problem.bearing_number - start.bearing_number),
-            displacement=start.displacement + fraction * (problem.displacement - start.displacement),
-        )
-        step = follow(current, between, WARM)
+        step = follow(current, on_the_way(known.problem, problem, part / count), WARM)
         if step is None or distance(current, step) > farthest:
             return None
         current = step
     return current
+
+
+def on_the_way(start: CoupledProblem, end: CoupledProblem, share: float) -> CoupledProblem:
+    """The problem `end` at a share of the way in speed and position from `start` [1]."""
+    return end.at(
+        bearing_number=start.bearing_number + share * (end.bearing_number - start.bearing_number),
+        displacement=start.displacement + share * (end.displacement - start.displacement),
+    )
 
 
 # ---------------------------------------------------------------------------------------------- from rest to speed

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.continuation import FAR_FOLLOWED
+from petalfoil.equilibrium.continuation import FAR_FOLLOWED, on_the_way
 from petalfoil.equilibrium.followed_points import NEAR
 from petalfoil.equilibrium.line_contacts import LineContacts, LineResiduals, NoLinesError, changed, correction
 from petalfoil.equilibrium.line_sets import settled
@@ -54,15 +54,10 @@ def in_parts(near: LineContacts, problem: CoupledProblem, load: Array | None, pa
     NoLinesError
         One of them failed.
     """
-    start, current = near.problem, near
-    for part in range(1, parts):
-        share = part / parts
-        between = problem.at(
-            bearing_number=start.bearing_number + share * (problem.bearing_number - start.bearing_number),
-            displacement=start.displacement + share * (problem.displacement - start.displacement),
-        )
+    current = near
+    for share in np.arange(1, parts) / parts:
         carried = None if load is None or near.load is None else near.load + share * (load - near.load)
-        current = stepped(current, between, carried)
+        current = stepped(current, on_the_way(near.problem, problem, share), carried)
     return stepped(current, problem, load)
 
 

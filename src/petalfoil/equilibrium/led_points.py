@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.continuation import WARM
+from petalfoil.equilibrium.continuation import WARM, on_the_way
 from petalfoil.equilibrium.element_contacts import clear_of_journal, placed
 from petalfoil.equilibrium.element_tangent import NoPointsError
 from petalfoil.equilibrium.followed_lines import followed_lines
@@ -48,9 +47,10 @@ def led_by_points(near: PointContacts, problem: CoupledProblem, load: Array | No
     """The same from contact points."""
     for parts in PARTS if load is not None else PARTS[:1]:
         try:
-            found = near
-            for between in on_the_way(near.equations.problem, problem, parts):
-                found = followed(found, placed(between, found, load), load)
+            found, start = near, near.equations.problem
+            for share in np.arange(1, parts) / parts:
+                found = followed(found, placed(on_the_way(start, problem, share), found, load), load)
+            found = followed(found, placed(problem, found, load), load)
             return sampled_solution(clear_of_journal(found), load)
         except NoPointsError as failure:
             current_run().note("followed", parts=parts, outcome=str(failure))
@@ -64,14 +64,6 @@ def led_by_lines(near: LineContacts, problem: CoupledProblem, load: Array | None
     except NoLinesError as failure:
         current_run().note("followed", outcome=str(failure))
         return None
-
-
-def on_the_way(start: CoupledProblem, end: CoupledProblem, parts: int) -> Iterator[CoupledProblem]:
-    """The problems at equal parts of the way in speed from `start` to `end`, which comes last."""
-    slow, fast = start.bearing_number, end.bearing_number
-    for part in range(1, parts):
-        yield end.at(bearing_number=slow + part / parts * (fast - slow))
-    yield end
 
 
 def with_nodal_contacts(known: Solution) -> Solution:
