@@ -6,7 +6,7 @@ against a damping of its own, and at last the path is followed through its folds
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -59,7 +59,12 @@ def by_slower_ways(problem: CoupledProblem) -> Solution | None:
     if not problem.layout.n_wall:
         return None
     damped, start = (lambda damping: DampedWall.of(problem, damping)), (lambda barrier: assembled(problem, barrier))
-    for point, path in slower_ways(problem, damped, start):
+    return first_answer(problem, slower_ways(problem, damped, start))
+
+
+def first_answer(problem: CoupledProblem, points: Iterable[tuple[PrimalDualPoint, str]]) -> Solution | None:
+    """The first solution that points close to one lead to, each with how it was reached; None if none does."""
+    for point, path in points:
         try:
             answer = finish(problem, point, path)
         except SingularMatrixError as failure:
@@ -104,8 +109,7 @@ def slower_ways(
         The assembled pack at a barrier.
     """
     run = current_run()
-    for rests in marches(damped, start):
-        yield rests, MARCHED
+    yield from marches(damped, start)
     for barrier, weight, steps in PATHS:
         end, ends, options = None, (barrier, PATH_END), PathOptions(weight=weight, steps=steps)
         try:
@@ -119,12 +123,12 @@ def slower_ways(
 
 def marches(
     damped: Callable[[float], ContactProblem], start: Callable[[float], PrimalDualPoint]
-) -> Iterator[PrimalDualPoint]:
-    """Where marches with a damped wall come to rest (P6), in the order of trial; arguments as in `slower_ways`."""
+) -> Iterator[tuple[PrimalDualPoint, str]]:
+    """Where marches with a damped wall come to rest (P6), in the order of trial; all as in `slower_ways`."""
     for damping, barrier in MARCHES:
         rests = marched_to_rest(damped(damping), start(barrier))
         if rests is not None:
-            yield rests
+            yield rests, MARCHED
 
 
 def marched_to_rest(damped: ContactProblem, start: PrimalDualPoint) -> PrimalDualPoint | None:

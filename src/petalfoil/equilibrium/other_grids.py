@@ -7,7 +7,7 @@ march with a damped wall, goes on from what they give. The answer is that of the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 
@@ -15,13 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
-from petalfoil.equilibrium.cold_start import BARRIERS, MARCHED, by_barriers, finish, marched_to_rest, marches
+from petalfoil.equilibrium.cold_start import BARRIERS, by_barriers, first_answer, marched_to_rest, marches
 from petalfoil.equilibrium.pack_at_rest import assembled
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 from petalfoil.solvers.problem import ContactProblem, PrimalDualPoint
-from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.damped import DampedWall
@@ -68,22 +67,9 @@ def by_other_grids(problem: CoupledProblem) -> Solution | None:
         if known is None:
             continue
         points = points_from(problem, lambda damping: DampedWall.of(problem, damping), carried(known, problem))
-        found = first_answer(problem, points, path_told(known))
+        found = first_answer(problem, ((point, path_told(known)) for point in points))
         if found is not None:
             return replace(found, shortest_step=None)
-    return None
-
-
-def first_answer(problem: CoupledProblem, points: Iterable[PrimalDualPoint], path: str) -> Solution | None:
-    """The first solution that points close to one lead to, reached by a `path`; None if none does."""
-    for point in points:
-        try:
-            found = finish(problem, point, path)
-        except SingularMatrixError as failure:
-            current_run().note("other grid", outcome=str(failure))
-            continue
-        if found is not None:
-            return found
     return None
 
 
@@ -115,7 +101,7 @@ def on_grid(other: CoupledProblem) -> Solution | None:
     found = by_barriers(other, BARRIERS)
     if found is not None:
         return found
-    return first_answer(other, marches(partial(DampedWall.of, other), partial(assembled, other)), MARCHED)
+    return first_answer(other, marches(partial(DampedWall.of, other), partial(assembled, other)))
 
 
 def points_from(
