@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.dynamics.point_path import same_contacts
-from petalfoil.dynamics.stage import TOLD, Stage
+from petalfoil.dynamics.stage import Stage, left_after, told
 from petalfoil.dynamics.time_state import TimeState
 from petalfoil.equilibrium.contact_sets import revised
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError, unbalanced
@@ -136,14 +136,14 @@ class PointStage:
                 size = self.size(change)
                 if not np.isfinite(size) or size > GROWING * last:
                     break
-                if number and before > 0.0:
-                    tangent = replace(tangent, response=max(tangent.response, size / before))
+                if number:
+                    tangent = tangent.seen(size, before)
                 equations = with_contacts(rubbing, stepped(rubbing, change, load, whole_step=True))
                 if not serves(tangent, equations):
                     break
                 contraction = size / last if number else options.slow
-                left = size * min(1.0, contraction / max(1.0 - contraction, 0.1))
-                if min(left, told(tangent, equations)) <= options.accuracy and balanced(equations):
+                left = left_after(size, contraction)
+                if min(left, asked_for(tangent, equations)) <= options.accuracy and balanced(equations):
                     return equations, tangent
                 if number and contraction > options.slow and left * contraction**MORE > options.accuracy:
                     break
@@ -215,14 +215,14 @@ def serves(tangent: ElementTangent, equations: PointStepEquations) -> bool:
     return alike and same_contacts(was.state, equations.state)
 
 
-def told(tangent: ElementTangent, equations: PointStepEquations) -> float:
+def asked_for(tangent: ElementTangent, equations: PointStepEquations) -> float:
     """Correction that what is left of the film's rows asks for, as far as the tangent has been seen to answer.
 
     With friction it is not told: slips are known to follow Coulomb's law by the next correction alone.
     """
     if isinstance(equations, RubbingStepEquations):
         return np.inf
-    return TOLD * tangent.response * equations.film_imbalance if tangent.response else np.inf
+    return told(tangent.response, equations.film_imbalance)
 
 
 def balanced(equations: PointStepEquations) -> bool:

@@ -76,6 +76,16 @@ TOLD = 2.0
 the tangent at hand: a stage whose tangent is known by others ends after one correction."""
 
 
+def told(response: float, residual: float) -> float:
+    """Correction that a residual asks for, as its tangent has been seen to answer; no limit where it has not."""
+    return TOLD * response * residual if response else np.inf
+
+
+def left_after(size: float, contraction: float) -> float:
+    """Sum of the corrections after one of a `size`, as long as they contract on so; at most its own size."""
+    return size * min(1.0, contraction / max(1.0 - contraction, 0.1))
+
+
 @dataclass(frozen=True)
 class StageOptions:
     """Numbers of a stage."""
@@ -180,9 +190,9 @@ class Stage(ContactEquations):
         if step.after is None:
             return StepVerdict.FAIL
         contraction = step.size / step.last_size if step.number else self.options.slow
-        error = step.size * min(1.0, contraction / max(1.0 - contraction, 0.1))
-        if step.response and not sliding:
-            error = min(error, TOLD * step.response * step.after.residual)
+        error = left_after(step.size, contraction)
+        if not sliding:
+            error = min(error, told(step.response, step.after.residual))
         if step.length < 1.0:
             return StepVerdict.RENEW
         if error <= self.options.accuracy:

@@ -22,6 +22,7 @@ from petalfoil.equilibrium.under_load import FORCE_TOLERANCE
 from petalfoil.solvers.near_factor import Inverse
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 from petalfoil.solvers.sparse_lu import LinearSolver, SingularMatrixError
+from petalfoil.solvers.tangent import SeenTangent
 from petalfoil.system.loaded import load_scale
 
 Array = NDArray[np.float64]
@@ -49,8 +50,8 @@ def scaled_force(equations: TangentEquations, load: Array | None) -> Array:
 
 
 @dataclass(frozen=True)
-class ElementTangent:
-    """The tangent at one state, factorised.
+class ElementTangent(SeenTangent):
+    """The tangent at one state, factorised; residuals that it is seen to answer are those of the film's rows.
 
     Attributes
     ----------
@@ -64,8 +65,6 @@ class ElementTangent:
         `R`.
     gradient : (n_position, n_position) array
         Force by the journal's position, unknowns following.
-    response : float
-        Largest correction over what was left of the film's rows, seen after a correction with it; 0 before any is.
     """
 
     equations: TangentEquations
@@ -73,7 +72,6 @@ class ElementTangent:
     units: Array
     rows: Array
     gradient: Array
-    response: float = 0.0
 
     @classmethod
     def at(cls, equations: TangentEquations, load: Array | None, solver: LinearSolver) -> ElementTangent:

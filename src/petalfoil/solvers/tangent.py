@@ -7,7 +7,7 @@ follows a contact set that changes by a few gaps without a new factorisation (O4
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Self
 
@@ -140,8 +140,25 @@ class Exchange:
         return change + self.changes @ amounts, reactions, amounts[len(self.opened) :]
 
 
+@dataclass(frozen=True, kw_only=True)
+class SeenTangent:
+    """A tangent that serves many steps, and what it has been seen to answer.
+
+    Attributes
+    ----------
+    response : float
+        Largest correction over the residual that was left for it, seen after a correction with it; 0 before any is.
+    """
+
+    response: float = 0.0
+
+    def seen(self, correction: float, residual: float) -> Self:
+        """The same after a correction of this size has answered what another one left."""
+        return replace(self, response=max(self.response, correction / residual)) if residual > 0.0 else self
+
+
 @dataclass(frozen=True)
-class BorderedTangent:
+class BorderedTangent(SeenTangent):
     """A tangent with its bordered unknowns, on the contacts of its factor or on a few others.
 
     Attributes
@@ -160,8 +177,6 @@ class BorderedTangent:
         Change of the unknowns by a unit of each bordered unknown.
     gradient : (d, d) array
         Change of the rows `R x + A^T lam` by them.
-    response : float
-        Largest correction over the residual that was left for it, seen after a correction with it; 0 before any is.
     """
 
     tangent: Tangent
@@ -171,7 +186,6 @@ class BorderedTangent:
     exchange: Exchange | None
     units: Values
     gradient: Values
-    response: float = field(default=0.0, kw_only=True)
 
     @classmethod
     def at(cls, tangent: Tangent, border: Border, linearized: Linearized) -> BorderedTangent:
@@ -214,10 +228,6 @@ class BorderedTangent:
             change, reactions, lam[added] = self.exchange.amend(change, reactions, moved)
         lam[held] = reactions
         return change, lam
-
-    def seen(self, correction: float, residual: float) -> Self:
-        """The same after a correction of this size has answered what another one left."""
-        return replace(self, response=max(self.response, correction / residual)) if residual > 0.0 else self
 
     def adjoint(self, by_change: Array, by_reactions: Array) -> tuple[Array, Array]:
         """Derivatives by `residual` (n,) and `gap_change` (m,) of what has these by the outcome of `respond`.
