@@ -39,22 +39,27 @@ class FluxDerivatives(NamedTuple):
 class Flux:
     """Flux through faces, positive from node 0 to node 1.
 
-    A residual asks for fluxes more often than a tangent for their derivatives, which cost twice as much: these are
-    computed when they are asked for.
+    A residual asks for fluxes more often than a test of convergence for their scale, or a tangent for their
+    derivatives, which cost twice as much: these are computed when they are asked for.
 
     Attributes
     ----------
     value : array
         Flux through every face.
-    scale : array
-        Sum of the magnitudes of its terms, rounding included: the scale of a residual.
+    measure : callable
+        Gives its scale.
     derive : callable
         Gives its derivatives.
     """
 
     value: Array
-    scale: Array
+    measure: Callable[[], Array]
     derive: Callable[[], FluxDerivatives]
+
+    @cached_property
+    def scale(self) -> Array:
+        """Sum of the magnitudes of its terms, rounding included: the scale of a residual."""
+        return self.measure()
 
     @cached_property
     def derivatives(self) -> FluxDerivatives:
@@ -65,7 +70,7 @@ class Flux:
         """The flow through faces of a width."""
         return Flux(
             self.value * width,
-            self.scale * width,
+            lambda: self.scale * width,
             lambda: FluxDerivatives(*(part * width for part in self.derivatives)),
         )
 
@@ -82,8 +87,7 @@ def langevin(x: Array) -> Array:
     """`L(x) = coth x - 1/x` for `x >= 0`, without cancellation near zero."""
     small = x < 0.03
     y = np.where(small, 1.0, x)
-    decay = np.exp(-2.0 * y)
-    value = (1.0 + decay) / (1.0 - decay) - 1.0 / y
+    value = -2.0 / np.expm1(-2.0 * y) - 1.0 - 1.0 / y
     if not small.any():
         return np.asarray(value)
     square = np.minimum(x, 1.0) ** 2  # the series is used for x < 0.03 only; this keeps it finite elsewhere
@@ -160,17 +164,20 @@ def circumferential_flux(P: Array, H: Array, Lam: float, dphi: Array, Kn: float 
     """
     faces = FilmFaces.between((P[:, :-1], P[:, 1:]), (H[:, :-1], H[:, 1:]), Kn)
     P0, P1, H0, H1, cube, mean_P, slip = faces
-    conductance = cube * (mean_P + slip)
-    x = 0.25 * Lam * (H0 + H1) * dphi / conductance  # half the cell Peclet number
-    fit, jump = langevin(x), P1 * H1 - P0 * H0
+    conductance = cube * (mean_P + slip) / dphi
+    x = (0.25 * Lam) * (H0 + H1) / conductance  # half the cell Peclet number
+    behind, ahead, half = P0 * H0, P1 * H1, 0.5 * Lam
 
-    poiseuille = -conductance * (P1 - P0) / dphi
-    couette = 0.5 * Lam * (P0 * H0 + P1 * H1)
-    upwinding = -0.5 * Lam * fit * jump
+    poiseuille = conductance * (P0 - P1)
+    couette = half * (behind + ahead)
+    upwinding = half * langevin(x) * (behind - ahead)
     value = poiseuille + couette + upwinding
-    scale = np.abs(poiseuille) + couette + np.abs(upwinding) + ROUNDING * conductance * mean_P / dphi
-    flux = Flux(value, scale, lambda: circumferential_derivatives(faces, x, Lam, dphi, Kn))
-    return limited(flux, supplied(faces, Lam, dphi, Kn))
+    flux = Flux(
+        value,
+        lambda: np.abs(poiseuille) + couette + np.abs(upwinding) + ROUNDING * conductance * mean_P,
+        lambda: circumferential_derivatives(faces, x, Lam, dphi, Kn),
+    )
+    return limited(flux, supplied(faces, conductance, Lam, dphi, Kn))
 
 
 def circumferential_derivatives(faces: FilmFaces, x: Array, Lam: float, dphi: Array, Kn: float) -> FluxDerivatives:
@@ -192,10 +199,13 @@ def circumferential_derivatives(faces: FilmFaces, x: Array, Lam: float, dphi: Ar
     return FluxDerivatives(by_P0, by_P1, by_H0, by_H1)
 
 
-def supplied(faces: FilmFaces, Lam: float, dphi: Array, Kn: float) -> Flux:
-    """What the upstream pressure alone drives through a face, `(Lam H0 + mean(H^3 (P + slip)) / dphi) P0`."""
+def supplied(faces: FilmFaces, conductance: Array, Lam: float, dphi: Array, Kn: float) -> Flux:
+    """What the upstream pressure alone drives through a face, `(Lam H0 + mean(H^3 (P + slip)) / dphi) P0`.
+
+    `conductance` is the second term in brackets.
+    """
     P0, _, H0, _, cube, mean_P, slip = faces
-    rate = Lam * H0 + cube * (mean_P + slip) / dphi
+    rate = Lam * H0 + conductance
 
     def derivatives() -> FluxDerivatives:
         cube_H0, cube_H1, slip_H0, slip_H1 = faces.by_films(Kn)
@@ -205,7 +215,7 @@ def supplied(faces: FilmFaces, Lam: float, dphi: Array, Kn: float) -> Flux:
         return FluxDerivatives(rate + by_P, by_P, by_H0, by_cube * cube_H1 + by_slip * slip_H1)
 
     supply = rate * P0
-    return Flux(supply, supply, derivatives)
+    return Flux(supply, lambda: supply, derivatives)
 
 
 def limited(flux: Flux, supply: Flux) -> Flux:
@@ -228,7 +238,7 @@ def limited(flux: Flux, supply: Flux) -> Flux:
         pairs = zip(flux.derivatives, supply.derivatives, strict=True)
         return FluxDerivatives(*(by_flux * d + by_bound * b for d, b in pairs))
 
-    return Flux(value, flux.scale, derivatives)
+    return Flux(value, flux.measure, derivatives)
 
 
 DRAIN = 10.0
@@ -244,11 +254,10 @@ def axial_flux(P: Array, H: Array, dZ: Array, Kn: float = 0.0) -> Flux:
     """
     if P.shape[-1] == 1:  # a film without ends
         none = P[..., :-1]
-        return Flux(none, none, lambda: FluxDerivatives(none, none, none, none))
+        return Flux(none, lambda: none, lambda: FluxDerivatives(none, none, none, none))
     faces = FilmFaces.between((P[..., :-1], P[..., 1:]), (H[..., :-1], H[..., 1:]), Kn)
     P0, P1, _, _, cube, mean_P, slip = faces
     poiseuille = -cube * (mean_P + slip) * (P1 - P0) / dZ
-    scale = np.abs(poiseuille) + ROUNDING * cube * (mean_P**2 + slip * mean_P) / dZ
 
     def derivatives() -> FluxDerivatives:
         cube_H0, cube_H1, slip_H0, slip_H1 = faces.by_films(Kn)
@@ -260,4 +269,6 @@ def axial_flux(P: Array, H: Array, dZ: Array, Kn: float = 0.0) -> Flux:
             -cube_H1 * drop - slip_H1 * slipped,
         )
 
-    return Flux(poiseuille, scale, derivatives)
+    return Flux(
+        poiseuille, lambda: np.abs(poiseuille) + ROUNDING * cube * (mean_P**2 + slip * mean_P) / dZ, derivatives
+    )
