@@ -131,7 +131,7 @@ class PointStage:
                 tangent, made = self.tangent_at(equations, load), made + 1
             last = np.inf
             for number in range(CORRECTIONS):
-                before = equations.film_imbalance
+                before = equations.film_imbalance if number else 0.0
                 change, rubbing = self.correction(equations, tangent, load)
                 size = self.size(change)
                 if not np.isfinite(size) or size > GROWING * last:

@@ -92,7 +92,8 @@ def packed(contacts: Iterable[TravellingContact]) -> ContactPoints:
 
 def merged(points: ContactPoints) -> ContactPoints:
     """Travelling points that meet become one, at the centroid of their reactions."""
-    if not np.any((np.diff(points.curve) == 0) & (np.diff(points.position) < MEETING)):
+    curve, position = points.curve, points.position
+    if not np.any((curve[1:] == curve[:-1]) & (position[1:] - position[:-1] < MEETING)):
         return points
     kept: list[TravellingContact] = []
     for contact in listed(points):

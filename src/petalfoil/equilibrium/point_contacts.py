@@ -8,6 +8,7 @@ a contact, and Newton's method goes on.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple, TypeVar
 
@@ -20,7 +21,7 @@ from petalfoil.equilibrium.point_prospects import SearchedSets, check_prospects
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import AT_POINTS
 from petalfoil.physics.gap_curves import ContactPoints, sampled
-from petalfoil.solvers.problem import POSITIVE_FRACTION, RESIDUAL_TOLERANCE, fraction_to_boundary
+from petalfoil.solvers.problem import POSITIVE_FRACTION, RESIDUAL_TOLERANCE
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.point_equations import PointEquations, PointState
 from petalfoil.system.point_layout import PointLayout
@@ -285,16 +286,12 @@ def admitted(equations: PointEquations, change: tuple[Array, Array], farthest: f
         The film has closed.
     """
     refuse_closed(equations)
-    (dX, move), whole, state = change, equations.whole, equations.state
-    dw, dP = dX[: whole.n_wall], dX[whole.n_wall : whole.n_wall + whole.n_film]
-    closing = whole.film_by_w @ dw + whole.film_by_e @ move
-    return min(
-        1.0,
-        POSITIVE_FRACTION * fraction_to_boundary(state.P, dP),
-        fraction_to_boundary(MOST_GROWTH * state.P, -dP),
-        POSITIVE_FRACTION * fraction_to_boundary(equations.film_thickness.ravel(), closing),
-        farthest / max(float(np.linalg.norm(move)), farthest),
-    )
+    (dX, move), whole = change, equations.whole
+    growth = dX[whole.n_wall : whole.n_wall + whole.n_film] / equations.state.P
+    opening = (whole.film_by_w @ dX[: whole.n_wall] + whole.film_by_e @ move) / equations.film_thickness.ravel()
+    falls = max(-float(np.min(growth, initial=0.0)), -float(np.min(opening)))
+    most = max(1.0, falls / POSITIVE_FRACTION, float(np.max(growth, initial=0.0)) / MOST_GROWTH)
+    return min(1.0 / most, farthest / max(math.hypot(*move), farthest))
 
 
 def changed(equations: PointEquations, change: Array, farthest: float = TRUST) -> PointState:

@@ -28,12 +28,23 @@ def differentiated(coefficients: Array) -> Array:
 DERIVATIVES = (COEFFICIENTS, differentiated(COEFFICIENTS), differentiated(differentiated(COEFFICIENTS)))
 """The same in `H_k` and its first two derivatives."""
 
+BOTH = np.concatenate([COEFFICIENTS, np.pad(DERIVATIVES[1], ((0, 0), (0, 1)))]).T
+"""Columns hold the powers of `t` in `H_k`, then those in their first derivatives."""
+
 
 def basis(t: Array, derivative: int = 0) -> Array:
     """`H_0 ... H_3` at places `t` (k,) of an element, or a derivative of them by `t`; (k, 4)."""
     coefficients = DERIVATIVES[derivative]
-    powers = np.vander(t, coefficients.shape[1], increasing=True)
-    return np.asarray(powers @ coefficients.T)
+    return np.asarray(powers(t)[:, : coefficients.shape[1]] @ coefficients.T)
+
+
+def powers(t: Array) -> Array:
+    """Powers of places `t` (k,) up to the third, (k, 4)."""
+    out = np.ones((len(t), 4))
+    out[:, 1] = t
+    np.multiply(t, t, out=out[:, 2])
+    np.multiply(out[:, 2], t, out=out[:, 3])
+    return out
 
 
 def rows(element: Index, t: Array, length: Array, derivative: int = 0) -> sp.csr_array:
@@ -51,6 +62,13 @@ def entries(element: Index, t: Array, length: Array, derivative: int = 0) -> tup
     """Columns and values of `rows`, (k, 4) each."""
     weights = basis(t, derivative)
     weights[:, 1::2] *= length[element][:, None]
+    return 2 * element[:, None] + np.arange(4), weights
+
+
+def entries_with_slopes(element: Index, t: Array, length: Array) -> tuple[Index, Array]:
+    """Columns (k, 4) of `rows`, and its values of the curve and of its slope by `t`, (k, 2, 4)."""
+    weights = (powers(t) @ BOTH).reshape(-1, 2, 4)
+    weights[:, :, 1::2] *= length[element][:, None, None]
     return 2 * element[:, None] + np.arange(4), weights
 
 

@@ -27,6 +27,7 @@ from petalfoil.mesh import hermite
 from petalfoil.physics.petal_elements import (
     clamped_beam,
     clamped_beam_bend,
+    clamped_beam_own,
     clamped_beam_slope,
     clamped_beam_twist,
 )
@@ -230,17 +231,29 @@ class PointGaps:
     @cached_property
     def value(self) -> Array:
         """`p`, (j,)."""
-        return self._smooth(0) + self.bending
+        return np.asarray(self._cubic[0] + self._bending[0])
 
-    @cached_property
+    @property
     def bending(self) -> Array:
         """What reactions bend their own elements by at the points, `sum_d C b lam_d`, (j,)."""
-        return self._at_points(self._bent(clamped_beam) * self._load)
+        return self._bending[0]
 
     @cached_property
     def slope(self) -> Array:
         """The derivative of `p` by the place in the element, (j,)."""
-        return self._smooth(1) + self._at_points(self._bent(clamped_beam_slope) * self._load)
+        return np.asarray(self._cubic[1] + self._bending[1])
+
+    @cached_property
+    def _bending(self) -> tuple[Array, Array]:
+        """`sum_d C b lam_d` at the points, and its derivative by the place, (j,) each."""
+        if len(self._pairs[0]) > len(self.points.reaction):
+            parts = (self._bent(part) * self._load for part in (clamped_beam, clamped_beam_slope))
+            value, slope = map(self._at_points, parts)
+            return value, slope
+        element, t = self._place  # each alone on its element
+        turned = self.curves.compliance[element] * self.points.reaction
+        value, slope = clamped_beam_own(t)
+        return turned * value, turned * slope
 
     @cached_property
     def bend(self) -> Triplets:
@@ -263,7 +276,7 @@ class PointGaps:
         own, others, slope = at == load, self._others, self._bent(clamped_beam_slope)
         by_place = self.curves.compliance[element][at] * clamped_beam_slope(t[load], t[at]) * others
         twice = others + np.where(own, 2.0 * self._load, 0.0)
-        by_place[own] = (self._smooth(1) + self._at_points(slope * twice))[at[own]]
+        by_place[own] = (self._cubic[1] + self._at_points(slope * twice))[at[own]]
         return self._matrix(by_place)
 
     @cached_property
@@ -277,7 +290,7 @@ class PointGaps:
         turn = self.curves.compliance[element] * self.points.reaction * (u * (1.0 - 2.0 * t) ** 2 - u**2)
         by_place = self._bent(clamped_beam_twist) * others
         bend = self._at_points(self._bent(clamped_beam_bend) * others)
-        by_place[own] = (self._smooth(2) + bend + turn)[at[own]]
+        by_place[own] = (self._curvature + bend + turn)[at[own]]
         return self._matrix(by_place)
 
     @cached_property
@@ -313,20 +326,27 @@ class PointGaps:
         return compliance * part(at, load)
 
     @cached_property
-    def _values(self) -> tuple[Index, Array]:
-        """Columns and weights of the nodal gaps in the gap at each point."""
-        return hermite.entries(*self._place, self.curves.angle)
+    def _weights(self) -> tuple[Index, Array]:
+        """Columns (j, 4) of the nodal gaps at each point, and their weights in the gap and its slope, (j, 2, 4)."""
+        return hermite.entries_with_slopes(*self._place, self.curves.angle)
 
     @cached_property
     def nodal_loads(self) -> Array:
         """Reactions as loads on the nodal (value, slope) of the gaps, (2 n_node,)."""
-        columns, weights = self._values
-        return add_up(columns.ravel(), (weights * self.points.reaction[:, None]).ravel(), len(self.curves.rest))
+        columns, weights = self._weights
+        loads = weights[:, 0] * self.points.reaction[:, None]
+        return add_up(columns.ravel(), loads.ravel(), len(self.curves.rest))
 
-    def _smooth(self, derivative: int) -> Array:
-        """The cubic of (K10) at the points, or a derivative by the place, (j,)."""
-        of_values = derivative == 0
-        columns, weights = self._values if of_values else hermite.entries(*self._place, self.curves.angle, derivative)
+    @cached_property
+    def _cubic(self) -> Array:
+        """The cubic of (K10) at the points, and its derivative by the place, (2, j)."""
+        columns, weights = self._weights
+        return np.asarray(np.einsum("kdi,ki->dk", weights, self.nodal[columns]))
+
+    @property
+    def _curvature(self) -> Array:
+        """The second derivative of the cubic of (K10) by the place at the points, (j,)."""
+        columns, weights = hermite.entries(*self._place, self.curves.angle, 2)
         return np.asarray(np.einsum("ki,ki->k", weights, self.nodal[columns]))
 
     def _at_points(self, part: Array) -> Array:

@@ -105,6 +105,13 @@ def clamped_beam(s: Array, t: Array) -> Array:
     return np.asarray(a**2 * (1.0 - c) ** 2 * (3.0 * c - a - 2.0 * a * c) / 6.0)
 
 
+def clamped_beam_own(t: Array) -> tuple[Array, Array]:
+    """`b(t, t)`, and the derivative of `b(s, t)` by the place `s` at the load, `s = t`; [1]."""
+    u = t * (1.0 - t)
+    square = u * u
+    return square * u / 3.0, square * (0.5 - t)
+
+
 def clamped_beam_slope(s: Array, t: Array) -> Array:
     """Derivative of `b(s, t)` by the place `s` [1]."""
     a, c = np.minimum(s, t), np.maximum(s, t)

@@ -15,6 +15,7 @@ from petalfoil.physics.petal_elements import (
     PetalElements,
     clamped_beam,
     clamped_beam_bend,
+    clamped_beam_own,
     clamped_beam_slope,
     clamped_beam_twist,
 )
@@ -80,6 +81,17 @@ def test_a_clamped_beam_is_symmetric_and_bends_under_its_own_load() -> None:
     s, t = np.array([0.2, 0.5, 0.8]), np.array([0.4, 0.5, 0.1])
     assert_allclose(clamped_beam(s, t), clamped_beam(t, s), rtol=1e-14)
     assert_allclose(clamped_beam(t, t), (t * (1.0 - t)) ** 3 / 3.0, rtol=1e-14)
+    assert_allclose(clamped_beam_own(t), (clamped_beam(t, t), clamped_beam_slope(t, t)), rtol=1e-14, atol=1e-18)
+
+
+def test_values_and_slopes_of_an_element_at_once() -> None:
+    """The same weights as those of curve and slope one by one."""
+    element, t, length = np.array([2, 0, 1]), np.array([0.3, 0.0, 1.0]), np.array([0.5, 0.7, 0.2])
+    columns, weights = hermite.entries_with_slopes(element, t, length)
+    for k in range(2):
+        own, alone = hermite.entries(element, t, length, k)
+        assert_allclose(columns, own, rtol=0.0)
+        assert_allclose(weights[:, k], alone, rtol=1e-14, atol=1e-15)
 
 
 @pytest.mark.parametrize("place", [0.13, 0.5, 0.77])
