@@ -96,6 +96,17 @@ def test_stiffness_and_damping_with_contact_lines(theory: str, load: float | Non
 
 
 @pytest.mark.slow
+def test_stiffness_and_damping_of_petals_that_stick_on_contact_lines() -> None:
+    changes = {**LINES, "petals.theory": "shell", "surface.petal_friction": 0.3}
+    of = loaded(case("paper_n8_spatial", **changes), 20.0)
+    found = derivatives(of, lambda _case, _found: coefficient_results(None))
+    assert found.solution.contact_model == ON_LINES
+    assert_solved_again(found, ("petals.thickness", "operation.speed"))
+    ours = petalfoil.sensitivity(of, "petals.thickness", ask="coefficients", of="stiffness_yy")
+    assert_allclose(ours["derivative"].item(), found.along(found.variation("petals.thickness")).above["stiffness_yy"])
+
+
+@pytest.mark.slow
 def test_stiffness_and_damping_with_contact_lines_follow_a_change_of_a_thousandth() -> None:
     """The whole way, whatever the set of contacts: `sensitivity` beside `coefficients` of neighbours."""
     of = loaded(case("paper_n8_spatial", **{**LINES, "petals.theory": "shell"}), 20.0)

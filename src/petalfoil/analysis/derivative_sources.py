@@ -25,7 +25,7 @@ from petalfoil.analysis.liftoff_derivatives import speed_derivatives
 from petalfoil.analysis.load_ray import Limits
 from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.parameter_change import Changes
-from petalfoil.analysis.response_derivatives import coefficient_results, freely_sliding, stability_derivatives
+from petalfoil.analysis.response_derivatives import coefficient_results, stability_derivatives, with_lines_of_motion
 from petalfoil.analysis.sensitivity_table import ALL, Source
 from petalfoil.analysis.smooth_equilibrium import over_asperities
 from petalfoil.analysis.varied_case import VariedCase
@@ -178,7 +178,7 @@ def by_tangent(case: Case, asked: DerivativeRequest) -> Sequence[Derivatives | C
         return stability_derivatives(case, asked.mass, asked.quantities, as_points=asked.as_points)
     solution = operating_point(case, None).answer
     if asked.verb == "coefficients":
-        results, about = coefficient_results(asked.frequency), freely_sliding(case, solution)
+        results, about = coefficient_results(asked.frequency), with_lines_of_motion(case, solution)
         return [derivatives_of(case, about, results, as_points=asked.as_points)]
     return [of_equilibrium(case, solution, asked)]
 

@@ -13,12 +13,14 @@ from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.equilibrium.element_contacts import near_nodes
 from petalfoil.equilibrium.element_response import ElementMotion
 from petalfoil.equilibrium.led_points import with_nodal_contacts
+from petalfoil.equilibrium.line_contacts import LineContacts
 from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import HELD_AT_NODES, ElementEquilibrium, Motion
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
-from petalfoil.system.friction import friction_at_points, friction_of
+from petalfoil.physics.dry_friction import Friction
+from petalfoil.system.friction import friction_at_points, friction_of, friction_on_lines
 from petalfoil.system.point_layout import PointLayout
 
 Array = NDArray[np.float64]
@@ -45,7 +47,8 @@ def elastic(case: Case, answer: Solution) -> Motion:
 def elastic_and_sliding(case: Case, answer: Solution) -> tuple[Motion, SlidingContacts | None]:
     """Small motions about `answer`, petals with friction stick; and the contacts under load that would slide.
 
-    They are those of petals with continuous slopes where such an equilibrium is found, else of the nodes of `answer`.
+    They are those of petals with continuous slopes or of contact lines where such an equilibrium is found, else of the
+    nodes of `answer`.
 
     Raises
     ------
@@ -55,8 +58,11 @@ def elastic_and_sliding(case: Case, answer: Solution) -> tuple[Motion, SlidingCo
     found = None if answer.friction is not None else near_nodes(answer)
     if found is not None:
         return on_elements(case, found)
-    if answer.lines is not None and friction_of(case, answer.problem.layout) is None:
-        return answer.lines.motion, None
+    friction, lines = friction_of(case, answer.problem.layout), answer.lines
+    if lines is not None and friction is None:
+        return lines.motion, None
+    if isinstance(lines, LineContacts) and friction is not None and friction.exact:
+        return on_lines(friction, lines)
     answer = with_nodal_contacts(answer)
     sliding = sliding_at(case, answer)
     if answer.friction is not None and sliding is not None:  # a contact that sticks does not travel
@@ -70,6 +76,13 @@ def elastic_and_sliding(case: Case, answer: Solution) -> tuple[Motion, SlidingCo
             advice="lower the load, or ask `balance` what part of it solid contact carries",
         )
     return (motion if sliding is None else replace(motion, stuck=sliding.friction)), sliding
+
+
+def on_lines(friction: Friction, found: LineContacts) -> tuple[Motion, SlidingContacts]:
+    """Small motions about an equilibrium with contact lines, petals stick; and its contacts that would slide."""
+    reactions = np.concatenate([found.held_reaction, found.reaction])
+    sliding = SlidingContacts.at(friction_on_lines(friction, found.held, found.points), reactions)
+    return replace(found.motion, sticking=sliding.sticking(len(found.x)), stuck=sliding.friction), sliding
 
 
 def on_elements(case: Case, found: ElementEquilibrium) -> tuple[Motion, SlidingContacts | None]:

@@ -20,7 +20,7 @@ import numpy as np
 from petalfoil.analysis.crossing_derivatives import CrossingDerivatives, newton_to
 from petalfoil.analysis.derivatives import Results, ResultsOf
 from petalfoil.analysis.heated_derivatives import Derivatives, derivatives_of
-from petalfoil.analysis.impedance import elastic, impedance, sliding_at
+from petalfoil.analysis.impedance import elastic, impedance
 from petalfoil.analysis.mode_derivatives import mode_results
 from petalfoil.analysis.operating_point import at, operating_point
 from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
@@ -32,6 +32,7 @@ from petalfoil.dynamics.critical_mass import Whirl, eigenvalues
 from petalfoil.dynamics.reduced_impedance import factorised
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
+from petalfoil.system.friction import friction_of
 
 THRESHOLD = "threshold_speed"
 TO_THRESHOLD = "logarithm of the critical mass over that of the rotor"
@@ -59,12 +60,13 @@ def coefficient_results(frequency: float | None) -> ResultsOf:
     return results
 
 
-def freely_sliding(case: Case, answer: Solution) -> Solution:
+def with_lines_of_motion(case: Case, answer: Solution) -> Solution:
     """The equilibrium that small motions are about, see `impedance.elastic_and_sliding`.
 
-    Contact lines travel where petals slide freely, and stay at nodes where they stick.
+    Friction of petals that only turn acts in the cells between nodes, where contacts stay at nodes.
     """
-    return answer if sliding_at(case, answer) is None else replace(answer, lines=None)
+    friction = friction_of(case, answer.problem.layout)
+    return answer if friction is None or friction.exact else replace(answer, lines=None)
 
 
 @dataclass(frozen=True)
@@ -165,7 +167,7 @@ def stability_derivatives(
             "and of two in 2-D only",
             advice="leave rotor.span out, or compare two runs of `stability`",
         )
-    found = freely_sliding(case, operating_point(case, None).answer)
+    found = with_lines_of_motion(case, operating_point(case, None).answer)
     of_modes = {name for mode in MODES for name in mode}
     sources: list[Derivatives | CrossingDerivatives] = []
     if not set(quantities) <= of_modes:
@@ -193,7 +195,7 @@ def threshold_derivatives(case: Case, answer: Solution, mass: float | None, *, a
 
     def balance_at(omega: float) -> Derivatives:
         there = at(case, omega)
-        found = freely_sliding(there, operating_point(there, None).answer if line is None else line.at(omega))
+        found = with_lines_of_motion(there, operating_point(there, None).answer if line is None else line.at(omega))
         return derivatives_of(there, found, whirl_results(there, found, mass), as_points=as_points)
 
     found = None if math.isnan(speed) else newton_to(THRESHOLD, (TO_THRESHOLD, 0.0), speed, balance_at)

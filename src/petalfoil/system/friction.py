@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from petalfoil.case import Case, PetalTheory
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.physics.gap_curves import ContactPoints
+from petalfoil.physics.line_points import LinePoints
 from petalfoil.solvers.problem import Linearized, WithMoreForces
 from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.point_layout import PointLayout
@@ -228,3 +229,18 @@ def friction_at_points(friction: Friction, whole: PointLayout, points: ContactPo
         reaction_share=sp.csr_array(on_petals),
         compliance=compliance,
     )
+
+
+def friction_on_lines(friction: Friction, held: NDArray[np.bool_], points: LinePoints) -> Friction:
+    """The same friction at the nodes `held` (m,) and at points between nodes, a gap for each in this order (K15).
+
+    The slip between nodes is interpolated as the gap is; contacts on the journal have none.
+    """
+    every = sp.eye_array(len(held), format="csr")
+    at = sp.csr_array(sp.vstack([every[np.flatnonzero(held)], points.value]))
+    limits = friction.reaction_share[: friction.slip.shape[0] // friction.directions]  # a gap of its own for each
+    rows = sp.csr_array(at @ limits.T)
+    slip = sp.block_diag([rows] * friction.directions, format="csr") @ friction.slip
+    own = sp.eye_array(at.shape[0], format="csr")
+    share = sp.csr_array(sp.vstack([own] * friction.directions))
+    return replace(friction, slip=sp.csr_array(slip), reaction_share=share, stiffness=np.zeros(slip.shape[0]))
