@@ -89,6 +89,7 @@ What they share:
 `evaluation.py`        results of a solution, such as `min_film_thickness`, as typed parts
 `closest_gap.py`       where petals with continuous slopes are closest to the journal
 `extremes.py`          extremes between nodes
+`extremes_of_many.py`  the same of many fields at once
 `heat_results.py`      temperatures and where the heat goes
 `thermal_limit.py`     the speed above which no temperature is steady
 `adapted_stations.py`  stations along the shaft where a coarse solution bends most

@@ -49,28 +49,42 @@ class ClosestGap:
 
 def closest_gap(nodal_gaps: Array, whole: PointLayout) -> ClosestGap:
     """The least gap of all petals toward the journal, from the nodal (value, slope) of all gap curves (2 n_node,)."""
-    curves, count = whole.curves, whole.pack.mesh.count
-    per_curve = int(curves.elements[0])
-    element = (curves.first[:count, None] + np.arange(per_curve)).ravel()
-    angle = curves.angle[element]
-    pairs = nodal_gaps[2 * element[:, None] + np.arange(4)]
-    pairs[:, 1::2] *= angle[:, None]
+    element = facing_journal(whole)
+    gap, place = (one[0] for one in lowest_gaps(nodal_gaps[None], whole))
+    least = int(gap.argmin())
+    petal, within = divmod(least, int(whole.curves.elements[0]))
+    start = whole.pack.elements.phi[whole.pack.nodes[Facing.JOURNAL]][within]
+    phi = float(start + place[least] * whole.curves.angle[element[least]])
+    return ClosestGap(float(gap[least]), petal, phi, element[[least]], place[[least]])
+
+
+def facing_journal(whole: PointLayout) -> Index:
+    """Elements of the gaps toward the journal, petal by petal."""
+    curves = whole.curves
+    return np.asarray((curves.first[: whole.pack.mesh.count, None] + np.arange(int(curves.elements[0]))).ravel())
+
+
+def lowest_gaps(nodal_gaps: Array, whole: PointLayout) -> tuple[Array, Array]:
+    """Least gap on every element toward the journal, and its place in it, (k, element) each.
+
+    `nodal_gaps` (k, 2 n_node) are the nodal (value, slope) of all gap curves of `k` states.
+    """
+    element = facing_journal(whole)
+    pairs = nodal_gaps[:, 2 * element[:, None] + np.arange(4)]
+    pairs[..., 1::2] *= whole.curves.angle[element][:, None]
+    shape, pairs = pairs.shape[:2], pairs.reshape(-1, 4)
     place = lowest_place(pairs @ hermite.COEFFICIENTS)
     gap = np.einsum("ki,ki->k", hermite.basis(place), pairs)
-    least = int(gap.argmin())
-    petal, within = divmod(least, per_curve)
-    start = whole.pack.elements.phi[whole.pack.nodes[Facing.JOURNAL]][within]
-    phi = float(start + place[least] * angle[least])
-    return ClosestGap(float(gap[least]), petal, phi, element[[least]], place[[least]])
+    return gap.reshape(shape), place.reshape(shape)
 
 
 def lowest_place(cubic: Array) -> Array:
     """Places in [0, 1] of the least values of cubics with coefficients (k, 4) of rising powers, (k,)."""
-    _, slope, bend, third = cubic.T
+    value, slope, bend, third = cubic.T
     root = np.sqrt(np.maximum(bend**2 - 3.0 * slope * third, 0.0))
     with np.errstate(divide="ignore", invalid="ignore"):  # a straight line has no lowest place inside
         inside = np.where(bend > 0.0, -slope / (bend + root), (root - bend) / (3.0 * third))
     inside = np.clip(np.nan_to_num(inside, nan=0.0, posinf=0.0, neginf=0.0), 0.0, 1.0)
     places = np.stack([np.zeros_like(inside), inside, np.ones_like(inside)])
-    values = np.sum(cubic.T[:, None] * places ** np.arange(4)[:, None, None], axis=0)
+    values = ((third * places + bend) * places + slope) * places + value
     return np.asarray(np.take_along_axis(places, values.argmin(axis=0)[None], axis=0)[0])

@@ -129,6 +129,11 @@ class NodalProfile:
         return np.asarray((self.nodes[self.window] - self.nodes[self.at]) / self.cell)
 
     @property
+    def coefficients(self) -> Array:
+        """Coefficients of the polynomial through values at the window, in cells, (k, k)."""
+        return _interpolating(*self.local.tolist())
+
+    @property
     def reach(self) -> tuple[float, float]:
         """Coordinates of both neighbours, in cells; 0 at an end."""
         if not self.inside:
@@ -149,7 +154,7 @@ class NodalProfile:
         """Weights of the nodes of the window in the polynomial at a `place`."""
         local = (place - float(self.nodes[self.at])) / self.cell
         powers = local ** np.arange(len(self.local))
-        return np.asarray(powers @ _interpolating(*self.local.tolist()))
+        return np.asarray(powers @ self.coefficients)
 
     def parabola_weights(self, place: float) -> Array:
         """Weights of all nodes in the parabola through the node and its neighbours at a `place`."""
@@ -203,7 +208,7 @@ def _quartic(rise: Array, lines: tuple[NodalProfile, NodalProfile]) -> tuple[flo
 def _stencil(nodes: bytes, at: int) -> tuple[tuple[float, float], Array]:
     """Reach and polynomial about a node of `nodes`; a motion asks at the same nodes every step."""
     line = NodalProfile.of(np.frombuffer(nodes), np.frombuffer(nodes), at)
-    return line.reach, _interpolating(*line.local.tolist())
+    return line.reach, line.coefficients
 
 
 def _interpolating(*places: float) -> Array:

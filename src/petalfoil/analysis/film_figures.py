@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Self
@@ -9,16 +10,15 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.analysis.closest_gap import closest_gap
+from petalfoil.analysis.closest_gap import lowest_gaps
 from petalfoil.analysis.evaluation import closed_film, whole_film
-from petalfoil.analysis.extremes import highest, lowest
+from petalfoil.analysis.extremes_of_many import highest_of_each, lowest_of_each
 from petalfoil.dynamics.time_state import Instant
-from petalfoil.physics.forces import node_area, viscous_torque
+from petalfoil.physics.forces import node_area, viscous_torques
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.on_shaft import ShaftStep
 from petalfoil.system.point_equations import PointEquations
 from petalfoil.system.point_friction import stretching_energy
-from petalfoil.system.point_layout import PointLayout
 from petalfoil.system.time_step import StepProblem
 from petalfoil.system.unknowns import DEFLECTION
 
@@ -33,40 +33,68 @@ class BearingState:
     ----------
     problem : StepProblem
         Speed and position.
-    x, lam : (n,), (m,) array
-        Unknowns and reactions, those at the nodes.
+    found : pair of arrays, or Instant
+        Unknowns and reactions at the nodes, (n,) and (m,), or the instant that gives them when they are asked for.
     points : PointEquations or None
-        The same with contact points, of which unknowns and reactions are samples; None where contacts are at nodes.
+        The state with contact points, of which what is at the nodes is sampled; None where contacts are at nodes.
     stretching : float
         Energy of petals that friction at contact points stretches [1].
     """
 
     problem: StepProblem
-    x: Array
-    lam: Array
+    found: tuple[Array, Array] | Instant
     points: PointEquations | None = None
     stretching: float = 0.0
 
     @classmethod
-    def each_of(cls, problem: StepProblem | ShaftStep, instant: Instant, whole: PointLayout | None) -> list[Self]:
+    def each_of(cls, problem: StepProblem | ShaftStep, instant: Instant) -> list[Self]:
         """Every bearing of a `problem` at the speed and position of an instant."""
-        if instant.points is None or whole is None or not isinstance(problem, StepProblem):
-            return [cls(*part) for part in problem.each(instant.x, instant.lam)]
-        pulls, equations = instant.friction, PointEquations(whole, problem, instant.points)
-        stretching = 0.0 if pulls is None else stretching_energy(whole, instant.points.points, pulls.force)
-        return [cls(problem, instant.x, instant.lam, equations, stretching)]
+        equations, pulls = instant.equations, instant.friction
+        if equations is None or not isinstance(problem, StepProblem):
+            return [cls(part, (x, lam)) for part, x, lam in problem.each(instant.x, instant.lam)]
+        points = equations.state.points
+        stretching = 0.0 if pulls is None else stretching_energy(equations.whole, points, pulls.force)
+        return [cls(problem, instant, equations, stretching)]
 
-    @cached_property
+    @property
+    def x(self) -> Array:
+        """Unknowns at the nodes, (n,) [1]."""
+        return self.found.x if isinstance(self.found, Instant) else self.found[0]
+
+    @property
+    def lam(self) -> Array:
+        """Reactions at the nodes, (m,) [1]."""
+        return self.found.lam if isinstance(self.found, Instant) else self.found[1]
+
+    @property
+    def unknown_pressures(self) -> Array:
+        """Pressure unknowns, (n_film,) [1]."""
+        return self.x[self.problem.positive] if self.points is None else self.points.pressures
+
+    @property
     def pressure(self) -> Array:
         """At all film nodes [1]."""
-        if self.points is not None:
-            return np.asarray(self.problem.layout.balance.nodal_pressure(self.points.state.P))
-        return self.problem.pressure(self.x)
+        return np.asarray(self.problem.layout.balance.nodal_pressure(self.unknown_pressures))
 
     @cached_property
     def film(self) -> Array:
         """Film thickness at all film nodes [1]."""
         return self.problem.film(self.x) if self.points is None else self.points.film_thickness
+
+    @property
+    def outflow(self) -> Array:
+        """Residuals of the film's rows without what they store, (n_film,) [1]."""
+        if self.points is not None:
+            return self.points.film.residual
+        return FilmState(self.problem.layout.film_rows, self.pressure, self.film, self.problem.bearing_number).residual
+
+    @property
+    def pressing(self) -> float:
+        """Sum of the reactions on the journal [1]."""
+        if self.points is None:
+            return float(self.lam[self.problem.journal].sum())
+        points = self.points.state.points
+        return float(points.reaction[points.every_curve < self.points.whole.pack.mesh.count].sum())
 
     @property
     def deflection(self) -> Array:
@@ -82,20 +110,10 @@ class BearingState:
         bent = 0.5 * float(curvature @ curvature + reaction @ self.points.gaps.bending)
         return bent + self.stretching
 
-    @cached_property
-    def thinnest(self) -> float:
-        """Minimum film thickness [m]; with contact points that of the gap curves."""
-        layout = self.problem.layout
-        if self.points is not None:
-            near = closest_gap(self.points.nodal_gaps, self.points.whole).gap
-            return layout.case.surface.contact_film_thickness + max(near, 0.0) * layout.scales.length
-        h = self.film * layout.scales.length
-        return closed_film(layout.case, h, lowest(*whole_film(layout.wall.film, h)).value)
-
     @property
     def journal_force(self) -> Array:
         """Of film and contacts over the unit of force, (d,) [1]."""
-        return self.problem.journal_force(self.x, self.lam) if self.points is None else self.points.force
+        return self.problem.journal_force(self.x, self.lam) if self.points is None else self.points.journal_force
 
 
 @dataclass(frozen=True)
@@ -108,8 +126,8 @@ class FilmFigures:
         Minimum film thickness [m] and peak pressure [Pa].
     touching : float
         Normal force of solid contact on the journal [N].
-    pressed : (n,) array
-        Forces of the film on the nodes of the journal [N].
+    pressed : float
+        Sum of the forces of the film on the journal where it presses on it [N].
     viscous, rubbing : float
         Friction torques of film and solid contact [N m].
     gas, outflow : float
@@ -119,34 +137,52 @@ class FilmFigures:
     thinnest: float
     peak: float
     touching: float
-    pressed: Array
+    pressed: float
     viscous: float
     rubbing: float
     gas: float
     outflow: float
 
     @classmethod
-    def of(cls, bearing: BearingState, stored: Array) -> Self:
-        """Those of a bearing; `stored` is what its film and wall store (n_stored,)."""
-        part, layout = bearing.problem, bearing.problem.layout
-        case = layout.case
-        mesh, ambient, R_j = layout.wall.film, layout.scales.pressure, case.bearing.journal_radius
-        P, H = bearing.pressure, bearing.film
-        p, h, omega = P * ambient, H * layout.scales.length, layout.speed(part.bearing_number)
-        touching = float(bearing.lam[part.journal].sum()) * layout.scales.force
-        film = FilmState(layout.film_rows, P, H, part.bearing_number)
-        unit = ambient**2 / case.gas.viscosity  # of flow, but for the length that all films are measured by
-        shear = (case.gas.viscosity, omega * R_j)
-        return cls(
-            thinnest=bearing.thinnest,
-            peak=highest(*whole_film(mesh, p)).value,
-            touching=touching,
-            pressed=((p - ambient) * node_area(mesh, R_j)).ravel(),
-            viscous=viscous_torque(mesh, R_j, (p, h), shear, case.slip_length * ambient),
-            rubbing=case.surface.friction_coefficient * R_j * touching,
-            gas=film.rows.total(stored[: mesh.n_unknown]) * unit,
-            outflow=film.rows.total(film.residual) * unit,
+    def of_each(cls, states: Sequence[BearingState], stored: Sequence[Array]) -> list[Self]:
+        """Those of a bearing in each of several states; `stored` is what its film and wall store then (n_stored,)."""
+        layout = states[0].problem.layout
+        case, rows, mesh = layout.case, layout.film_rows, layout.wall.film
+        ambient, R_j, viscosity = layout.scales.pressure, case.bearing.journal_radius, case.gas.viscosity
+        p = np.array([state.pressure for state in states]) * ambient
+        h = np.array([state.film for state in states]) * layout.scales.length
+        surface = R_j * np.array([layout.speed(state.problem.bearing_number) for state in states])
+        touching = np.array([state.pressing for state in states]) * layout.scales.force
+        unit = ambient**2 / viscosity  # of flow, but for the length that all films are measured by
+        columns = (
+            thinnest_of_each(states, h),
+            highest_of_each(*whole_film(mesh, p)),
+            touching,
+            np.sum(np.maximum(p - ambient, 0.0) * node_area(mesh, R_j), axis=(1, 2, 3)),
+            viscous_torques(mesh, R_j, (p, h), (viscosity, surface), case.slip_length * ambient),
+            case.surface.friction_coefficient * R_j * touching,
+            np.array([rows.total(gas[: mesh.n_unknown]) for gas in stored]) * unit,
+            np.array([rows.total(state.outflow) for state in states]) * unit,
         )
+        return [cls(*row) for row in zip(*(column.tolist() for column in columns), strict=True)]
+
+
+def thinnest_of_each(states: Sequence[BearingState], h: Array) -> Array:
+    """Minimum film thickness in each state, (k,) [m], from that at the nodes (k, strip, node, axial) [m].
+
+    With contact points it is that of the gap curves.
+    """
+    layout, out = states[0].problem.layout, np.zeros(len(states))
+    at_nodes = [k for k, state in enumerate(states) if state.points is None]
+    if at_nodes:
+        between = lowest_of_each(*whole_film(layout.wall.film, h[at_nodes]))
+        out[at_nodes] = [closed_film(layout.case, h[k], low) for k, low in zip(at_nodes, between.tolist(), strict=True)]
+    at_points = {k: state.points for k, state in enumerate(states) if state.points is not None}
+    if at_points:
+        whole = next(iter(at_points.values())).whole
+        gaps = lowest_gaps(np.array([points.nodal_gaps for points in at_points.values()]), whole)[0].min(axis=1)
+        out[[*at_points]] = layout.case.surface.contact_film_thickness + np.maximum(gaps, 0.0) * layout.scales.length
+    return out
 
 
 def film_work(before: BearingState, after: BearingState) -> float:
@@ -154,13 +190,12 @@ def film_work(before: BearingState, after: BearingState) -> float:
 
     Between an instant with contact points and one with contacts at nodes it is that at the nodes.
     """
-    earlier, later = before.problem, after.problem
-    kept = earlier.positive
-    force = 0.5 * (earlier.film_force(before.x) + later.film_force(after.x))
-    on_journal = float(force @ (later.displacement - earlier.displacement))
-    mean = 0.5 * (before.x[kept] + after.x[kept]) - 1.0
+    layout = before.problem.layout
+    mean = 0.5 * (before.unknown_pressures + after.unknown_pressures) - 1.0
+    moved = after.problem.displacement - before.problem.displacement
+    on_journal = float(layout.border.row_derivative @ mean @ moved)
     if before.points is None or after.points is None:
-        return on_journal + float((earlier.layout.push @ mean) @ (after.deflection - before.deflection))
+        return on_journal + float((layout.push @ mean) @ (after.deflection - before.deflection))
     return on_journal + float((before.points.whole.push @ mean) @ (after.points.state.w - before.points.state.w))
 
 
@@ -177,5 +212,4 @@ def dragging_work(before: BearingState, after: BearingState) -> float:
 
 def growth_work(before: BearingState, after: BearingState) -> float:
     """Work of a journal that grows on the contacts that it touches between two instants [1]."""
-    pressed = (before.lam + after.lam)[before.problem.journal]
-    return 0.5 * float(np.sum(pressed)) * (after.problem.closing - before.problem.closing)
+    return 0.5 * (before.pressing + after.pressing) * (after.problem.closing - before.problem.closing)

@@ -235,8 +235,7 @@ class Orbit:
             self.taken += 1
             self.at_points += stepped.end.points is not None
             self.residual = max(self.residual, stepped.residual)
-            turns = self.trace.rows[-1]["shaft_angle"] / TURN
-            yield (stepped.end.tau - begin) / (end - begin), f"{turns:.1f} turns"
+            yield (stepped.end.tau - begin) / (end - begin), f"{self.trace.turned / TURN:.1f} turns"
 
     def records(self, ended: str = "") -> tuple[Record, ...]:
         """The motion so far."""

@@ -17,7 +17,7 @@ from petalfoil.case import Case
 from petalfoil.dynamics.adaptive_steps import MarchOptions
 from petalfoil.dynamics.rotor_motion import RotorMotion, constant_load
 from petalfoil.dynamics.speed_schedule import Schedule
-from petalfoil.dynamics.time_state import Instant, TimeState
+from petalfoil.dynamics.time_state import AtNodes, Instant, TimeState
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.element_contacts import near_nodes, with_elements
@@ -315,4 +315,4 @@ def released(
     speeding = np.asarray(np.linalg.solve(rotor.inertia, force), dtype=np.float64)
     change = TimeState(problem.storing(x, lam), v, speeding)
     friction = None if system.friction is None else FrictionState.fresh(system.friction, x, lam)
-    return Instant(tau, x, lam, closed, TimeState(problem.stored(x), e, v), change, friction)
+    return Instant(tau, TimeState(problem.stored(x), e, v), change, AtNodes(x, lam, closed), friction)

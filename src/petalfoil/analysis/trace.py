@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -29,6 +30,9 @@ FRAMES = 48
 """Pictures kept, the latest ones."""
 FRAMES_A_TURN = 24
 """Pictures of a turn of the shaft."""
+
+AT_ONCE = 2**14
+"""Film nodes of the steps whose results are computed together: arrays of more no longer fit into a cache."""
 
 
 AS_THEY_ARE = (
@@ -96,8 +100,6 @@ class Trace:
     ----------
     case, system
         The bearing and its rotor, and the same in the units of the problem.
-    rows : StepFigures
-        Figures of every step, SI.
     frames : deque
         The latest pictures: instants at equal angles of the shaft.
     last : Instant or None
@@ -106,22 +108,53 @@ class Trace:
 
     case: Case
     system: RotorBearing
-    rows: StepFigures = field(default_factory=StepFigures)
     frames: deque[Instant] = field(default_factory=lambda: deque(maxlen=FRAMES))
     last: Instant | None = None
-    _parts: list[BearingState] = field(default_factory=list)
+    _figures: StepFigures = field(default_factory=StepFigures)
+    _waiting: list[Instant] = field(default_factory=list)
+    _before: tuple[Instant, list[BearingState]] | None = None
     _due: float = -np.inf
 
     def add(self, instant: Instant) -> None:
-        """Keep an instant, and what film and loads have done since the one before."""
-        parts = self._bearings(instant)
-        done = self.done_since(instant, parts)
-        row = {**self.rotor_figures(instant, parts), **self.film_figures(instant, parts), **done}
-        self.rows.append(row)
-        self.last, self._parts = instant, parts
-        if row["shaft_angle"] >= self._due:
+        """Keep an instant."""
+        self.last = instant
+        angle = self.turned
+        self._waiting.append(instant)
+        if angle >= self._due:
             self.frames.append(instant)
-            self._due = row["shaft_angle"] + 2.0 * np.pi / FRAMES_A_TURN
+            self._due = angle + 2.0 * np.pi / FRAMES_A_TURN
+        if len(self._waiting) >= self._at_once:
+            self._settle()
+
+    @property
+    def turned(self) -> float:
+        """Angle that the shaft has turned by at the latest instant, since time zero [rad]."""
+        rotor = self.system.rotor
+        return 0.0 if self.last is None else rotor.schedule.angle(self.last.tau / rotor.clock.rate)
+
+    @property
+    def rows(self) -> StepFigures:
+        """Figures of every step, SI."""
+        self._settle()
+        return self._figures
+
+    @cached_property
+    def _at_once(self) -> int:
+        """Steps whose results are computed together."""
+        parts = self.system.problem.each(*self._waiting[0].nodal[:2])
+        return max(1, AT_ONCE // max(part.layout.wall.film.unknown.size for part, _, _ in parts))
+
+    def _settle(self) -> None:
+        """Compute the figures of all instants that wait for it, and what film and loads have done up to each."""
+        waiting, self._waiting = self._waiting, []
+        if not waiting:
+            return
+        parts = [self._bearings(instant) for instant in waiting]
+        films = self._films(waiting, parts)
+        for instant, own, film in zip(waiting, parts, films, strict=True):
+            done = self.done_since(instant, own)
+            self._figures.append({**self.rotor_figures(instant, own), **self.film_figures(instant, own, film), **done})
+            self._before = instant, own
 
     @cached_property
     def _units(self) -> tuple[float, float, float, float]:
@@ -133,7 +166,7 @@ class Trace:
         """Every bearing at the speed and position of an instant, with its unknowns and reactions."""
         number = self.system.rotor.bearing_number(instant.tau)
         there = self.system.problem.at(bearing_number=number, displacement=instant.e)
-        return BearingState.each_of(there, instant, self.system.points)
+        return BearingState.each_of(there, instant)
 
     def _tilt(self, e: Array, v: Array) -> dict[str, float]:
         """Slopes of the shaft in two bearings [rad], and their rates [rad/s]."""
@@ -168,12 +201,18 @@ class Trace:
         parts = self.system.problem.each(instant.x, instant.lam)
         return [(part.layout, x[part.layout.unknowns[DEFLECTION]]) for part, x, _ in parts]
 
-    def film_figures(self, instant: Instant, parts: list[BearingState]) -> dict[str, float]:
+    def _films(self, instants: Sequence[Instant], parts: Sequence[list[BearingState]]) -> list[tuple[FilmFigures, ...]]:
+        """Figures of each bearing at every instant."""
+        stored = [self.system.problem.stored_of_each(instant.moving.stored) for instant in instants]
+        pairs = zip(zip(*parts, strict=True), zip(*stored, strict=True), strict=True)
+        return list(zip(*(FilmFigures.of_each(states, gas) for states, gas in pairs), strict=True))
+
+    def film_figures(
+        self, instant: Instant, parts: list[BearingState], films: tuple[FilmFigures, ...]
+    ) -> dict[str, float]:
         """Film, pressure, forces and friction at an instant, gas and what of it leaves; of all bearings together."""
-        stored = self.system.problem.stored_of_each(instant.moving.stored)
-        films = [FilmFigures.of(part, gas) for part, gas in zip(parts, stored, strict=True)]
         pushed = self._journal_force(instant, parts) * self._units[2]
-        touching, pressed = sum(film.touching for film in films), np.concatenate([film.pressed for film in films])
+        touching, pressed = sum(film.touching for film in films), np.array([film.pressed for film in films])
         return {
             "min_film_thickness": min(film.thinnest for film in films),
             "peak_pressure": max(film.peak for film in films),
@@ -196,11 +235,10 @@ class Trace:
 
     def done_since(self, instant: Instant, parts: list[BearingState]) -> dict[str, float]:
         """Work of film, loads and growth on rotor and petals since the latest instant, by the trapezium rule [J]."""
-        before = self.last
-        if before is None:
+        if self._before is None:
             return dict.fromkeys(("film_step", "load_step", "petals_step", "growth_step", "dragging_step"), 0.0)
-        system, unit = self.system, self._units[2] * self._units[0]
-        pairs = list(zip(self._parts, parts, strict=True))
+        system, unit, before = self.system, self._units[2] * self._units[0], self._before[0]
+        pairs = list(zip(self._before[1], parts, strict=True))
         loads = 0.5 * (system.rotor.outside(before.tau) + system.rotor.outside(instant.tau))
         worn = self._lost(before, instant) + self._rubbed(before, instant)
         return {
@@ -222,8 +260,15 @@ class Trace:
         law = PointFriction(whole, friction.coefficient, before.points, before.friction.force)
         return law.lost(instant.friction, instant.points.points)
 
+    @cached_property
+    def _loses(self) -> bool:
+        """Whether a wall loses energy."""
+        return any(state.problem.layout.loss is not None for state in self._before[1]) if self._before else False
+
     def _lost(self, before: Instant, instant: Instant) -> float:
         """Energy that walls with a loss factor lose between two instants [1]."""
+        if not self._loses:
+            return 0.0
         rates, lost = before.change.stored + instant.change.stored, 0.0
         walls = zip(self._deflections(before), self._deflections(instant), strict=True)
         for own, ((layout, earlier), (_, later)) in zip(self.system.problem.stored_of_each(rates), walls, strict=True):

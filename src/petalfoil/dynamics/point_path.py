@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.dynamics.time_state import Instant, TimeState
+from petalfoil.dynamics.time_state import AtNodes, Instant, TimeState
 from petalfoil.equilibrium.contact_runs import from_active_nodes
 from petalfoil.equilibrium.contact_sets import merged
 from petalfoil.equilibrium.nodal_state import sampled_deflection, shared_reactions, with_motion_along
@@ -26,13 +27,13 @@ KNOTS = 5
 """Latest instants that the next one is guessed from (`foretelling`)."""
 
 
-def at_points_instant(
-    tau: float, equations: PointEquations, moving: TimeState, change: TimeState, *, inner: bool = False
-) -> Instant:
-    """The instant of a state with contact points, which is sampled at the nodes; not within a step."""
-    if inner:
-        none = np.zeros(0)
-        return Instant(tau, none, none, none.astype(bool), moving, change, points=equations.state)
+def at_points_instant(tau: float, equations: PointEquations, moving: TimeState, change: TimeState) -> Instant:
+    """The instant of a state with contact points."""
+    return Instant(tau, moving, change, partial(sampled_at_nodes, equations), equations=equations)
+
+
+def sampled_at_nodes(equations: PointEquations) -> AtNodes:
+    """A state with contact points at the nodes."""
     found, layout = PointContacts(equations, 0.0), equations.whole.layout
     x, lam = np.zeros(layout.n), shared_reactions(found)
     wall = with_motion_along(layout.stiffness, sampled_deflection(found))
@@ -42,7 +43,7 @@ def at_points_instant(
         wall[-along.size :] += along.ravel() / scales.length
     x[layout.unknowns[DEFLECTION]] = wall
     x[equations.problem.positive] = equations.state.P
-    return Instant(tau, x, lam, lam > 0.0, moving, change, points=equations.state)
+    return AtNodes(x, lam, lam > 0.0)
 
 
 def nodal_friction(friction: Friction, instant: Instant) -> FrictionState:

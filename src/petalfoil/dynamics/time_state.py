@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.system.friction import FrictionState
-from petalfoil.system.point_equations import PointState
+from petalfoil.system.point_equations import PointEquations, PointState
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -44,6 +47,24 @@ class TimeState:
         return TimeState(rate * (self.stored - base.stored), rate * (self.e - base.e), rate * (self.v - base.v))
 
 
+class AtNodes(NamedTuple):
+    """What there is at the nodes.
+
+    Attributes
+    ----------
+    x : (n,) array
+        Deflections and pressures [1].
+    lam : (m,) array
+        Contact reactions over the unit of nodal force [1].
+    active : (m,) bool array
+        Contacts that carry load.
+    """
+
+    x: Array
+    lam: Array
+    active: Mask
+
+
 @dataclass(frozen=True)
 class Instant:
     """The whole state at a time.
@@ -52,31 +73,50 @@ class Instant:
     ----------
     tau : float
         Time [units of time].
-    x : (n,) array
-        Deflections and pressures [1].
-    lam : (m,) array
-        Contact reactions over the unit of nodal force [1].
-    active : (m,) bool array
-        Contacts that carry load.
     moving : TimeState
         Gas, position, velocity.
     change : TimeState
         Their rates of change.
+    found : AtNodes or callable
+        What there is at the nodes, or what gives it when it is asked for: steps with contact points do not.
     friction : FrictionState or None
         Slip and friction of the petals; of contact points the slip is that of the step which led here.
-    points : PointState or None
-        Petals, film and contacts where these are points between nodes, of which unknowns, reactions and active contacts
-        are samples then; None where contacts are at nodes.
+    equations : PointEquations or None
+        Petals, film and contacts where these are points between nodes, of which what is at the nodes is sampled then;
+        None where contacts are at nodes.
     """
 
     tau: float
-    x: Array
-    lam: Array
-    active: Mask
     moving: TimeState
     change: TimeState
+    found: AtNodes | Callable[[], AtNodes]
     friction: FrictionState | None = None
-    points: PointState | None = None
+    equations: PointEquations | None = None
+
+    @property
+    def points(self) -> PointState | None:
+        """State with contact points; None where contacts are at nodes."""
+        return None if self.equations is None else self.equations.state
+
+    @cached_property
+    def nodal(self) -> AtNodes:
+        """What there is at the nodes."""
+        return self.found if isinstance(self.found, AtNodes) else self.found()
+
+    @property
+    def x(self) -> Array:
+        """Deflections and pressures at the nodes, (n,) [1]."""
+        return self.nodal.x
+
+    @property
+    def lam(self) -> Array:
+        """Contact reactions at the nodes over the unit of nodal force, (m,) [1]."""
+        return self.nodal.lam
+
+    @property
+    def active(self) -> Mask:
+        """Contacts at the nodes that carry load, (m,)."""
+        return self.nodal.active
 
     @property
     def e(self) -> Array:

@@ -18,7 +18,7 @@ from petalfoil.dynamics.point_path import KNOTS, at_points_instant, foretelling,
 from petalfoil.dynamics.point_stage import PointStage
 from petalfoil.dynamics.rotor_motion import RotorMotion
 from petalfoil.dynamics.stage import Stage, StageOptions, StageSolution, solve_sliding_stage, solve_stage
-from petalfoil.dynamics.time_state import Instant, TimeState
+from petalfoil.dynamics.time_state import AtNodes, Instant, TimeState
 from petalfoil.equilibrium.element_tangent import ElementTangent
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.contact_newton import border_change
@@ -122,7 +122,7 @@ def take_step(
     now = path[-1]
     base = now.moving.plus(step, (IMPLICIT, now.change))
     at = now.tau + GAMMA * step
-    inner = advance(bearing, bearing.stage(base, at, step, now, options), at, path, tangent, inner=True)
+    inner = advance(bearing, bearing.stage(base, at, step, now, options), at, path, tangent)
     if inner is None:
         return None
     between = inner.instant
@@ -136,17 +136,11 @@ def take_step(
 
 
 def advance(
-    bearing: RotorBearing,
-    stage: Stage,
-    tau: float,
-    path: list[Instant],
-    tangent: Tangents | None,
-    *,
-    inner: bool = False,
+    bearing: RotorBearing, stage: Stage, tau: float, path: list[Instant], tangent: Tangents | None
 ) -> Reached | None:
     """Where a stage leads at `tau`, within a step or at its end; None if it has no solution."""
     if bearing.points is not None:
-        return advance_points(PointStage(bearing.points, stage), tau, path, tangent, inner=inner)
+        return advance_points(PointStage(bearing.points, stage), tau, path, tangent)
     last = path[-1]
     for x, e in guesses(path, tau):
         at_nodes = tangent if isinstance(tangent, BorderedTangent) else None
@@ -154,21 +148,20 @@ def advance(
         if found is not None:
             state, moving = found.state, found.moving
             change = moving.minus(stage.base, stage.rate)
-            instant = Instant(tau, state.x, state.lam, state.active, moving, change, found.friction)
+            nodal = AtNodes(state.x, state.lam, state.active)
+            instant = Instant(tau, moving, change, nodal, found.friction)
             return Reached(instant, state.residual, found.tangent)
     return None
 
 
-def advance_points(
-    stage: PointStage, tau: float, path: list[Instant], tangent: Tangents | None, *, inner: bool
-) -> Reached | None:
+def advance_points(stage: PointStage, tau: float, path: list[Instant], tangent: Tangents | None) -> Reached | None:
     """The same with contact points."""
     at_points = tangent if isinstance(tangent, ElementTangent) else None
     for start in point_guesses(stage.whole, path, tau):
         found = stage.solved(start, at_points)
         if found is not None:
             change = found.moving.minus(stage.stage.base, stage.stage.rate)
-            instant = at_points_instant(tau, found.equations, found.moving, change, inner=inner)
+            instant = at_points_instant(tau, found.equations, found.moving, change)
             if stage.stage.point_friction is not None and isinstance(found.equations, RubbingStepEquations):
                 slid = stage.stage.point_friction.state(found.equations.state, found.equations.friction_force)
                 instant = replace(instant, friction=slid)

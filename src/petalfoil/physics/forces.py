@@ -70,11 +70,20 @@ def viscous_torque(
     slip : float
         Mean free path times pressure, a constant; zero without slip [m Pa].
     """
+    mu, U = shear
+    return float(viscous_torques(mesh, radius, state, (mu, np.asarray(U)), slip))
+
+
+def viscous_torques(
+    mesh: FilmMesh, radius: float, state: tuple[Array, Array], shear: tuple[float, Array], slip: float = 0.0
+) -> Array:
+    """The same of many films, (...,) [N m]; `state` are (..., strip, node, axial) arrays, surface speeds (...,)."""
     (p, h), (mu, U) = state, shear
-    couette = np.sum(mu * U / (h + 2.0 * slip / p) * node_area(mesh, radius))
-    mean_h = 0.5 * (h[:, :-1] + h[:, 1:])
-    poiseuille = np.sum(0.5 * mean_h * np.diff(p, axis=1) * mesh.axial.load_weight)
-    return float(radius * (couette + poiseuille))
+    film = (-3, -2, -1)
+    couette = mu * U * np.sum(node_area(mesh, radius) / (h + 2.0 * slip / p), axis=film)
+    mean_h = 0.5 * (h[..., :-1, :] + h[..., 1:, :])
+    poiseuille = np.sum(0.5 * mean_h * np.diff(p, axis=-2) * mesh.axial.load_weight, axis=film)
+    return np.asarray(radius * (couette + poiseuille))
 
 
 def attitude_angle(force: Array, displacement: Array) -> float:

@@ -266,10 +266,15 @@ class PointEquations:
         return np.zeros((size, size))
 
     @cached_property
-    def force(self) -> Array:
+    def journal_force(self) -> Array:
         """Force of film and contacts on the journal over the unit of force, (d,)."""
         film: Array = self.whole.layout.border.row_derivative @ (self.state.P - 1.0)
         return film + self.whole.reaction_on_journal.T @ self._nodal_loads
+
+    @property
+    def force(self) -> Array:
+        """The same, and all else that holds the journal, (d,)."""
+        return self.journal_force
 
     @property
     def newton_force(self) -> Array:

@@ -67,10 +67,10 @@ class PointStepEquations(PointEquations):
         """Derivative of the rows by the journal's displacement, storage included."""
         return super().forcing(self.problem.rate + rate)
 
-    @cached_property
+    @property
     def force(self) -> Array:
         """Force of film and contacts on the journal less that of the springs `S`, over the unit of force, (d,)."""
-        return np.asarray(super().force - self.resists @ self.problem.displacement)
+        return np.asarray(self.journal_force - self.resists @ self.problem.displacement)
 
     @property
     def force_direct(self) -> Array:

@@ -162,7 +162,7 @@ def test_a_known_tangent_ends_stages_where_more_corrections_do(name: str, monkey
     monkeypatch.setattr(contact_newton, "corrected", lambda *asked: corrections.append(1) or corrected(*asked))
     system, start = begun(name)
     bearing = system.at_nodes
-    path, tangent = [replace(start, points=None)], None
+    path, tangent = [replace(start, equations=None)], None
     for _ in range(12):
         exact = take_step(bearing, path, 0.05, None, StageOptions(accuracy=1e-11))
         before = len(corrections)
