@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,22 +65,37 @@ def point_guesses(whole: PointLayout, path: list[Instant], tau: float) -> list[t
     if not all(alike):
         known, states, alike = known[-3:], states[-3:], alike[-3:]
     weights = foretelling([instant.tau for instant in known], tau)
-    w, P = (weights @ np.array([getattr(s, name) for s in states]) for name in ("w", "P"))
-    e = weights @ np.array([instant.e for instant in known])
+    w, P, e = (
+        weighted(weights, values)
+        for values in ([s.w for s in states], [s.P for s in states], [instant.e for instant in known])
+    )
     if all(alike):
-        place, reaction = (
-            weights @ np.array([getattr(s.points, name) for s in states]) for name in ("position", "reaction")
-        )
-        held = (points.position <= 0.0) | (points.position >= whole.curves.elements[points.curve])
-        place = np.where(held, points.position, np.clip(place, 0.0, whole.curves.elements[points.curve]))
+        place = weighted(weights, [s.points.position for s in states])
+        reaction = weighted(weights, [s.points.reaction for s in states])
+        last = whole.curves.elements[points.curve]
+        held = (points.position <= 0.0) | (points.position >= last)
+        place = np.where(held, points.position, np.maximum(np.minimum(place, last), 0.0))
         points = merged(replace(points, position=place, reaction=reaction))
     return [(PointState(w, P, points), e), still]
+
+
+def weighted(weights: list[float], values: list[Array]) -> Array:
+    """Sum of arrays of one shape times their weights."""
+    total = weights[-1] * values[-1]
+    for weight, value in zip(weights[:-1], values, strict=False):
+        total += weight * value
+    return total
 
 
 def same_contacts(one: PointState, other: PointState) -> bool:
     """Whether two states have contacts on the same curves."""
     pairs = ((one.points.curve, other.points.curve), (one.points.inner, other.points.inner))
-    return all(mine is its or np.array_equal(mine, its) for mine, its in pairs)
+    return all(same(mine, its) for mine, its in pairs)
+
+
+def same(one: NDArray[Any], other: NDArray[Any]) -> bool:
+    """Whether two arrays (k,) hold the same; steps ask it of the same array as a rule."""
+    return one is other or (len(one) == len(other) and not bool((one != other).any()))
 
 
 def state_at(whole: PointLayout, instant: Instant) -> PointState:
@@ -91,27 +107,24 @@ def state_at(whole: PointLayout, instant: Instant) -> PointState:
     return PointState(whole.pack.from_nodes(instant.x[wall]), instant.x[unknowns[PRESSURE]], points)
 
 
-def foretelling(knots: list[float], tau: float) -> Array:
+def foretelling(knots: list[float], tau: float) -> list[float]:
     """Weights of the values at the latest `knots`, three to `KNOTS`, in a guess at `tau`; (k,).
 
     The guess is on the parabola through the last three. Stages alternate: the one before last has the same place in its
     step, so that the parabola through the three before it missed it by about as much.
     """
-    weights = np.zeros(len(knots))
-    weights[-3:] = lagrange(knots[-3:], tau)
-    if len(knots) == KNOTS:
-        weights[:3] -= lagrange(knots[:3], knots[-2])
-        weights[-2] += 1.0
-    return weights
+    parabola = [0.0] * (len(knots) - 3) + lagrange(knots[-3:], tau)
+    if len(knots) < KNOTS:
+        return parabola
+    missed = [*(-weight for weight in lagrange(knots[:3], knots[-2])), 1.0, 0.0]
+    return [first + second for first, second in zip(parabola, missed, strict=True)]
 
 
-def lagrange(knots: list[float], tau: float) -> Array:
+def lagrange(knots: list[float], tau: float) -> list[float]:
     """Weights of the parabola through values at three `knots`, at `tau`, (3,)."""
     a, b, c = knots
-    return np.array(
-        [
-            (tau - b) * (tau - c) / ((a - b) * (a - c)),
-            (tau - a) * (tau - c) / ((b - a) * (b - c)),
-            (tau - a) * (tau - b) / ((c - a) * (c - b)),
-        ]
-    )
+    return [
+        (tau - b) * (tau - c) / ((a - b) * (a - c)),
+        (tau - a) * (tau - c) / ((b - a) * (b - c)),
+        (tau - a) * (tau - b) / ((c - a) * (c - b)),
+    ]

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.dynamics.point_path import same_contacts
+from petalfoil.dynamics.point_path import same, same_contacts
 from petalfoil.dynamics.stage import Stage, left_after, told
 from petalfoil.dynamics.time_state import TimeState
 from petalfoil.equilibrium.contact_sets import revised
@@ -211,7 +211,7 @@ def serves(tangent: ElementTangent, equations: PointStepEquations) -> bool:
         return False
     if isinstance(equations, RubbingStepEquations) and not isinstance(tangent, RubbingTangent):
         return False
-    alike = np.array_equal(was.travels, equations.travels) and np.array_equal(was.idle, equations.idle)
+    alike = same(was.travels, equations.travels) and same(was.idle, equations.idle)
     return alike and same_contacts(was.state, equations.state)
 
 

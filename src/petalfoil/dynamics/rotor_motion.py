@@ -150,6 +150,10 @@ class RotorMotion:
         """Gyroscopic matrix at time `tau`, (d, d) [1]."""
         return self.turning * (self.schedule.speed(tau / self.clock.rate) / self.clock.rate)
 
+    def resistance(self, tau: float, rate: float) -> Array:
+        """What resists the position in an implicit step that ends at `tau`, `M rate^2 + N rate`; (d, d) [1]."""
+        return np.asarray(self.inertia * rate**2 + self.gyroscopic(tau) * rate)
+
     def outside(self, tau: float) -> Array:
         """All that acts on the rotor but the bearings, at time `tau` [units of time], (d,) [1]."""
         t = tau / self.clock.rate

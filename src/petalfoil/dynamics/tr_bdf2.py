@@ -14,7 +14,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.dynamics.point_path import KNOTS, at_points_instant, foretelling, nodal_friction, point_guesses
+from petalfoil.dynamics.point_path import KNOTS, at_points_instant, foretelling, nodal_friction, point_guesses, weighted
 from petalfoil.dynamics.point_stage import PointStage
 from petalfoil.dynamics.rotor_motion import RotorMotion
 from petalfoil.dynamics.stage import Stage, StageOptions, StageSolution, solve_sliding_stage, solve_stage
@@ -184,7 +184,7 @@ def guesses(path: list[Instant], tau: float) -> list[tuple[Array, Array]]:
     if len(known) < 3 or any(instant.points is not None for instant in known):
         return [still]
     weights = foretelling([instant.tau for instant in known], tau)
-    x, e = (weights @ np.array([getattr(instant, name) for instant in known]) for name in ("x", "e"))
+    x, e = (weighted(weights, values) for values in ([i.x for i in known], [i.e for i in known]))
     return [(x, e), still]
 
 
@@ -198,12 +198,11 @@ def estimate(
     still = np.zeros_like(instants[0].e)
     nothing = TimeState(np.zeros_like(instants[0].moving.stored), still, still)
     wrong = nothing.plus(step, *zip(ERROR, (instant.change for instant in instants), strict=True))
-    base = TimeState(wrong.stored, -wrong.e, -wrong.v)
-    stage = replace(bearing.stage(base, instants[2].tau, step, instants[0], StageOptions()), outside=still)
-    unknowns = bearing.problem.layout.unknowns
     if isinstance(tangent, ElementTangent):
-        pressures, de = response_at_points(stage, wrong.stored, tangent)
+        pressures, de = response_at_points(bearing.rotor, wrong, (instants[2].tau, step), tangent)
     else:
+        base, unknowns = TimeState(wrong.stored, -wrong.e, -wrong.v), bearing.problem.layout.unknowns
+        stage = replace(bearing.stage(base, instants[2].tau, step, instants[0], StageOptions()), outside=still)
         residual, ambient = stage.rate * stage.problem.rows_of(wrong.stored), np.ones(unknowns.n)
         settled, de, _ = border_change(stage, residual, (ambient, still), tangent)
         pressures = (settled + tangent.units @ de)[unknowns[PRESSURE]]
@@ -211,10 +210,20 @@ def estimate(
     return max(float(np.linalg.norm(de)), spread)
 
 
-def response_at_points(stage: Stage, stored: Array, tangent: ElementTangent) -> tuple[Array, Array]:
-    """Change of pressures (n_film,) and displacement (d,) by errors in what is stored and in the stage's base."""
-    whole = tangent.equations.whole
-    residual = np.zeros(tangent.n)
-    residual[whole.n_wall : whole.n_wall + whole.n_film] = stage.rate * stored
-    change, de = tangent.correction(residual, PointStage(whole, stage).load)
-    return change[whole.n_wall : whole.n_wall + whole.n_film], de
+def response_at_points(
+    rotor: RotorMotion, wrong: TimeState, at: tuple[float, float], tangent: ElementTangent
+) -> tuple[Array, Array]:
+    """Change of pressures (n_film,) and displacement (d,) by errors in what is stored, in position and velocity.
+
+    `at` are the time and the length of the step that ends there.
+    """
+    whole, (tau, step) = tangent.equations.whole, at
+    film, rate, residual = (
+        slice(whole.n_wall, whole.n_wall + whole.n_film),
+        1.0 / (IMPLICIT * step),
+        np.zeros(tangent.n),
+    )
+    residual[film] = rate * wrong.stored
+    pull = rotor.resistance(tau, rate) @ wrong.e + rate * (rotor.inertia @ wrong.v)
+    change, de = tangent.correction(residual, -pull)
+    return change[film], de

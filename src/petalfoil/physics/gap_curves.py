@@ -371,5 +371,4 @@ def sampled(curves: GapCurves, points: ContactPoints, nodal: Array, per_element:
     at_element, at = curves.locate(points.every_curve, points.every_position)
     own = np.searchsorted(element, at_element)[:, None] + np.arange(per_element)
     bends = (curves.compliance[at_element] * points.reaction)[:, None] * clamped_beam(t[own], at[:, None])
-    np.add.at(gap, own, bends)
-    return curve, position, gap
+    return curve, position, gap + add_up(own.ravel(), bends.ravel(), len(gap))

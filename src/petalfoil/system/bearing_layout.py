@@ -10,6 +10,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.case import Case, HotGas, JournalRubbing
+from petalfoil.case.growth import Growth
 from petalfoil.physics.forces import film_force_rows, node_area
 from petalfoil.physics.mass_balance import FilmBalance
 from petalfoil.solvers.problem import Border
@@ -83,8 +84,13 @@ class BearingLayout:
 
     def closing(self, bearing_number: float, warm: Temperatures | None = None) -> float:
         """What growth takes from the gaps on the journal at a bearing number (G5), over the reference length [1]."""
-        growth = self.case.growth if warm is None else self.case.growth_at(warm.shaft, warm.bushing)
+        growth = self._growth if warm is None else self.case.growth_at(warm.shaft, warm.bushing)
         return growth.closing(self.speed(bearing_number)) / self.scales.length
+
+    @cached_property
+    def _growth(self) -> Growth:
+        """How shaft and bushing have grown at the temperatures of the case."""
+        return self.case.growth
 
     @cached_property
     def hot_gas(self) -> HotGas:

@@ -150,9 +150,9 @@ def test_a_guess_is_exact_for_cubics_in_steps_of_one_length() -> None:
     for knots, most in ((even, 3), (uneven, 2), (even[:4], 2), (even[:3], 2)):
         for power in range(most + 1):
             values = np.power(knots, power)
-            assert foretelling(knots, 2.0 + GAMMA) @ values == pytest.approx((2.0 + GAMMA) ** power, rel=1e-12)
+            assert np.dot(foretelling(knots, 2.0 + GAMMA), values) == pytest.approx((2.0 + GAMMA) ** power, rel=1e-12)
     assert len(even) == KNOTS
-    assert foretelling(uneven, 3.0) @ np.power(uneven, 3) != pytest.approx(27.0, rel=1e-3)
+    assert np.dot(foretelling(uneven, 3.0), np.power(uneven, 3)) != pytest.approx(27.0, rel=1e-3)
 
 
 @pytest.mark.parametrize("name", ["plain", "petals"])
