@@ -19,7 +19,6 @@ from petalfoil.equilibrium.contact_sets import listed, packed, revised
 from petalfoil.equilibrium.continuation import FAR_FOLLOWED
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError, unbalanced
 from petalfoil.equilibrium.point_contacts import (
-    CHORD,
     POLISHED,
     PointContacts,
     admitted,
@@ -30,6 +29,7 @@ from petalfoil.equilibrium.point_prospects import diverged
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
+from petalfoil.solvers.secants import Secants
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.point_equations import PointEquations
 
@@ -47,6 +47,14 @@ FARTHEST_MOVE = 0.5
 
 FARTHEST_TRAVEL = 3.0
 """Farthest that a contact point travels in a step, in elements."""
+
+CHORD = 0.1
+"""Residual after a step over that before it, up to which the factor at hand serves another step. Steps along the
+steepest part of a run-up leave 0.1 to 0.3, and a tangent costs three of them."""
+
+ROUNDED, ROUNDED_AT_MOST = 1.25, 0.1
+"""Residual over that of the neighbour, whose steps ended where rounding is left, and over that of a solution, below
+which no more than that is left here either."""
 
 NEAR = 1e-3
 """Foretold change of an unknown at least, of which ten times is no jump: a contact that is found 2 nm deep moves the
@@ -81,13 +89,14 @@ def followed(near: PointContacts, problem: CoupledProblem, load: Array | None) -
         before = largest
         if count or tangent is None:
             tangent = ElementTangent.at(equations, load, current_run().film_solver)
-        given = count == 0 or bool(np.any(way(equations, problem, load)))
-        equations = stepped(equations, tangent, problem, load)
+        given, secants = count == 0 or bool(np.any(way(equations, problem, load))), Secants()
+        equations = stepped(equations, (tangent, None if given else secants), problem, load)
         if not count:
             foretold = max(distance(near.equations, equations), NEAR)
             points = evenly_divided(equations.state.points)
             equations = replace(equations, state=replace(equations.state, points=points))
-        equations = settled(equations, tangent, problem, (load, 1.0 if given else norm(equations, load)[0] / size))
+        part = 1.0 if given else norm(equations, load)[0] / size
+        equations = settled(equations, (tangent, secants), problem, (load, part, near.residual))
     raise NoPointsError(f"not followed with at most {TANGENTS} tangents")
 
 
@@ -115,13 +124,22 @@ def way(equations: PointEquations, problem: CoupledProblem, load: Array | None) 
 
 
 def stepped(
-    equations: PointEquations, tangent: ElementTangent, problem: CoupledProblem, load: Array | None
+    equations: PointEquations,
+    chord: tuple[ElementTangent, Secants | None],
+    problem: CoupledProblem,
+    load: Array | None,
 ) -> PointEquations:
-    """The equations after a step, shortened where pressures or the film would vanish."""
-    left, ahead = way(equations, problem, load), equations.newton_residual
+    """The equations after a step, shortened where pressures or the film would vanish.
+
+    `chord` is a tangent and what steps with it have shown, None where the step also goes to a given position.
+    """
+    (tangent, secants), left, ahead = chord, way(equations, problem, load), equations.newton_residual
     if np.any(left):
         ahead = ahead + equations.forcing() @ left
     change, move = tangent.correction(ahead, unbalanced(equations, load))
+    if secants is not None:
+        both = secants.bettered(all_unknowns(equations), np.concatenate([change, move]))
+        change, move = both[: equations.n], both[equations.n :]
     move, farthest = (left, np.inf) if load is None else (move, FARTHEST_MOVE)
     length = admitted(equations, (change, move), farthest)
     place = equations.problem.displacement + length * move
@@ -131,20 +149,32 @@ def stepped(
     return replace(equations, problem=problem.at(displacement=place), state=state)
 
 
+def all_unknowns(equations: PointEquations) -> Array:
+    """Deflections, pressures, reactions, places and the journal's position, (n + n_position,) [1]."""
+    points = equations.state.points
+    unknowns = equations.deflection, equations.pressures, points.reaction, points.position
+    return np.concatenate([*unknowns, equations.problem.displacement])
+
+
 def settled(
-    equations: PointEquations, tangent: ElementTangent, problem: CoupledProblem, asked: tuple[Array | None, float]
+    equations: PointEquations,
+    chord: tuple[ElementTangent, Secants],
+    problem: CoupledProblem,
+    asked: tuple[Array | None, float, float],
 ) -> PointEquations:
     """The equations after as many further steps with the same factor as leave `CHORD` of the residual each, or less.
 
     The last one is kept if it leaves less at all. Steps end where nothing but rounding is foretold: each leaves such a
-    part as the one before it. `asked` are the load and the part that the step before left.
+    part as the one before it, or the residual is that of the neighbour. `asked` are the load, the part that the step
+    before left, and that residual.
     """
-    load, part = asked
+    (load, part, rounded), (tangent, _) = asked, chord
+    least = max(POLISHED, min(ROUNDED * rounded / RESIDUAL_TOLERANCE, ROUNDED_AT_MOST)) * RESIDUAL_TOLERANCE
     if np.any(way(equations, problem, load)):
         return equations
     size, left = norm(equations, load)
-    while left > POLISHED * RESIDUAL_TOLERANCE and tangent.n == equations.n:
-        ahead = stepped(equations, tangent, problem, load)
+    while left > least and tangent.n == equations.n:
+        ahead = stepped(equations, chord, problem, load)
         before, (size, largest) = size, norm(ahead, load)
         left = min(part * left, largest) if largest <= RESIDUAL_TOLERANCE else largest
         part = size / before

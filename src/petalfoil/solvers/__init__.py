@@ -4,6 +4,7 @@
 `problem.py`              what the solvers ask of a problem with one-sided gaps; its tolerance
 `sparse_lu.py`            sparse factorisation: equilibrated, counted, one thread
 `near_factor.py`          solution with a matrix near a factorised one
+`secants.py`              steps with the factor of another state, bettered by those before
 `constraints.py`          active contacts as constraints that eliminate unknowns
 `point_constraints.py`    the same for contact points between nodes
 `tangent.py`              the factorised tangent, with a few bordered unknowns
