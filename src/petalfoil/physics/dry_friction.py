@@ -24,6 +24,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.mesh.pack import PackMesh
+from petalfoil.sparsity import at_stations, block_diagonal, repeated
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -136,15 +137,13 @@ def petal_slip(mesh: PackMesh, arm: Array, first: int) -> tuple[sp.csr_array, sp
     """
     count, n_z, N = mesh.count, mesh.n_z, mesh.cells
     cells = np.arange(count * (mesh.n_node - 1) * n_z).reshape(count, -1, n_z)
-    along = sp.kron(slopes(mesh.phi), sp.eye_array(n_z), format="csr")
-    turned = sp.kron(sp.diags_array(arm), along[:, n_z:], format="csr")  # roots do not move
-    slope = sp.csr_array(turned)
+    along = at_stations(slopes(mesh.phi), n_z)[:, n_z:]  # roots do not move
+    slope = block_diagonal([one * along for one in arm])
     above, below = cells[:, N:], cells[np.arange(1, count + 1) % count, : cells.shape[1] - N]
     slip = sp.vstack([slope[cells[:, :N].ravel()], slope[above.ravel()] + slope[below.ravel()]], format="csr")
     # gaps on the bushing exist at the inner nodes of its cells only, gaps between petals at all nodes of theirs
     on_bushing, between = halves(N + 1)[:, 1:-1], halves(cells.shape[1] - N + 1)
-    parts = [sp.kron(sp.kron(sp.eye_array(count), part), sp.eye_array(n_z)) for part in (on_bushing, between)]
-    weights = sp.block_diag(parts, format="csr")
+    weights = block_diagonal([repeated(at_stations(part, n_z), count) for part in (on_bushing, between)])
     on_journal = sp.csr_array((weights.shape[0], first))
     return sp.csr_array(slip), sp.csr_array(sp.hstack([on_journal, weights], format="csr"))
 

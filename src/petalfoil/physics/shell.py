@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from petalfoil.mesh.axial import AxialGrid
 from petalfoil.mesh.quadrature import trapezoid
+from petalfoil.sparsity import at_stations, repeated
 
 Array = NDArray[np.float64]
 
@@ -83,7 +84,7 @@ class PetalShell:
         """
         n, n_z = len(self.phi), len(self.axial.z)
         d_phi, d_z = neighbour_differences(n), neighbour_differences(n_z)
-        along, across = sp.kron(d_phi, sp.eye_array(n_z)), sp.kron(sp.eye_array(n), d_z)
+        along, across = at_stations(d_phi, n_z), repeated(d_z, n)
         return sp.csr_array(sp.vstack([along, across, sp.kron(d_phi, d_z), sp.eye_array(n * n_z)], format="csr"))
 
     @cached_property
@@ -93,9 +94,9 @@ class PetalShell:
         Rows are empty where a curvature follows from another one (free edges) or is zero (hinged root).
         """
         n, n_z = len(self.phi), len(self.axial.z)
-        in_place = sp.kron(sp.diags_array(self._bent / self.bend_radius**2), sp.eye_array(n_z))
-        chi_phi = sp.kron(self._second_phi / self.metric_radius**2, sp.eye_array(n_z))
-        chi_z = sp.kron(sp.eye_array(n), self._second_z)
+        in_place = at_stations(sp.diags_array(self._bent / self.bend_radius**2), n_z)
+        chi_phi = at_stations(self._second_phi / self.metric_radius**2, n_z)
+        chi_z = repeated(self._second_z, n)
         cells = self._twist_scale
         blocks = [[chi_phi, None, None, in_place], [None, chi_z, None, None], [None, None, sp.diags_array(cells), None]]
         return sp.csr_array(sp.block_array(blocks, format="csr"))

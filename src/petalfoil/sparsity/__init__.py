@@ -1,12 +1,14 @@
 """Sparse matrices of one pattern.
 
 ==============  ========================================================
+`blocks.py`     from blocks along the diagonal
 `pattern.py`    where their entries go
 `ordering.py`   in which order they are best eliminated
 `products.py`   products with vectors, and matrices from blocks, at the cost of their sums
 ==============  ========================================================
 """
 
+from petalfoil.sparsity.blocks import at_stations, block_diagonal, repeated
 from petalfoil.sparsity.ordering import Elimination, Order, TiedOrder, postorder
 from petalfoil.sparsity.pattern import Pattern, add_up
 from petalfoil.sparsity.products import SparseRows, SummedEntries, Triplets, added_blocks
@@ -21,5 +23,8 @@ __all__ = [
     "Triplets",
     "add_up",
     "added_blocks",
+    "at_stations",
+    "block_diagonal",
     "postorder",
+    "repeated",
 ]

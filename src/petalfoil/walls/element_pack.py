@@ -22,7 +22,7 @@ from petalfoil.physics.gap_curves import ContactPoints, Facing, GapCurves
 from petalfoil.physics.petal_elements import PetalElements, clamped_beam
 from petalfoil.physics.petal_sliding import Faces
 from petalfoil.physics.shell import PetalShell
-from petalfoil.sparsity import SparseRows
+from petalfoil.sparsity import SparseRows, block_diagonal, repeated
 from petalfoil.walls.base import Wall
 
 Array = NDArray[np.float64]
@@ -71,7 +71,7 @@ class ElementPack:
     @cached_property
     def nodal(self) -> sp.csr_array:
         """(value, slope) at the nodes of all petals from the unknowns."""
-        return sp.csr_array(sp.kron(sp.eye_array(self.mesh.count), self.elements.nodal, format="csr"))
+        return repeated(self.elements.nodal, self.mesh.count)
 
     @cached_property
     def bending(self) -> sp.csr_array:
@@ -80,7 +80,7 @@ class ElementPack:
         for petal in self.petals:
             if id(petal) not in known:
                 known[id(petal)] = petal.bending
-        return sp.csr_array(sp.block_diag([known[id(petal)] for petal in self.petals], format="csr"))
+        return block_diagonal([known[id(petal)] for petal in self.petals])
 
     @property
     def n_unknown(self) -> int:
@@ -165,7 +165,7 @@ class ElementPack:
     def at_nodes(self) -> SparseRows:
         """Deflections at the nodes of all petals from the unknowns, roots apart, cubics alone; (n_wall, n)."""
         rows = hermite.rows(*self.node_places, self.elements.element_angle)
-        return SparseRows(sp.kron(sp.eye_array(self.mesh.count), rows, format="csr") @ self.nodal)
+        return SparseRows(repeated(rows @ self.elements.nodal, self.mesh.count))
 
     @cached_property
     def bent_at_nodes(self) -> SparseRows:
@@ -174,7 +174,7 @@ class ElementPack:
         at, load = np.nonzero(element[:, None] == element)
         bend, shape = clamped_beam(t[at], t[load]), (len(t), len(t))
         parts = [sp.csr_array((C[element][at] * bend, (at, load)), shape=shape) for C in self.compliance]
-        return SparseRows(sp.block_diag(parts, format="csr"))
+        return SparseRows(block_diagonal(parts))
 
     @cached_property
     def compliance(self) -> Array:
@@ -182,19 +182,19 @@ class ElementPack:
         return np.stack([petal.point_compliance for petal in self.petals])
 
     def from_nodes(self, deflection: Array) -> Array:
-        """Unknowns of petals whose nodes have `deflection` (n_wall,), by a cubic spline; (n,)."""
-        inner = deflection[: self.mesh.count * (self.mesh.n_node - 1)].reshape(self.mesh.count, -1)
-        W = np.concatenate([np.zeros((self.mesh.count, 1)), inner], axis=1)
-        curve = CubicSpline(self.mesh.phi, W, axis=1)
-        phi = self.elements.phi
-        pairs = np.stack([curve(phi), curve(phi, 1) * self.elements.slope_angle], axis=-1)
+        """Unknowns of petals whose nodes have `deflection` (n_wall, ...), by a cubic spline; (n, ...)."""
+        count, several = self.mesh.count, deflection.shape[1:]
+        inner = deflection[: count * (self.mesh.n_node - 1)].reshape(count, self.mesh.n_node - 1, *several)
+        W = np.concatenate([np.zeros((count, 1, *several)), inner], axis=1)
+        curve, phi = CubicSpline(self.mesh.phi, W, axis=1), self.elements.phi
+        pairs = np.stack([curve(phi), curve(phi, 1) * self.elements.slope_angle], axis=2)
         first = 2 if self.elements.clamped else 1
-        return np.asarray(pairs.reshape(self.mesh.count, -1)[:, first:].ravel())
+        return np.asarray(pairs.reshape(count, -1, *several)[:, first:].reshape(-1, *several))
 
     @cached_property
     def free_motions(self) -> Array:
         """Motions that bend nothing (S4) in the unknowns, (n, k)."""
-        return np.column_stack([self.from_nodes(motion) for motion in self.wall.free_motions.T.toarray()])
+        return self.from_nodes(self.wall.free_motions.toarray())
 
     def contact_places(self, points: ContactPoints) -> tuple[ElementLoads, ElementLoads]:
         """Where contact points are on the petals that touch, and between petals on those behind them.

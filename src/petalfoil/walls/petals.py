@@ -22,6 +22,7 @@ from petalfoil.physics.forces import node_area
 from petalfoil.physics.petal_membrane import StretchingPetal
 from petalfoil.physics.petal_sliding import Faces
 from petalfoil.physics.shell import PetalShell, bending_stress
+from petalfoil.sparsity import block_diagonal
 from petalfoil.walls.backing import covered, on_springs
 from petalfoil.walls.base import PlacedContacts, Wall, WallState, axial_grid
 from petalfoil.walls.bump_foil import foundation_stiffness
@@ -129,7 +130,7 @@ def of_each(shells: list[PetalShell], function: Callable[[PetalShell], T]) -> li
 
 def diagonal(parts: list[sp.csr_array] | list[Array]) -> sp.csr_array:
     """The matrix with a block for each petal."""
-    return sp.csr_array(sp.block_diag(parts, format="csr"))
+    return block_diagonal(parts)
 
 
 class PetalWall(WallKind):
