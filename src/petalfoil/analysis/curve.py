@@ -147,7 +147,8 @@ def point_after(case: Case, problem: CoupledProblem, before: Solution | None, *,
         It was not found.
     """
     if before is None or is_classic(case):
-        found = relaxed(case, problem, before) if is_classic(case) else with_reported(case, at_position(case))
+        own = problem if problem.layout.case is case else None
+        found = relaxed(case, problem, before) if is_classic(case) else with_reported(case, at_position(case, own))
         return replace(found, branch=replace(found.branch, jump=False))
     here = before.problem.at(displacement=problem.displacement)
     answer, jump = led(before, here) if leads else None, False

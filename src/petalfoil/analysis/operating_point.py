@@ -227,8 +227,8 @@ def beyond_capacity(problem: CoupledProblem, load: Vector, failure: ConvergenceE
     return failure
 
 
-def at_position(case: Case) -> OperatingPoint:
-    """The equilibrium to report at the case's eccentricity.
+def at_position(case: Case, problem: CoupledProblem | None = None) -> OperatingPoint:
+    """The equilibrium to report at the case's eccentricity; `problem` is that of the case, if it is at hand.
 
     That of the cold start, if it was found at the first barrier, is stable and the only one known; else the one to
     which the pack is followed from zero speed, as long as it is stable. Where that branch is lost it is the stable one
@@ -243,7 +243,7 @@ def at_position(case: Case) -> OperatingPoint:
         raise UsageError(
             "operation.moment is balanced together with a load: give one, or the slopes operation.tilt in its place"
         )
-    problem = build_problem(case)
+    problem = problem or build_problem(case)
     first, rate = begun(problem, None, lambda: first_attempt(problem))
     known, found = others(case, problem, first, rate)
     alone = known == 1 and first is not None and not rate.real > 0.0

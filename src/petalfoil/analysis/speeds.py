@@ -83,10 +83,17 @@ class SpeedLine:
             self.rotor = RotorInBearings.of(self.case, self.load)
             self.base = self.rotor.supports[int(self.rotor.turned)].problem
             return
-        self.base = build_problem(self.case.replace(**{"operation.eccentricity": (0.0, 0.0)}))
+        self.base = self._centred()
         friction = friction_of(self.case, self.base.layout)
         if friction is not None and follows_path(self.case, by_default=self.from_rest):
             self.path = LoadedPath(friction, load_of(self.case, self.load, self.base.layout))
+
+    def _centred(self) -> CoupledProblem:
+        """The bearing with a centred journal: that of a balance at hand, if it is at the temperatures of the case."""
+        if self.known is None or self.known.problem.temperatures is not None:
+            return build_problem(self.case.replace(**{"operation.eccentricity": (0.0, 0.0)}))
+        problem = self.known.problem
+        return problem.at(displacement=np.zeros_like(problem.displacement))
 
     def at(self, speed: float, after: float | None = None) -> Solution:
         """The balance at `speed` [rad/s], followed from the last one.
