@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from petalfoil.analysis.contact_model import reported
@@ -16,7 +17,7 @@ from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
 from petalfoil.case.plausibility import MAX_MACH, surface_mach
-from petalfoil.dynamics.critical_mass import Whirl, whirls_at_any_mass
+from petalfoil.dynamics.critical_mass import Whirl, least_damping, whirls_at_any_mass
 from petalfoil.dynamics.rotor_motion import GRAVITY
 from petalfoil.equilibrium.continuation import advance
 from petalfoil.equilibrium.linear_response import SmallMotion
@@ -31,6 +32,11 @@ RANGE, FACTOR = 16.0, 1.3
 PRECISION = 1e-6
 """Relative precision of the threshold speed: two or three looks more than 1e-3 takes, for the margin is smooth."""
 
+LOST = 0.2
+"""Part of the loss of a whirl, at any whirl ratio, that a look may find gone for the next one to be two factors ahead:
+by then two fifths are foretold to be gone."""
+
+Array = NDArray[np.float64]
 Threshold = tuple[float, str]
 """Threshold speed [rad/s], nan where there is none, and how the search ended."""
 
@@ -87,8 +93,7 @@ def threshold_speed(
     first, last = sorted((known, known * RANGE if here > 0.0 else known / RANGE))
     try:
         while first <= known * factor <= last:
-            ahead = known * factor
-            there = margin_at(ahead)
+            ahead, there = looked_ahead(margin_at, known, factor, (first, last))
             if (there > 0.0) != (here > 0.0):
                 return neutral_speed(margin_at, (known, here), (ahead, there))
             known, here = ahead, there
@@ -100,6 +105,22 @@ def threshold_speed(
         ended = f"end of the search: {beyond}" if beyond else "end of the search"
         return math.nan, f"no threshold speed found up to {in_rpm(known)} ({ended})"
     return math.nan, f"no threshold speed found down to {in_rpm(known)} (end of the search): it is unstable there"
+
+
+def looked_ahead(
+    margin_at: FollowedMargin, known: float, factor: float, limits: tuple[float, float]
+) -> tuple[float, float]:
+    """The next speed [rad/s] from a `known` one, and its margin: two factors ahead of looks far from whirling.
+
+    Where the rotor is unstable there, the speed between is looked at from the known one, as if that had come first.
+    """
+    first, last = limits
+    if margin_at.far_from_whirling and first <= known * factor**2 <= last:
+        before, there = margin_at.last, margin_at(known * factor**2)
+        if there > 0.0:
+            return known * factor**2, there
+        margin_at.last = before
+    return known * factor, margin_at(known * factor)
 
 
 def beyond_the_model(case: Case, speed: float) -> str:
@@ -143,7 +164,7 @@ JUMP = 0.1
 changes it by some thousandths."""
 
 
-def margins(rotor: RotorOnBearings, load: Vector | None, start: AtOwnSpeed) -> Callable[[float], float]:
+def margins(rotor: RotorOnBearings, load: Vector | None, start: AtOwnSpeed) -> FollowedMargin:
     """The margin over speed [rad/s], under the load or at the case's position, followed from the case's speed."""
     case = rotor.case
     wanted = None if load is None and case.operation.load is None else applied_load(case, load)
@@ -221,12 +242,18 @@ class FollowedMargin:
         Equilibria with contacts at nodes, for speeds at which contact points are not followed.
     last : JournalMotion
         Small motions about the last equilibrium.
+    damping : (ratio,) array or None
+        Least loss of a whirl of any mass at each whirl ratio there (`least_damping`); None where a mass is critical.
+    far_from_whirling : bool
+        Whether a rotor of any mass was stable at the last two looks, and no loss has fallen by more than `LOST`.
     """
 
     rotor: RotorOnBearings
     load: Vector | None
     balances: EquilibriaOverSpeed
     last: JournalMotion
+    damping: Array | None = None
+    far_from_whirling: bool = False
 
     def __call__(self, speed: float) -> float:
         """The margin at `speed` [rad/s]."""
@@ -235,7 +262,12 @@ class FollowedMargin:
             self.balances.seeks = not isinstance(self.last, SmallMotion)
             impedance = self.rotor.impedance(self.balances.at(speed))
         self.last = impedance.motion
-        return margin(self.rotor.whirl(impedance, speed), self.rotor.mass)
+        found, before, here = margin(self.rotor.whirl(impedance, speed), self.rotor.mass), self.damping, None
+        if found == NEVER and self.rotor.amplitude is None:
+            here = least_damping(impedance, None if self.rotor.case.bearings == 1 else self.rotor.inertia)
+        kept = here is not None and before is not None and bool(np.all(here >= (1.0 - LOST) * before))
+        self.damping, self.far_from_whirling = here, kept
+        return found
 
 
 def in_rpm(speed: float) -> str:

@@ -130,6 +130,15 @@ def neutral_whirl(impedance: Impedance, speed: float, inertia: Inertia | None = 
     return min(roots, key=lambda root: root.mass, default=Whirl(np.inf, np.nan))
 
 
+def least_damping(impedance: Impedance, inertia: Inertia | None = None) -> FloatArray:
+    """Least loss of a whirl of any positive mass at each ratio of `SCAN`, (ratio,) [1]; infinite where there is none.
+
+    The loss is the imaginary part of a mass that balances the impedance over its size.
+    """
+    values = np.array(Balance(impedance, inertia).over(SCAN))
+    return np.asarray(np.min(values.imag / np.abs(values), axis=1, where=values.real > 0.0, initial=np.inf))
+
+
 def grows(values: Complex) -> bool:
     """Whether a rotor of one of the masses that balance the impedance whirls ever wider."""
     return bool(np.any((values.imag < -NEUTRAL * np.abs(values)) & (values.real > 0.0)))
