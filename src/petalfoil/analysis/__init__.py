@@ -70,6 +70,7 @@ What they share:
 `campbell.py`          branches of natural modes over speed
 `threshold.py`         the speed at which a rotor becomes unstable
 `rotor_verdict.py`     whether a rotor is stable, in words
+`past_jump.py`         equilibria beside a branch that a jump of a curve has led to
 `parameter_change.py`  changes of parameters whose effects are told
 `film_force.py`        film and petals for another program's integrator
 `release.py`           where a large motion begins

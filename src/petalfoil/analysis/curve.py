@@ -13,27 +13,24 @@ from functools import partial
 import numpy as np
 
 from petalfoil.analysis.arguments import DOWNWARD, DisplacementDirection, Displacements, Speed
-from petalfoil.analysis.branch_choice import others
 from petalfoil.analysis.classic_method import is_classic, typical_steps
 from petalfoil.analysis.contact_model import reported
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.displacements import CHARACTERISTIC, displaced
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.heat_results import with_heat
-from petalfoil.analysis.neighbours import NOTHING
 from petalfoil.analysis.operating_point import OperatingPoint, at_position, relaxed, with_reported
+from petalfoil.analysis.past_jump import PastJump
 from petalfoil.analysis.records import asked_position, branch, effort, failed_record, solution_record
 from petalfoil.analysis.resume import is_same
 from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
 from petalfoil.case import Case
 from petalfoil.dynamics.film_stability import leading_eigenvalue
-from petalfoil.equilibrium.branches import different
 from petalfoil.equilibrium.continuation import advance
 from petalfoil.equilibrium.led_points import led, with_nodal_contacts
 from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.equilibrium.whole_length import first_attempt
 from petalfoil.errors import ConvergenceError
 from petalfoil.results.layout import Series
 from petalfoil.results.record import Record
@@ -69,14 +66,17 @@ def curve(
 
 def _points(cases: list[Case], progress: Progress | None, done: Sequence[Record] = ()) -> Iterator[Record]:
     base = build_problem(cases[0])
-    before, jumped = _regained(cases, base, done), _has_jumped(done)
+    before, past = _regained(cases, base, done), PastJump() if _has_jumped(done) else None
     for number, case in enumerate(cases[len(done) :], len(done)):
         problem = displaced_problem(base, case)
         with running(part(progress, number, len(cases)), "curve", typical_steps(case)) as run:
             try:
                 found = point_after(case, problem, before)
-                before, jumped = found.answer, found.branch.jump or (jumped and before is not None)
-                found = past_a_jump(case, found) if jumped and not found.branch.jump else found
+                if found.branch.jump or before is None:
+                    past = PastJump() if found.branch.jump else None
+                elif past is not None:
+                    found = past.told(case, found)
+                before = found.answer
                 own = (asked_position(case), found.branch, effort(run.seconds))
                 record = solution_record("curve", Evaluation.of(case, before), *own)
             except ConvergenceError as failure:
@@ -90,19 +90,6 @@ def _has_jumped(done: Sequence[Record]) -> bool:
     for record in done:
         jumped = record.converged and (jumped or bool(record.scalars.get("jump")))
     return jumped
-
-
-def past_a_jump(case: Case, found: OperatingPoint) -> OperatingPoint:
-    """A point on the branch that a jump has led to, with the number of equilibria known there.
-
-    Others are looked for as `solve` does, which need not find this one.
-    """
-    problem, known = found.answer.problem, found.branch
-    first = first_attempt(problem)
-    count, met = others(case, problem, first, NOTHING if first is None else leading_eigenvalue(first))
-    count = max(count, len(different([with_nodal_contacts(found.answer), *met])))
-    path = f"{known.solution_path}, past a jump"
-    return replace(found, branch=replace(known, known_equilibria=count, solution_path=path))
 
 
 def displaced_problem(base: CoupledProblem, case: Case) -> CoupledProblem:
