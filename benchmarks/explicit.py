@@ -95,17 +95,19 @@ def settlings(orbit: Orbit, pair: tuple[Instant, Instant], tolerance: float, sec
     Pressure and journal position are interpolated linearly. The pack is solved for each, from its previous deflections.
     """
     begin, end = pair
-    steps, start = math.ceil(turn(orbit) * (end.tau - begin.tau) / (2.0 * math.pi)), time.process_time()
+    steps, until = math.ceil(turn(orbit) * (end.tau - begin.tau) / (2.0 * math.pi)), time.process_time() + seconds
     problem = placed(orbit, begin)
     pack, w, total = PackDescent(problem, NUMBERS), begin.x[: problem.layout.n_wall].copy(), 0
-    settings = DescentSettings(pack.step, False, tolerance, NUMBERS.max_pack_steps)
+    settings = DescentSettings(pack.step, False, tolerance, CHUNK)
     for step in range(1, steps + 1):
         share = step / steps
         x, e = begin.x + share * (end.x - begin.x), begin.e + share * (end.e - begin.e)
-        held = columns(placed(orbit, begin, e))
-        total += kernels().descend(w, pack.load(x[problem.layout.n_wall :]), pack.shell, held, settings)[0]
-        if time.process_time() - start > seconds:
-            return step, total
+        held, load, left = columns(placed(orbit, begin, e)), pack.load(x[problem.layout.n_wall :]), math.inf
+        while not left <= tolerance:
+            taken, left = kernels().descend(w, load, pack.shell, held, settings)
+            total += taken
+            if time.process_time() > until:
+                return step, total
     return steps, total
 
 

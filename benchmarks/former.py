@@ -34,10 +34,17 @@ LIMITS = {
 
 
 def rows(repeats: int, quick: bool = False) -> list[Row]:
-    """A row for each task; without ratios where the earlier state is not at hand."""
+    """A row for each task; without ratios where the earlier state is not at hand.
+
+    Each task has processes of its own, but in a quick run: most of that would be their start.
+    """
     with tempfile.TemporaryDirectory() as folder:
         reason = unpacked(Path(folder))
-        return [row(name, None if reason else Path(folder), repeats, quick, reason) for name in TASKS]
+        if reason:
+            return [Row(f"former_{name}", description(name), None, remark=reason) for name in TASKS]
+        sources = {"now": ROOT / "src", "former": Path(folder) / "src"}
+        parts = [list(TASKS)] if quick else [[name] for name in TASKS]
+        return [row(name, best) for part in parts for name, best in measured(part, sources, repeats, quick).items()]
 
 
 def unpacked(folder: Path) -> str:
@@ -52,26 +59,33 @@ def unpacked(folder: Path) -> str:
     return ""
 
 
-def row(name: str, former: Path | None, repeats: int, quick: bool, reason: str) -> Row:
+def description(name: str) -> str:
+    """What a task is about."""
+    return f"over {COMMIT}: {(TASKS[name].__doc__ or '').partition(' [s]')[0].rstrip('.')}"
+
+
+def row(name: str, best: dict[str, float]) -> Row:
     """Least time of a task over its least time in the earlier state."""
-    description = f"over {COMMIT}: {(TASKS[name].__doc__ or '').partition(' [s]')[0].rstrip('.')}"
-    if former is None:
-        return Row(f"former_{name}", description, None, remark=reason)
-    sources = {"now": ROOT / "src", "former": former / "src"}
-    best = dict.fromkeys(sources, float("inf"))
-    for _ in range(repeats):
-        for side, source in sources.items():
-            best[side] = min(best[side], seconds(name, source, quick))
     details = {f"seconds_{side}": value for side, value in best.items()}
     ratio = best["now"] / best["former"]
     if name not in LIMITS:
-        return Row(f"former_{name}", description, ratio, details=dict(details))
-    return at_most(f"former_{name}", description, ratio, round(LIMITS[name], 2), details=details)
+        return Row(f"former_{name}", description(name), ratio, details=dict(details))
+    return at_most(f"former_{name}", description(name), ratio, round(LIMITS[name], 2), details=details)
 
 
-def seconds(name: str, source: Path, quick: bool) -> float:
-    """Processor time of a task in the sources at `source` [s]."""
+def measured(names: list[str], sources: dict[str, Path], repeats: int, quick: bool) -> dict[str, dict[str, float]]:
+    """Least processor time of some tasks on either side, measured in turn [s]."""
+    best = {name: dict.fromkeys(sources, float("inf")) for name in names}
+    for _ in range(repeats):
+        for side, source in sources.items():
+            for name, value in seconds(names, source, quick).items():
+                best[name][side] = min(best[name][side], value)
+    return best
+
+
+def seconds(names: list[str], source: Path, quick: bool) -> dict[str, float]:
+    """Processor time of tasks one after the other in the sources at `source` [s]."""
     environment = os.environ | {"PYTHONPATH": str(source), "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-    call = [sys.executable, str(Path(__file__).parent / "former_tasks.py"), name, *(["--quick"] if quick else [])]
+    call = [sys.executable, str(Path(__file__).parent / "former_tasks.py"), *names, *(["--quick"] if quick else [])]
     printed = subprocess.run(call, capture_output=True, text=True, check=True, env=environment).stdout
-    return float(json.loads(printed)["seconds"])
+    return {one["task"]: float(one["seconds"]) for one in map(json.loads, printed.splitlines())}

@@ -1,6 +1,6 @@
-"""One task of the comparison with an earlier state, in the sources that PYTHONPATH names: prints its figures as JSON.
+"""Tasks of the comparison with an earlier state, in the sources that PYTHONPATH names: a line of JSON for each.
 
-    python benchmarks/former_tasks.py TASK [--quick] [KEY=VALUE ...]
+    python benchmarks/former_tasks.py TASK [TASK ...] [--quick] [KEY=VALUE ...]
 
 Keys and values change the cases of the task, such as model.contacts=nodes.
 
@@ -126,17 +126,19 @@ VERBS = ("solve", "curve", "coefficients", "stability", "liftoff", "runup", "orb
 """What the tasks ask, loaded before the clock starts: an earlier state loads all at once, the present one as asked."""
 
 
-def main(name: str, quick: bool, changes: dict[str, str]) -> None:
-    """Run a task, its cases with other keys, and print its processor time."""
+def main(names: list[str], quick: bool, changes: dict[str, str]) -> None:
+    """Run tasks, their cases with other keys, and print the processor time of each."""
     warnings.simplefilter("ignore")
     for verb in VERBS:
         getattr(petalfoil, verb)
     petalfoil.solve(pack("paper_n8", 16))
     CHANGES.update(changes)
-    begin = time.process_time()
-    own = TASKS[name](quick)
-    print(json.dumps({"seconds": time.process_time() - begin if own is None else own}))
+    for name in names:
+        begin = time.process_time()
+        own = TASKS[name](quick)
+        print(json.dumps({"seconds": time.process_time() - begin if own is None else own, "task": name}))
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], "--quick" in sys.argv, dict(word.split("=", 1) for word in sys.argv[2:] if "=" in word))
+    words = sys.argv[1:]
+    main([one for one in words if one in TASKS], "--quick" in words, dict(w.split("=", 1) for w in words if "=" in w))
