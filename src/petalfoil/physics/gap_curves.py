@@ -108,7 +108,7 @@ class GapCurves:
         return self._sampled[per_element]
 
     @cached_property
-    def _padded(self) -> tuple[Index, Array]:
+    def padded(self) -> tuple[Index, Array]:
         """`by_w` by rows of equal length: unknowns, in their order, and weights, zero where a row has fewer."""
         held = np.diff(self.by_w.indptr)
         number = np.arange(self.by_w.nnz) - np.repeat(self.by_w.indptr[:-1], held)
@@ -116,17 +116,6 @@ class GapCurves:
         unknown, weight = (np.zeros((len(held), held.max(initial=1)), kind) for kind in (np.int32, np.float64))
         unknown[at], weight[at] = self.by_w.indices, self.by_w.data
         return unknown, weight
-
-    def rows_by_w(self, curve: Index, position: Array, derivative: int = 0) -> sp.csr_array:
-        """Weights of the unknowns in the gap at positions on curves, or in a derivative as in `rows`; (k, n)."""
-        columns, weights = hermite.entries(*self.locate(curve, position), self.angle, derivative)
-        unknown, weight = (part[columns].transpose(0, 2, 1) for part in self._padded)
-        values = weight * weights[:, None, :]
-        starts = np.arange(len(columns) + 1, dtype=np.int32) * (values.shape[1] * values.shape[2])
-        shape = (len(columns), self.by_w.shape[1])
-        rows = sp.csr_array((values.ravel(), unknown.ravel(), starts), shape=shape)
-        rows.eliminate_zeros()
-        return rows
 
     def nodal(self, w: Array, e: Array) -> Array:
         """Nodal (value, slope) of all gaps, (2 n_node,)."""
@@ -329,6 +318,22 @@ class PointGaps:
     def _weights(self) -> tuple[Index, Array]:
         """Columns (j, 4) of the nodal gaps at each point, and their weights in the gap and its slope, (j, 2, 4)."""
         return hermite.entries_with_slopes(*self._place, self.curves.angle)
+
+    def of_nodal(self, columns: Array) -> tuple[Array, Array]:
+        """Gaps and slopes at the points that several nodal gaps (2 n_node, d) have there, (j, d) each."""
+        at, weights = self._weights
+        value, slope = np.einsum("kdi,kie->dke", weights, columns[at])
+        return value, slope
+
+    @cached_property
+    def by_w(self) -> tuple[Triplets, Triplets]:
+        """Derivatives of the cubic of (K10) at the points, and of its slope, by the unknowns of the petals, (j, n)."""
+        (columns, weights), (unknowns, by_unknowns) = self._weights, self.curves.padded
+        unknown, weight = unknowns[columns], by_unknowns[columns]
+        both = [weights[:, kind, :, None] * weight for kind in range(2)]
+        held = [np.nonzero(values) for values in both]
+        value, slope = (Triplets(at[0], unknown[at], values[at]) for at, values in zip(held, both, strict=True))
+        return value, slope
 
     @cached_property
     def nodal_loads(self) -> Array:

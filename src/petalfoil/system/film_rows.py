@@ -129,6 +129,8 @@ class FilmState:
         """Derivative of the rows (and of `rate` times the storage) by the film, applied to `change` (flat nodes)."""
         steady, held, n = self.rows.by_film, self.rows.storage_by_film, self.rows.balance.mesh.n_unknown
         moved = add_up(steady.rows, self.tangent[1] * change[steady.cols], n)
+        if not rate:
+            return moved
         return moved + rate * add_up(held.rows, self.storage[1] * change[held.cols], n)
 
 

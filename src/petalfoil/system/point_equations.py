@@ -131,23 +131,9 @@ class PointEquations:
         return self.gaps.nodal_loads
 
     @cached_property
-    def _weights(self) -> tuple[sp.csr_array, sp.csr_array]:
-        """Weights of the nodal gaps in the gaps at all points, and in their slopes."""
-        at = self.state.points.every_curve, self.state.points.every_position
-        return self.whole.curves.rows(*at), self.whole.curves.rows(*at, 1)
-
-    @cached_property
-    def by_w(self) -> tuple[sp.csr_array, sp.csr_array]:
-        """`n`, `n'` of all points."""
-        points, curves = self.state.points, self.whole.curves
-        at = points.every_curve, points.every_position
-        return curves.rows_by_w(*at), curves.rows_by_w(*at, 1)
-
-    @cached_property
     def by_e(self) -> tuple[Array, Array]:
-        """The same by the journal's displacement."""
-        value, slope = (np.asarray(weights @ self.whole.curves.by_e) for weights in self._weights)
-        return value, slope
+        """Derivatives of the gaps at all points, and of their slopes, by the journal's displacement."""
+        return self.gaps.of_nodal(self.whole.curves.by_e)
 
     @cached_property
     def _dragged(self) -> tuple[sp.csr_array, sp.csr_array]:
@@ -157,12 +143,12 @@ class PointEquations:
     @cached_property
     def acting(self) -> tuple[sp.csr_array, sp.csr_array]:
         """Forces of unit reactions on the petals, (j, n_wall), and their derivative by the places (D6)."""
-        friction = self.whole.journal_friction
+        friction, shape = self.whole.journal_friction, (len(self.idle), self.whole.n_wall)
+        value, by_place = (sp.csr_array((n.data, (n.rows, n.cols)), shape=shape) for n in self.gaps.by_w)
         if not friction:
-            return self.by_w
-        pairs = zip(self.by_w, self._dragged, strict=True)
-        value, by_place = (sp.csr_array(n + friction * along) for n, along in pairs)
-        return value, by_place
+            return value, by_place
+        along, along_by_place = self._dragged
+        return sp.csr_array(value + friction * along), sp.csr_array(by_place + friction * along_by_place)
 
     @cached_property
     def residual(self) -> tuple[Array, Array, Array, Array]:
@@ -208,8 +194,8 @@ class PointEquations:
     def steady(self) -> sp.csc_array:
         """The tangent."""
         gaps, points, whole = self.gaps, self.state.points, self.whole
-        n, n_slope = map(Triplets.of, self.by_w)
-        pull, pull_by_place = (n, n_slope) if self.acting is self.by_w else map(Triplets.of, self.acting)
+        n, n_slope = gaps.by_w
+        pull, pull_by_place = map(Triplets.of, self.acting) if whole.journal_friction else (n, n_slope)
         by_P, by_w = (entries.at(values) for entries, values in zip(whole.film_entries, self.film.tangent, strict=True))
         acts, free, ends = (
             1.0 - self.idle,
@@ -254,9 +240,10 @@ class PointEquations:
     def force_rows(self) -> Array:
         """Derivative of the force on the journal by the unknowns, (d, n)."""
         points = self.state.points
-        value, slope = (weights @ self.whole.reaction_on_journal for weights in self._weights)
+        value, slope = self.gaps.of_nodal(self.whole.reaction_on_journal)
         film = self.whole.layout.border.row_derivative
-        travel = ((slope.T * points.reaction) @ points.spread) * self.travels
+        by_place = slope.T * points.reaction
+        travel = (by_place @ points.spread if points.inner.any() else by_place) * self.travels
         return np.concatenate([np.zeros((len(film), self.whole.n_wall)), film, value.T, travel], axis=1)
 
     @property
