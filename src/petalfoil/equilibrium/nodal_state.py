@@ -62,7 +62,7 @@ class NodalState:
         """The state that results are taken from: that with contacts between nodes, where the solution has it."""
         if solution.lines is not None:
             return cls.of_lines(solution.lines)
-        return cls.at_nodes(solution) if solution.elements is None else cls.of_elements(solution.elements)
+        return cls.at_nodes(solution) if solution.elements is None else cls.of_elements(solution.elements, solution)
 
     @classmethod
     def at_nodes(cls, solution: Solution) -> NodalState:
@@ -81,12 +81,15 @@ class NodalState:
         return cls(problem, film, deflection, found.shared, problem.film_force(x), problem.contact_force(found.lam))
 
     @classmethod
-    def of_elements(cls, found: ElementEquilibrium) -> NodalState:
-        """The state of petals with continuous slopes."""
+    def of_elements(cls, found: ElementEquilibrium, solution: Solution) -> NodalState:
+        """The state of petals with continuous slopes, which a `solution` that is sampled from them has at its nodes."""
         equations = found.equations
         problem = equations.problem
         by_film = problem.layout.border.row_derivative @ (equations.pressures - 1.0)
-        deflection, lam = sampled_deflection(found), shared_reactions(found)
+        if solution.sampled is found:
+            deflection, lam = solution.deflection[: found.pack.at_nodes.shape[0]], solution.lam
+        else:
+            deflection, lam = sampled_deflection(found), shared_reactions(found)
         by_contact = equations.force - by_film
         return cls(problem, equations.film, deflection, lam, by_film, by_contact, placed_contacts(found))
 
@@ -106,7 +109,9 @@ def sampled_solution(found: ElementEquilibrium, load: Array | None) -> Solution:
     wall = with_motion_along(problem.layout.stiffness, sampled_deflection(found))
     x[problem.layout.unknowns[DEFLECTION]], x[problem.positive] = wall, found.equations.pressures
     nodal = RefinedState(x, np.zeros(problem.layout.n_wall), shared_reactions(found))
-    return Solution(problem, nodal, found.residual, FOLLOWED, load=load, elements=found, elements_sought=True)
+    return Solution(
+        problem, nodal, found.residual, FOLLOWED, load=load, elements=found, elements_sought=True, sampled=found
+    )
 
 
 def sampled_lines(found: LineEquilibrium, load: Array | None) -> Solution:

@@ -108,6 +108,8 @@ class Solution:
         Force and moment left over on that rotor, over its load [1].
     friction : FrictionPath or None
         Friction forces between petals, where they were followed along a path; None of equilibria without them.
+    sampled : ElementEquilibrium or None
+        What its state at the nodes is sampled from; None of an equilibrium with contacts at nodes.
     shortest_step : float or None
         Shortest step of the interior point that led to it, over Newton's [1]; None of solutions reached otherwise.
     """
@@ -126,6 +128,7 @@ class Solution:
     lines: LineEquilibrium | None = field(default=None, repr=False)
     friction: FrictionPath | None = field(default=None, repr=False)
     shortest_step: float | None = None
+    sampled: ElementEquilibrium | None = field(default=None, repr=False)
 
     @property
     def position(self) -> Array:

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from petalfoil.physics.gap_curves import ContactPoints, PointGaps
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
-from petalfoil.sparsity import Triplets, added_blocks
+from petalfoil.sparsity import Triplets, add_up, added_blocks
 from petalfoil.system.coupled import WALL_ROUNDING, CoupledProblem
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.point_layout import PointLayout
@@ -141,14 +141,14 @@ class PointEquations:
         return dragged_faces(self.whole.pack, self.state.points)
 
     @cached_property
-    def acting(self) -> tuple[sp.csr_array, sp.csr_array]:
+    def acting(self) -> tuple[Triplets, Triplets]:
         """Forces of unit reactions on the petals, (j, n_wall), and their derivative by the places (D6)."""
         friction, shape = self.whole.journal_friction, (len(self.idle), self.whole.n_wall)
-        value, by_place = (sp.csr_array((n.data, (n.rows, n.cols)), shape=shape) for n in self.gaps.by_w)
         if not friction:
-            return value, by_place
-        along, along_by_place = self._dragged
-        return sp.csr_array(value + friction * along), sp.csr_array(by_place + friction * along_by_place)
+            return self.gaps.by_w
+        gaps = (sp.csr_array((n.data, (n.rows, n.cols)), shape=shape) for n in self.gaps.by_w)
+        value, by_place = (n + friction * along for n, along in zip(gaps, self._dragged, strict=True))
+        return Triplets.of(value), Triplets.of(by_place)
 
     @cached_property
     def residual(self) -> tuple[Array, Array, Array, Array]:
@@ -170,8 +170,9 @@ class PointEquations:
     def wall_forces(self) -> tuple[Array, Array, Array]:
         """Generalised forces on the petals: elastic, by pressure and contacts, and magnitudes of these, (n_wall,)."""
         (acts, _), reaction, over = self.acting, self.state.points.reaction, self.state.P - 1.0
-        loads = self.whole.push @ over + acts.T @ reaction
-        size = self.whole.push.magnitude @ np.abs(over) + abs(acts.T) @ reaction
+        pulls, wall, n = acts.data * reaction[acts.rows], acts.cols.astype(np.intp), self.whole.n_wall
+        loads = self.whole.push @ over + add_up(wall, pulls, n)
+        size = self.whole.push.magnitude @ np.abs(over) + add_up(wall, np.abs(pulls), n)
         return self.whole.elastic(self.state.w), loads, size
 
     @cached_property
@@ -195,7 +196,7 @@ class PointEquations:
         """The tangent."""
         gaps, points, whole = self.gaps, self.state.points, self.whole
         n, n_slope = gaps.by_w
-        pull, pull_by_place = map(Triplets.of, self.acting) if whole.journal_friction else (n, n_slope)
+        pull, pull_by_place = self.acting
         by_P, by_w = (entries.at(values) for entries, values in zip(whole.film_entries, self.film.tangent, strict=True))
         acts, free, ends = (
             1.0 - self.idle,
