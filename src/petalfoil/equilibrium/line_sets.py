@@ -139,16 +139,27 @@ def newton(state: LineContacts, steps: int) -> LineContacts:
     for count in range(steps):
         if state.balanced or (count >= PATIENCE and np.any(state.doubled)):
             return state
-        if not state.contacts.constraints.determinate:
-            raise NoLinesError("contacts repeat each other")
-        try:
-            response = state.motion.growing(0.0, current_run().film_solver)
-        except SingularMatrixError:
-            raise NoLinesError("the contacts do not determine the petals") from None
-        state = chords(stepped(state, response), response)
+        state = by_tangent(state)
         if state.balanced:
             return state
     raise NoLinesError(f"the residual is {state.residual:.1e} after {steps} tangents")
+
+
+def by_tangent(state: LineContacts) -> LineContacts:
+    """The state after a step with its own tangent, and further ones as long as they gain; one factorisation.
+
+    Raises
+    ------
+    NoLinesError
+        The film has closed, or the contacts do not determine the petals.
+    """
+    if not state.contacts.constraints.determinate:
+        raise NoLinesError("contacts repeat each other")
+    try:
+        response = state.motion.growing(0.0, current_run().film_solver)
+    except SingularMatrixError:
+        raise NoLinesError("the contacts do not determine the petals") from None
+    return chords(stepped(state, response), response)
 
 
 def chords(state: LineContacts, response: LinearResponse) -> LineContacts:
