@@ -5,6 +5,7 @@
 `base.py`            a discretised wall: unknowns, film over the wall, contacts
 `elasticity.py`      elastic forces from deflections
 `petals.py`          a leaf pack
+`between_grids.py`   its displacements on another grid
 `element_pack.py`    the same in cubic elements, 2-D
 `pack_slip.py`       slip at its contact points
 `sliding.py`         a leaf pack whose petals move in their own surface and stretch, on nodes

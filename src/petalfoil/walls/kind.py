@@ -84,6 +84,16 @@ class WallKind(ABC):
         """
         raise ValueError(f"the {self.name} wall does not interpolate from grid to grid")
 
+    def prolonged(self, case: Case, to: Case, deflection: Array) -> Array:
+        """Deflections (n,) on the grid of `case` in 3-D at the unknowns of `to`, which only differs in its grid.
+
+        Raises
+        ------
+        ValueError
+            The wall has none on other grids.
+        """
+        raise ValueError(f"the {self.name} wall is not carried over to other grids")
+
     def pitch(self, case: Case) -> float | None:
         """Angle by which the wall repeats round the shaft [rad]; None where it is the same all round."""
         return None

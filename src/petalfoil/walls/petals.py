@@ -25,6 +25,7 @@ from petalfoil.physics.shell import PetalShell, bending_stress
 from petalfoil.sparsity import block_diagonal
 from petalfoil.walls.backing import covered, on_springs
 from petalfoil.walls.base import PlacedContacts, Wall, WallState, axial_grid
+from petalfoil.walls.between_grids import on_other_grid
 from petalfoil.walls.bump_foil import foundation_stiffness
 from petalfoil.walls.elasticity import Elasticity
 from petalfoil.walls.element_pack import ElementPack, element_pack
@@ -255,6 +256,10 @@ class PetalWall(WallKind):
         """By monotone cubics along the petals, (n,)."""
         mesh, other = build_mesh(case), build_mesh(to)
         return np.asarray(PchipInterpolator(mesh.phi, nodal(mesh, deflection), axis=1)(other.phi)[:, 1:].ravel())
+
+    def prolonged(self, case: Case, to: Case, deflection: Array) -> Array:
+        """By cubic splines along the petals and along the shaft, (n,)."""
+        return on_other_grid(deflection, build_mesh(case), build_mesh(to))
 
     def coordinates(self, case: Case, wall: Wall) -> Fields:
         """Angle from the root of a petal [rad]."""
