@@ -162,3 +162,14 @@ def test_contact_lines_lead_along_a_curve_in_3d() -> None:
     counts = [int(record.scalars["factorizations"]) for record in records[1:]]
     assert np.median(counts) <= 3
     assert max(counts) <= 8
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("down", [0.0, 200e-6])
+def test_a_position_in_3d_from_nothing(down: float) -> None:
+    """On the default grid 3 and 6 when this was written, 22 of its own before it began on a coarse one."""
+    told = solve.record(case("paper_n8_spatial", **{"operation.eccentricity": (0.0, -down)})).scalars
+    assert told["converged"]
+    assert told["pack_iterations"] == 0
+    assert int(told["factorizations"]) <= 10  # type: ignore[call-overload]
+    assert 0 < int(told["coarse_factorizations"]) <= 40  # type: ignore[call-overload]

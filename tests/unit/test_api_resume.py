@@ -33,7 +33,8 @@ SERIES: dict[str, tuple[Case, str, dict[str, Any]]] = {
     "stability chart": (PETALS, "stability", {"speeds": "6000, 8000", "loads": "10 N, 20 N"}),
     "grid study": (PLAIN, "converge", {"coarsest": 16, "levels": 3}),
 }
-COSTS = {"wall_time", "iterations", "factorizations", "pack_iterations", "probe_factorizations", "residual"}
+COUNTS = {"iterations", "factorizations", "pack_iterations", "probe_factorizations", "coarse_factorizations"}
+COSTS = {"wall_time", "residual"} | COUNTS
 """What is not the same when points are computed in two runs."""
 
 CLOSE = {"reaction_balance_error", "mass_balance_error", "force_residual"}

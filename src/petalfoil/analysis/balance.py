@@ -7,14 +7,7 @@ from dataclasses import dataclass
 from petalfoil.analysis.arguments import Load, Moment, Speed
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.evaluation import Evaluation
-from petalfoil.analysis.operating_point import (
-    ForceResidual,
-    OperatingPoint,
-    applied_load,
-    at,
-    under_load,
-    with_reported,
-)
+from petalfoil.analysis.operating_point import ForceResidual, applied_load, at, loaded_point
 from petalfoil.analysis.other_bearing import bearing_of, of_rotor, rotor_parts
 from petalfoil.analysis.records import effort, position, solution_record
 from petalfoil.case import Case
@@ -65,7 +58,7 @@ def balance(
         askew = case.operation.tilt if case.bearings > 1 else None
         case = case.replace(**{"operation.moment": moment, "operation.tilt": askew})
     with running(progress, "balance") as run:
-        found = with_reported(case, OperatingPoint(*under_load(case, wanted)))
+        found = loaded_point(case, wanted)
         loaded = AppliedLoad.of(wanted, case.operation.moment)
         return balance_record("balance", case, found.answer, loaded, found.branch, effort(run.seconds))
 

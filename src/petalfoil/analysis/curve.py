@@ -19,7 +19,7 @@ from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.displacements import CHARACTERISTIC, displaced
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.heat_results import with_heat
-from petalfoil.analysis.operating_point import OperatingPoint, at_position, relaxed, with_reported
+from petalfoil.analysis.operating_point import OperatingPoint, position_point, relaxed
 from petalfoil.analysis.past_jump import PastJump
 from petalfoil.analysis.records import asked_position, branch, effort, failed_record, solution_record
 from petalfoil.analysis.resume import is_same
@@ -135,7 +135,7 @@ def point_after(case: Case, problem: CoupledProblem, before: Solution | None, *,
     """
     if before is None or is_classic(case):
         own = problem if problem.layout.case is case else None
-        found = relaxed(case, problem, before) if is_classic(case) else with_reported(case, at_position(case, own))
+        found = relaxed(case, problem, before) if is_classic(case) else position_point(case, own)
         return replace(found, branch=replace(found.branch, jump=False))
     here = before.problem.at(displacement=problem.displacement)
     answer, jump = led(before, here) if leads else None, False

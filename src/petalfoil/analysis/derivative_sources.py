@@ -31,6 +31,7 @@ from petalfoil.analysis.smooth_equilibrium import over_asperities
 from petalfoil.analysis.varied_case import VariedCase
 from petalfoil.case import Case
 from petalfoil.equilibrium.continuation import rest
+from petalfoil.equilibrium.led_points import with_nodal_contacts
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
@@ -176,7 +177,7 @@ def by_tangent(case: Case, asked: DerivativeRequest) -> Sequence[Derivatives | C
         return [derivatives_of(case, at_rest, results_at_rest, as_points=asked.as_points)]
     if asked.verb == "stability":
         return stability_derivatives(case, asked.mass, asked.quantities, as_points=asked.as_points)
-    solution = operating_point(case, None).answer
+    solution = with_nodal_contacts(operating_point(case, None).answer)
     if asked.verb == "coefficients":
         results, about = coefficient_results(asked.frequency), with_lines_of_motion(case, solution)
         return [derivatives_of(case, about, results, as_points=asked.as_points)]

@@ -23,6 +23,7 @@ from petalfoil.analysis.thermal_limit import beyond_thermal_limit
 from petalfoil.case import Case
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.equilibrium.branches import different, pressing_least
+from petalfoil.equilibrium.coarse_start import by_coarse_grid
 from petalfoil.equilibrium.heated import ThermalRunawayError
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
@@ -79,11 +80,58 @@ def operating_point(case: Case, load: Vector | None) -> OperatingPoint:
         None was found.
     """
     if load is None and case.operation.load is None:
-        return with_reported(case, at_position(case))
+        return position_point(case)
     wanted = applied_load(case, load)
-    found = with_reported(case, OperatingPoint(*under_load(at(case, eccentricity=(0.0, 0.0)), wanted)))
+    found = loaded_point(at(case, eccentricity=(0.0, 0.0)), wanted)
     loaded = AppliedLoad.of(wanted, case.operation.moment), ForceResidual(found.answer.force_residual)
     return replace(found, loaded=loaded)
+
+
+def position_point(case: Case, problem: CoupledProblem | None = None) -> OperatingPoint:
+    """The equilibrium to report at the case's eccentricity, as results are taken from it; arguments of `at_position`.
+
+    Raises
+    ------
+    ConvergenceError
+        None was found.
+    """
+    return from_coarse_grid(case, None) or with_reported(case, at_position(case, problem))
+
+
+def loaded_point(case: Case, load: Vector) -> OperatingPoint:
+    """The balance to report under a load [N], as results are taken from it.
+
+    Raises
+    ------
+    ConvergenceError
+        No position was found.
+    """
+    return from_coarse_grid(case, load) or with_reported(case, OperatingPoint(*under_load(case, load)))
+
+
+def from_coarse_grid(case: Case, load: Vector | None) -> OperatingPoint | None:
+    """The equilibrium with contact lines that one on a coarser grid leads to, at its position or under a load [N].
+
+    None where that leads nowhere, or where there may be others: `at_position` and `under_load` then tell which it is.
+    """
+    unplaced = load is None and case.operation.moment is not None
+    if unplaced or not begins_with_lines(case):
+        return None
+    problem = build_problem(case)
+    found = by_coarse_grid(problem, None if load is None else load_of(case, load, problem.layout))
+    if found is None:
+        return None
+    rate = leading_eigenvalue(found)
+    if rate.real > 0.0:
+        return None
+    keep(found, alone=False)
+    return OperatingPoint(found, branch(rate, case, 1 if load is None else None, found.solution_path))
+
+
+def begins_with_lines(case: Case) -> bool:
+    """Whether a coarser grid may lead to its equilibrium: one with contact lines, no temperatures or friction."""
+    slides = case.surface.petal_friction == 0.0
+    return case.has_contact_lines and slides and case.heat is None and case.shares_evenly and case.operation.speed > 0.0
 
 
 def with_reported(case: Case, found: OperatingPoint) -> OperatingPoint:

@@ -120,6 +120,7 @@ def effort(wall_time: float | None = None, run: RunContext | None = None) -> Eff
         factorizations=run.film.factorizations,
         pack_iterations=run.pack.factorizations,
         probe_factorizations=run.probes.factorizations,
+        coarse_factorizations=run.coarse.factorizations,
         wall_time=wall_time,
     )
 

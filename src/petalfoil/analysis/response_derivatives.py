@@ -30,6 +30,7 @@ from petalfoil.analysis.threshold import AtOwnSpeed, margin, rotor_mass, thresho
 from petalfoil.case import Case, ModelKind
 from petalfoil.dynamics.critical_mass import Whirl, eigenvalues
 from petalfoil.dynamics.reduced_impedance import factorised
+from petalfoil.equilibrium.led_points import with_nodal_contacts
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 from petalfoil.system.friction import friction_of
@@ -167,7 +168,7 @@ def stability_derivatives(
             "and of two in 2-D only",
             advice="leave rotor.span out, or compare two runs of `stability`",
         )
-    found = with_lines_of_motion(case, operating_point(case, None).answer)
+    found = with_lines_of_motion(case, with_nodal_contacts(operating_point(case, None).answer))
     of_modes = {name for mode in MODES for name in mode}
     sources: list[Derivatives | CrossingDerivatives] = []
     if not set(quantities) <= of_modes:
@@ -195,7 +196,8 @@ def threshold_derivatives(case: Case, answer: Solution, mass: float | None, *, a
 
     def balance_at(omega: float) -> Derivatives:
         there = at(case, omega)
-        found = with_lines_of_motion(there, operating_point(there, None).answer if line is None else line.at(omega))
+        answer = operating_point(there, None).answer if line is None else line.at(omega)
+        found = with_lines_of_motion(there, with_nodal_contacts(answer))
         return derivatives_of(there, found, whirl_results(there, found, mass), as_points=as_points)
 
     found = None if math.isnan(speed) else newton_to(THRESHOLD, (TO_THRESHOLD, 0.0), speed, balance_at)

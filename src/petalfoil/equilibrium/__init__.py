@@ -41,6 +41,8 @@
 `line_sets.py`             these found from active nodes
 `line_signs.py`            which contacts they have: corrected by signs
 `followed_lines.py`        these followed to a neighbouring position, speed or load
+`prolonged_lines.py`       these carried over from a coarse grid to a fine one
+`coarse_start.py`          an equilibrium on a fine grid from that on a coarse one
 `line_rates.py`            how such an equilibrium follows a parameter of its case
 `nodal_state.py`           film, deflections and reactions at nodes, wherever contacts are
 `element_response.py`      the response about these

@@ -21,6 +21,12 @@ Mask = NDArray[np.bool_]
 PENETRATION = 1e-4
 """A gap this far below zero gains a contact, in units of the reference film (1 nm)."""
 
+EARLY_PENETRATION = 1e-3
+"""The same of a state that has not converged (10 nm)."""
+
+EARLY_PULL = 1e-6
+"""A reaction this far below zero leaves such a state, in ambient pressure on a node."""
+
 
 def parted(state: LineContacts) -> LineContacts:
     """With the nodes beside each point at which the gap does not curve upward in its place."""
@@ -47,6 +53,22 @@ def revised(state: LineContacts) -> LineContacts | None:
     if bears.all() and pushes.all() and not len(fresh):
         return None
     return gaining(without(state, ~bears, ~pushes), fresh)
+
+
+def corrected_early(state: LineContacts, *, frees: bool) -> LineContacts:
+    """Other contacts before Newton's method has converged, where the signs ask for them; the state itself where not.
+
+    As long as it `frees` contacts, single nodes become points, and points at which the gap does not curve upward may
+    still travel to where it does.
+    """
+    if not frees and np.any(state.doubled):
+        state = parted(state)
+    nodes, points = state.held_reaction < -EARLY_PULL, state.reaction < -EARLY_PULL
+    fresh = lowest_of_runs(state, (state.gaps < -EARLY_PENETRATION) & ~covered(state))
+    if not (nodes.any() or points.any() or len(fresh)):
+        return state
+    left = without(state, nodes, points)
+    return gaining(freed(left) if frees else left, fresh)
 
 
 def gaining(state: LineContacts, fresh: Index) -> LineContacts:

@@ -40,6 +40,8 @@ class RunContext:
     film, pack, probes : Counter
         Factorisations of the coupled system, of the foil pack alone, and of systems that only answer a question
         (stability, other equilibria).
+    coarse : Counter
+        Factorisations of all kinds on a coarser grid, whose equilibrium leads to the one that is asked for.
     history : list
         One row a step.
     elimination_orders : dict
@@ -53,6 +55,7 @@ class RunContext:
     film: Counter = field(default_factory=Counter)
     pack: Counter = field(default_factory=Counter)
     probes: Counter = field(default_factory=Counter)
+    coarse: Counter = field(default_factory=Counter)
     history: list[HistoryRow] = field(default_factory=list)
     elimination_orders: dict[Hashable, Elimination] = field(default_factory=dict)
     tell: Callable[[str], None] | None = None

@@ -127,6 +127,7 @@ class Effort:
     factorizations: int
     pack_iterations: int
     probe_factorizations: int
+    coarse_factorizations: int
     wall_time: float | None = None
 
 

@@ -297,6 +297,7 @@ SCALARS: dict[str, Variable] = {
     "factorizations": _run("1", "factorisations of the coupled system", "N_lu", DataType.INT),
     "pack_iterations": _run("1", "iterations of the foil pack alone", "N_pk", DataType.INT),
     "probe_factorizations": _run("1", "factorisations for stability and other equilibria", "N_probe", DataType.INT),
+    "coarse_factorizations": _run("1", "factorisations on coarser grids that lead here", "N_coarse", DataType.INT),
     "cells_per_pitch": _run("1", "cells per pitch; of a plain bearing, round the circle", "N", DataType.INT),
     "axial_cells": _run("1", "cells over the whole length", "N_z", DataType.INT),
     "reference_film_thickness": _run("m", "film thickness the film equation is scaled with", "h_ref"),

@@ -1,0 +1,140 @@
+"""An equilibrium with contact lines on a fine grid, from that of the same bearing on a coarse one.
+
+On a few cells the pack is assembled, film and pack go through the interior point, and contact lines are found between
+nodes. All of it is carried over (`prolonged_lines.py`), and Newton's method with contact lines goes on from there: they
+travel, and need not be found node by node. On a grid with many more cells that takes steps from grid to grid.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.case import Case
+from petalfoil.equilibrium.branches import STRETCH, longest_contact, may_have_others
+from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
+from petalfoil.equilibrium.line_sets import by_tangent, with_lines
+from petalfoil.equilibrium.line_signs import corrected_early, freed, revised
+from petalfoil.equilibrium.nodal_state import sampled_lines
+from petalfoil.equilibrium.prolonged_lines import prolonged
+from petalfoil.equilibrium.run_context import current_run, running
+from petalfoil.equilibrium.solution import Solution
+from petalfoil.equilibrium.whole_length import balance_from_nothing, first_attempt
+from petalfoil.errors import ConvergenceError
+from petalfoil.system.build import build_problem
+from petalfoil.system.coupled import CoupledProblem
+
+Array = NDArray[np.float64]
+
+FEWEST_CELLS, FEWEST_AXIAL = 16, 16
+"""Cells per pitch and over the length of the coarsest grid. Of six petals at 150 to 250 um 12 cells per pitch do not
+lead to 64, where 16 do so in two tangents."""
+
+FINER_ROUND, FINER_ALONG = 6, 3
+"""Largest ratios of cells per pitch, and of cells over the length, from one grid to the next."""
+
+WORTH = 3.0
+"""Least number of cells over those of the coarse grid: with fewer an equilibrium there saves little."""
+
+TANGENTS = 10
+"""Most tangents on the fine grid: two to seven serve."""
+
+FREES = 3
+"""Tangents after which points at which the gap does not curve upward become contacts at nodes, and no other way."""
+
+
+def by_coarse_grid(problem: CoupledProblem, load: Array | None) -> Solution | None:
+    """The equilibrium at the position of `problem`, or under a `load` (n_position,), by way of a coarser grid.
+
+    None where no coarser grid is worth it, where it has no contact lines or may have other equilibria, or where its
+    lines do not lead to some on the grid of `problem`.
+    """
+    coarse = coarser(problem.layout.case)
+    if coarse is None or problem.layout.fields:
+        return None
+    known = on_coarse_grid(problem, coarse, load)
+    if known is None or not isinstance(known.lines, LineContacts):
+        return None
+    here = problem if load is None else problem.at(displacement=known.lines.problem.displacement)
+    try:
+        found = settled_early(freed(prolonged(known.lines, here, load)))
+    except NoLinesError as failure:
+        current_run().note("contact lines", outcome=str(failure))
+        return None
+    current_run().note("contact lines", points=len(found.reaction), nodes=int(found.held.sum()))
+    path = f"from the equilibrium on {coarse.cells_per_pitch} × {coarse.axial_cells} cells"
+    answer = replace(sampled_lines(found, load), solution_path=path, shortest_step=known.shortest_step)
+    return None if doubtful(answer) else answer
+
+
+def coarser(case: Case) -> Case | None:
+    """The same bearing on the next coarser grid; None where that saves little."""
+    cells, axial = case.cells_per_pitch, case.axial_cells
+    if cells > FINER_ROUND * FEWEST_CELLS or axial > FINER_ALONG * FEWEST_AXIAL:
+        cells, axial = max(cells // 2, FEWEST_CELLS), max(axial // 2, FEWEST_AXIAL)
+    else:
+        cells, axial = min(cells, FEWEST_CELLS), min(axial, FEWEST_AXIAL)
+    if case.cells_per_pitch * case.axial_cells < WORTH * cells * axial:
+        return None
+    return case.replace(**{"model.cells_per_pitch": cells, "model.axial_cells": axial})
+
+
+def on_coarse_grid(problem: CoupledProblem, case: Case, load: Array | None) -> Solution | None:
+    """The equilibrium of a coarser grid with its contact lines; None where it has none, or is `doubtful`.
+
+    Its factorisations are counted apart.
+    """
+    coarse = build_problem(case)
+    if coarse.layout.n_position != problem.layout.n_position:  # free to tilt by itself, not by its case
+        return None
+    coarse = coarse.at(bearing_number=problem.bearing_number, displacement=problem.displacement)
+    with running() as run:
+        if load is not None:
+            load = load * problem.layout.scales.force / coarse.layout.scales.force
+        found = found_there(coarse, load) if coarser(case) is None else by_coarse_grid(coarse, load)
+    current_run().coarse.factorizations += sum(
+        counter.factorizations for counter in (run.film, run.pack, run.probes, run.coarse)
+    )
+    return found
+
+
+def found_there(problem: CoupledProblem, load: Array | None) -> Solution | None:
+    """The equilibrium with its contact lines from nothing; None where there is none, or it is `doubtful`."""
+    try:
+        found = first_attempt(problem) if load is None else balance_from_nothing(problem, load)
+    except ConvergenceError as failure:  # the grid that was asked for will say why
+        current_run().note("coarse grid", outcome=str(failure))
+        return None
+    return None if found is None or doubtful(found) else with_lines(found)
+
+
+def doubtful(answer: Solution) -> bool:
+    """Whether it is to be found on its own grid: petals lie along each other, or others are looked for beside it.
+
+    Ends of long contacts recede node by node. Under a load no others are looked for.
+    """
+    return longest_contact(answer) >= STRETCH or (answer.load is None and may_have_others(answer))
+
+
+def settled_early(state: LineContacts) -> LineContacts:
+    """Newton's method from afar: signs are looked at after each tangent, before it has converged.
+
+    Raises
+    ------
+    NoLinesError
+        The film closes, contacts do not determine the petals, or it does not converge.
+    """
+    if not state.problem.admits(state.x):
+        raise NoLinesError("the film closes")
+    for count in range(TANGENTS):
+        state = by_tangent(state)
+        if not state.balanced:
+            state = corrected_early(state, frees=count < FREES)
+            continue
+        other = revised(state)
+        if other is None:
+            return state
+        state = other
+    raise NoLinesError(f"the residual is {state.residual:.1e} after {TANGENTS} tangents")
