@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -221,13 +222,21 @@ class NewtonSystem:
     factor: Factor
     rate: float
 
+    @cached_property
+    def open_by(self) -> Array:
+        """Slacks less gaps, (m,)."""
+        return np.asarray(self.point.s - self.problem.gaps(self.point.x))
+
+    @cached_property
+    def balanced(self) -> Array:
+        """What all directions balance, whatever they change `lam s` by, (n,)."""
+        imbalance = self.linearized.residual - self.problem.acting.T @ self.point.lam
+        return np.asarray(self.linearized.slack_derivative(self.open_by, self.rate) - imbalance)
+
     def direction(self, product: Array) -> Direction:
         """Direction that aims at a change `product` (m,) of `lam s`, at `F = H^T lam` and at `s = g` (P2)."""
-        G, H, (x, s, lam) = self.problem.G, self.problem.acting, (self.point.x, self.point.s, self.point.lam)
-        open_by = s - self.problem.gaps(x)
-        imbalance = self.linearized.residual - H.T @ lam
-        rhs = -imbalance + self.linearized.slack_derivative(open_by, self.rate) + H.T @ ((product + lam * open_by) / s)
-        dx = self.factor.solve(rhs)
+        G, H, s, lam, open_by = self.problem.G, self.problem.acting, self.point.s, self.point.lam, self.open_by
+        dx = self.factor.solve(self.balanced + H.T @ ((product + lam * open_by) / s))
         ds = G @ dx - open_by
         return Direction(dx, ds, (product - lam * ds) / s)
 
