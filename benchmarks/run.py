@@ -83,7 +83,7 @@ def arguments() -> argparse.Namespace:
     """Arguments of the command line."""
     about, usage = (__doc__ or "").split("\n\n")[:2]
     parser = argparse.ArgumentParser(description=about, usage=usage.strip())
-    parser.add_argument("--quick", action="store_true", help="small grids, under a minute")
+    parser.add_argument("--quick", action="store_true", help="small grids, about a minute")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all rows with their details")
     parser.add_argument("--against", type=Path, metavar="FILE", help="show the ratios of an earlier run beside")
     parser.add_argument("--only", nargs="+", choices=GROUPS, default=GROUPS, help="some groups of rows")
