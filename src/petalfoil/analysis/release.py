@@ -313,6 +313,7 @@ def released(
     problem = system.problem.at(displacement=e, bearing_number=rotor.bearing_number(tau))
     force = problem.journal_force(x, lam) + rotor.outside(tau) - rotor.gyroscopic(tau) @ v
     speeding = np.asarray(np.linalg.solve(rotor.inertia, force), dtype=np.float64)
-    change = TimeState(problem.storing(x, lam), v, speeding)
+    stored, storing = problem.stored(x), problem.storing(x, lam)
+    change = TimeState(storing + problem.filled(stored, storing), v, speeding)
     friction = None if system.friction is None else FrictionState.fresh(system.friction, x, lam)
-    return Instant(tau, TimeState(problem.stored(x), e, v), change, AtNodes(x, lam, closed), friction)
+    return Instant(tau, TimeState(stored, e, v), change, AtNodes(x, lam, closed), friction)

@@ -41,8 +41,9 @@ def released_at_points(
         friction = PointFriction(equations.whole, system.friction.coefficient, state, held).state(state, held)
     force = equations.force + rotor.outside(tau) - rotor.gyroscopic(tau) @ v
     speeding = np.asarray(np.linalg.solve(rotor.inertia, force), dtype=np.float64)
-    change = TimeState(-equations.film.residual, v, speeding)
-    start = at_points_instant(tau, equations, TimeState(equations.film.mass, e, v), change)
+    stored, storing = equations.film.mass, -equations.film.residual
+    change = TimeState(storing + equations.problem.filled(stored, storing), v, speeding)
+    start = at_points_instant(tau, equations, TimeState(stored, e, v), change)
     return replace(start, friction=friction)
 
 

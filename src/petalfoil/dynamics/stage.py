@@ -201,6 +201,12 @@ class Stage(ContactEquations):
         one_step = sliding and self.tangents >= CYCLING - 1
         return StepVerdict.RENEW if one_step or (step.number and contraction > slow) else StepVerdict.GO_ON
 
+    def gaining(self, rates: Array | None) -> Self:
+        """The same where what is stored gains by `rates` (n_stored,) beside what the equations of each cell say."""
+        if rates is None:
+            return self
+        return replace(self, problem=replace(self.problem, start=self.problem.start + rates / self.rate))
+
     def moving(self, x: Array, e: Array) -> TimeState:
         """Gas, position and velocity of a state of this stage."""
         stored = self.problem.at(displacement=e).stored(x)

@@ -122,17 +122,34 @@ def take_step(
     now = path[-1]
     base = now.moving.plus(step, (IMPLICIT, now.change))
     at = now.tau + GAMMA * step
-    inner = advance(bearing, bearing.stage(base, at, step, now, options), at, path, tangent)
+    first_stage = bearing.stage(base, at, step, now, options).gaining(gained(bearing, path, at))
+    inner = advance(bearing, first_stage, at, path, tangent)
     if inner is None:
         return None
     between = inner.instant
     base = now.moving.plus(step, (WEIGHT, now.change), (WEIGHT, between.change))
-    last_stage = bearing.stage(base, now.tau + step, step, now, options)
-    outer = advance(bearing, last_stage, now.tau + step, [*path[1 - KNOTS :], between], inner.tangent)
+    end, further = now.tau + step, [*path[1 - KNOTS :], between]
+    last_stage = bearing.stage(base, end, step, now, options).gaining(gained(bearing, further, end))
+    outer = advance(bearing, last_stage, end, further, inner.tangent)
     if outer is None:
         return None
     error = estimate(bearing, (now, between, outer.instant), step, outer.tangent)
     return AcceptedStep(between, outer.instant, error, max(inner.residual, outer.residual), outer.tangent)
+
+
+def gained(bearing: RotorBearing, path: list[Instant], tau: float) -> Array | None:
+    """Rates at which cells gain gas through a film without ends at `tau` (F6d), (n_stored,); None of one with ends.
+
+    They go on in a straight line from the latest two instants of `path`: of second order like the steps.
+    """
+    if not bearing.problem.without_ends:
+        return None
+    rates = [bearing.problem.filled(one.moving.stored, one.change.stored) for one in path[-2:]]
+    if len(rates) == 1:
+        return rates[0]
+    before, now = path[-2:]
+    ahead = (tau - now.tau) / (now.tau - before.tau)
+    return np.asarray((1.0 + ahead) * rates[1] - ahead * rates[0])
 
 
 def advance(

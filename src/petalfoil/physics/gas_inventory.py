@@ -7,7 +7,8 @@ length (F6). The 2-D film takes this condition in place of its first mass balanc
 
 In motion the bearing fills and empties through its ends: with `q` this sum and `m = sum 2 Lam P H dphi`,
 `-d_Z^2 q / 2 + d_tau m = 0`. `q` over its ambient value is taken as a parabola in `Z`, as under a uniform source, so
-that its mean obeys `q - q_a + (L / R_j)^2 / 6 d_tau m = 0` (F6b).
+that its mean obeys `q - q_a + (L / R_j)^2 / 6 d_tau m = 0` (F6b). The cell whose balance is left out gains and loses
+for all others; in a fast motion all share it (F6d, `system.film_rows.FilmRows.shared`).
 """
 
 from __future__ import annotations

@@ -16,6 +16,11 @@ from petalfoil.sparsity import add_up
 Array = NDArray[np.float64]
 
 
+ALONE = 0.1
+"""Most that one cell gains or loses for all others in a unit of time, over its gas: as little as its neighbours make up
+for. Small motions are below it; their linear response has all of it in this cell."""
+
+
 @dataclass(frozen=True)
 class FilmRows:
     """One equation for each pressure unknown, its derivatives and their places."""
@@ -63,6 +68,21 @@ class FilmRows:
     def total(self, rows: Array) -> float:
         """Gas in the whole film, or what of it leaves, from the masses or the residuals of all rows [1]."""
         return float(rows.sum() if self.inventory is None else rows[0] / self.inventory.filling)
+
+    def shared(self, stored: Array, rates: Array) -> Array:
+        """Parts of the cells in what all gas gains (F6d), from masses and rates of all rows, (n_unknown,) each [1].
+
+        None as long as the cell whose balance the inventory replaces has enough gas for all of it (`ALONE`). Beyond
+        that all share it by their gas.
+        """
+        if self.inventory is None or not rates[0]:
+            return np.zeros_like(stored)
+        filling = self.inventory.filling
+        own = stored[0] / filling - float(stored[1:].sum())
+        beyond = max(0.0, 1.0 - ALONE * max(own, 0.0) * filling / abs(float(rates[0])))
+        gained: Array = stored * (beyond * rates[0] / stored[0])
+        gained[0] = 0.0
+        return gained
 
     def at(self, P: Array, H: Array, Lam: float) -> FilmState:
         """The rows at one state."""

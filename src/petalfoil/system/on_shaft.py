@@ -76,6 +76,18 @@ class ShaftStep:
         places = zip(self.parts, self.layout.numbers, self.layout.gap_numbers, strict=True)
         return [(part, x[numbers], lam[gaps]) for part, numbers, gaps in places]
 
+    @property
+    def without_ends(self) -> bool:
+        """Whether a film has no ends."""
+        return any(part.without_ends for part in self.parts)
+
+    def filled(self, stored: Array, rates: Array) -> Array:
+        """Rates at which cells gain their parts (F6d), from what is stored and its rates, (n_stored,) each."""
+        gained = np.zeros_like(stored)
+        for part, numbers in zip(self.parts, self.layout.stored_numbers, strict=True):
+            gained[numbers] = part.filled(stored[numbers], rates[numbers])
+        return gained
+
     def stored_of_each(self, stored: Array) -> list[Array]:
         """What each bearing stores, or its rates."""
         return [stored[numbers] for numbers in self.layout.stored_numbers]

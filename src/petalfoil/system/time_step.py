@@ -59,6 +59,17 @@ class StepProblem(CoupledProblem):
         wall = still.linearize(x).residual - self.acting.T @ lam
         return np.concatenate([-rows.residual, -wall[self.layout.unknowns[DEFLECTION]]])
 
+    @property
+    def without_ends(self) -> bool:
+        """Whether the film has no ends: it fills and empties as a whole (F6b)."""
+        return self.layout.film_rows.inventory is not None
+
+    def filled(self, stored: Array, rates: Array) -> Array:
+        """Rates at which cells gain their parts (F6d), from what is stored and its rates, (n_stored,) each."""
+        gained, count = np.zeros_like(stored), self.layout.wall.film.n_unknown
+        gained[:count] = self.layout.film_rows.shared(stored[:count], rates[:count])
+        return gained
+
     def each(self, x: Array, lam: Array) -> list[tuple[StepProblem, Array, Array]]:
         """Every bearing with its unknowns and reactions: this one."""
         return [(self, x, lam)]
