@@ -11,6 +11,10 @@ that slips
 along `d` and across it, and `sigma = 0` for one that sticks (`a` = 1). Along `d` the first equation is replaced by the
 law of a line (M6), of which it is one state: the dense problem of `solvers/coulomb.py` then finds contacts, sticking
 and slipping to and fro together, however far they are from those known, and Newton's method only turns directions.
+
+Some friction forces move nothing: those along the shaft that alternate from node to node, as petals have their
+displacements along the shaft at the cells between. Of all forces that solve (M11) those nearest to the known ones are
+taken (`GIVE`).
 """
 
 from __future__ import annotations
@@ -30,6 +34,12 @@ TURNS = 30
 
 AGREE = 1e-10
 """Part of the largest limit of friction by which a force may miss the disk."""
+
+
+GIVE, TIMES = 1e-9, 2
+"""Part of the slip by a unit of its own force that a contact gives besides, counted from the force known: it determines
+forces that move nothing, which would otherwise be rounding. Times that the forces found are taken as known: a contact
+that sticks has then slipped by 1e-18 of what it would slip without friction."""
 
 
 @dataclass(frozen=True)
@@ -91,8 +101,21 @@ class SlipLines:
 def disk_forces(space: ContactSpace, constant: tuple[Array, Array], known: KnownForces) -> ContactForces | None:
     """Solve (K4) and (M11), None if it is not found.
 
-    `constant` are answers (m,) and slips (2 f,) without any unknowns. States that slip have the number 1. Directions
-    begin as those known, and where no contacts are found with them, without friction across them.
+    `constant` are answers (m,) and slips (2 f,) without any unknowns. States that slip have the number 1.
+    """
+    found = None
+    for _ in range(TIMES):
+        found = turned_from(*giving(space, constant, known.friction), known)
+        if found is None:
+            return None
+        known = known_from(space, found)
+    return found
+
+
+def turned_from(space: ContactSpace, constant: tuple[Array, Array], known: KnownForces) -> ContactForces | None:
+    """The same of contacts that give a little.
+
+    Directions begin as those known, and where no contacts are found with them, without friction across them.
     """
     rho = slip_resistance(space)
     limit = space.coefficient * known.reaction[space.rubs]
@@ -104,6 +127,15 @@ def disk_forces(space: ContactSpace, constant: tuple[Array, Array], known: Known
         if found is not None:
             return found
     return None
+
+
+def giving(
+    space: ContactSpace, constant: tuple[Array, Array], force: Array
+) -> tuple[ContactSpace, tuple[Array, Array]]:
+    """The problem of contacts that give a little with the change of their friction from `force` (2 f,)."""
+    give, slip = np.tile(GIVE / slip_resistance(space), 2), space.slip.copy()
+    slip[:, len(space.held) :] -= np.diag(give)
+    return replace(space, slip=slip), (constant[0], constant[1] + give * force)
 
 
 def turning(
@@ -125,9 +157,15 @@ def turning(
         states = States(found.states.closed, np.where(touching & slides, 1, 0))
         if np.max(missed[touching], initial=0.0) <= AGREE * np.max(limit, initial=0.0):
             return replace(found, friction=force, slip=slip, states=states)
-        gap = np.where(states.closed, 0.0, np.where(space.held, found.unknown, found.answer))
-        known, lines = KnownForces(states, gap, reaction, force, slip), SlipLines.along(y, limit, rho)
+        known = known_from(space, replace(found, friction=force, slip=slip, states=states))
+        lines = SlipLines.along(y, limit, rho)
     return None
+
+
+def known_from(space: ContactSpace, found: ContactForces) -> KnownForces:
+    """What is known once forces are found."""
+    gap = np.where(found.states.closed, 0.0, np.where(space.held, found.unknown, found.answer))
+    return KnownForces(found.states, gap, found.reaction(space), found.friction, found.slip)
 
 
 def slip_resistance(space: ContactSpace) -> Array:

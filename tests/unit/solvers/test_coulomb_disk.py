@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
 from petalfoil.solvers.coulomb import ContactForces, ContactSpace, KnownForces, States, contact_forces, of_states
-from petalfoil.solvers.coulomb_disk import SlipLines, disk_forces, slip_resistance
+from petalfoil.solvers.coulomb_disk import SlipLines, disk_forces, known_from, slip_resistance
 
 Array = NDArray[np.float64]
 
@@ -116,3 +116,32 @@ def test_newtons_lines_are_the_tangent_of_the_disk() -> None:
     lengths = 2.0 ** -np.arange(6, 12)
     remainder = [np.linalg.norm(law(z0 + t * step)[0] - (1.0 - t) * left) for t in lengths.tolist()]
     assert_allclose(np.log2(np.divide(remainder[:-1], remainder[1:])), 2.0, rtol=0.0, atol=0.05)
+
+
+def test_forces_that_move_nothing_stay_as_known() -> None:
+    """Two contacts whose forces are one to the body: it moves as if they were one, and what they do apart stays."""
+    rng, mu, twice = np.random.default_rng(8), 0.8, 0
+    for _ in range(20):
+        space, start = random_contacts(rng, 10, mu)
+        twins = np.array([0, 1])
+        for part in (space.answer, space.slip):
+            part[:, 10 + 10 + twins] = part[:, 10 + 10 + twins].mean(axis=1, keepdims=True)
+        space.slip[10 + twins] = space.slip[10 + twins].mean(axis=0)
+        start[0][twins], start[1][twins], start[1][10 + twins] = -2.0, 0.0, 0.0
+        first = disk_forces(space, start, untouched(space))
+        assert first is not None
+        assert_solves(space, start, first)
+        if not np.all(first.states.closed[twins] & (first.states.slips[twins] == 0)):
+            continue
+        T = first.friction.reshape(2, -1)
+        limit = mu * first.reaction(space)[space.rubs]
+        left = np.sqrt(limit[twins] ** 2 - T[0, twins] ** 2) - np.abs(T[1, twins])
+        apart = 0.5 * float(np.min(left)) * np.array([1.0, -1.0])
+        known = known_from(space, first)
+        known.friction[10 + twins] += apart
+        again = disk_forces(space, start, known)
+        assert again is not None
+        assert_solves(space, start, again)
+        assert_allclose(again.friction, known.friction, atol=1e-6)  # rounding over `GIVE`
+        twice += 1
+    assert twice > 2
