@@ -10,10 +10,13 @@ import pytest
 from petalfoil.analysis.impedance import elastic_and_sliding, impedance
 from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.orbit import orbit
-from petalfoil.analysis.orbit_motion import follow
+from petalfoil.analysis.orbit_motion import Orbit, follow
 from petalfoil.analysis.release import OrbitRequest
 from petalfoil.analysis.stability import stability
+from petalfoil.analysis.trace import Audits, Trace
 from petalfoil.case import Case
+from petalfoil.dynamics.adaptive_steps import MarchOptions, march
+from petalfoil.dynamics.time_state import Instant
 from petalfoil.equilibrium.run_context import running
 from petalfoil.equilibrium.small_motion import AT_POINTS
 from petalfoil.results.record import Record
@@ -99,3 +102,30 @@ def test_a_pack_without_points_goes_on_with_contacts_at_nodes_and_says_so() -> N
     assert 0.1 < share < 1.0
     assert "contacts at nodes in the others" in str(record.scalars["contact_model"])
     assert float(str(record.scalars["residual"])) <= 1e-3
+
+
+def audits(orbit: Orbit, path: list[Instant]) -> Audits:
+    """Of a path of instants."""
+    trace = Trace(orbit.case, orbit.system)
+    for instant in path:
+        trace.add(instant)
+    return trace.audits(trace.histories()[1])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [0.0, 0.05])
+def test_energy_of_a_step_from_points_to_nodes_is_told_and_not_counted(friction: float) -> None:
+    """What is left is no more than the errors of both parts; together with what is told it is all that was missing."""
+    bearing = on_grid(16).replace(rotor={"mass": 3.0}, **{"surface.petal_friction": friction})
+    orbit = Orbit.begin(bearing, OrbitRequest(revolutions=1.0, initial=(0.0, -315e-6)))
+    options = MarchOptions(tolerance=1e-4, first=0.01, longest=0.1)
+    with running():
+        first = [orbit.start, *(step.end for step in march(orbit.system, orbit.start, 1.0, options))]
+        second = [step.end for step in march(orbit.system.at_nodes, first[-1], 2.0, options)]
+    assert all(one.points is not None for one in first)
+    assert all(one.points is None for one in second)
+    whole, parts = audits(orbit, [*first, *second]), [audits(orbit, first), audits(orbit, second)]
+    assert all(part.contact_model_energy is None for part in parts)
+    assert whole.contact_model_energy is not None
+    assert whole.contact_model_energy > 1e-6
+    assert whole.energy_balance_error <= sum(part.energy_balance_error for part in parts)

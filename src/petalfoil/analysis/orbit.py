@@ -94,6 +94,8 @@ def summary(record: Record) -> Iterator[TableRow]:
     yield TableRow("dominant whirl ratio", _ratio(float(scalars["dominant_whirl_ratio"])), "")
     for name in ("mass_balance_error", "energy_balance_error"):
         yield TableRow(name.replace("_balance_", "-balance "), number(float(scalars[name])), "")
+    if "contact_model_energy" in scalars:
+        yield TableRow("energy of steps between points and nodes", number(float(scalars["contact_model_energy"])), "")
     yield TableRow("time spent", number(float(scalars["wall_time"])), "s")
 
 

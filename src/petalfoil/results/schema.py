@@ -273,6 +273,9 @@ SCALARS: dict[str, Variable] = {
     "energy_balance_error": _answer(
         "1", "energy of rotor and petals beyond the work done on them, over the work exchanged", "d_energy"
     ),
+    "contact_model_energy": _answer(
+        "1", "energy of the steps of a motion between contact points and nodes, over the work exchanged", "d_model"
+    ),
     "amplitude": _answer(
         "m", "largest distance of a journal from its mean position, in the last half of a motion", "A"
     ),
