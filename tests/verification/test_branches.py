@@ -10,12 +10,14 @@ import pytest
 import scipy.linalg as la
 from numpy.testing import assert_allclose
 
+from petalfoil.analysis.branch_choice import coarse
 from petalfoil.analysis.curve import curve
 from petalfoil.analysis.solve import solve
 from petalfoil.case import Case
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.equilibrium.branches import (
     CHANCE,
+    SLOW,
     STRETCH,
     different,
     fingerprint,
@@ -23,6 +25,7 @@ from petalfoil.equilibrium.branches import (
     longest_contact,
     may_have_others,
     pressing_least,
+    probe,
 )
 from petalfoil.equilibrium.cold_start import BARRIERS, attempt, solve_cold
 from petalfoil.equilibrium.continuation import settle
@@ -112,7 +115,25 @@ def test_others_are_looked_for_where_the_path_was_left() -> None:
     assert first.shortest_step is not None
     assert first.shortest_step > InteriorOptions.short
     asked = [replace(first, shortest_step=length) for length in (first.shortest_step, 0.1, None)]
-    assert [may_have_others(answer) for answer in asked] == [False, True, True]
+    assert [may_have_others(answer, complex(-1.0)) for answer in asked] == [False, True, True]
+    assert may_have_others(asked[0], complex(1.0))
+    assert may_have_others(asked[1], complex(-100.0))
+
+
+def test_others_are_looked_for_where_an_answer_comes_back_slowly() -> None:
+    """Cases 7 and 67 touch as long. Case 7 decays by more than `SLOW` per radian; the probe finds no other there."""
+    rates = []
+    for number, several in ((7, False), (67, True)):
+        problem = build_problem(drawn(number))
+        first = attempt(problem, BARRIERS[0])
+        assert first is not None
+        assert first.shortest_step is not None
+        assert first.shortest_step > InteriorOptions.short
+        assert longest_contact(first) >= STRETCH
+        rates.append(leading_eigenvalue(first))
+        assert may_have_others(first, rates[-1]) is several
+        assert (probe(build_problem(coarse(drawn(number)))) >= 2) is several
+    assert rates[0].real < -SLOW < rates[1].real < 0.0
 
 
 def test_an_answer_by_chance_is_one_of_a_hardly_possible_step() -> None:

@@ -29,7 +29,7 @@ def others(case: Case, problem: CoupledProblem, first: Solution | None, rate: co
     on a coarse one elsewhere.
     """
     found = [] if first is None else [first]
-    doubtful = first is None or rate.real > 0.0 or may_have_others(first)
+    doubtful = first is None or may_have_others(first, rate)
     if doubtful and wall_kind(case).can(Capability.SEVERAL_EQUILIBRIA):
         if not found_by_chance(first) and not is_coarse(case):
             return probe(build_problem(coarse(case))), found

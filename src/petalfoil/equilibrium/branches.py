@@ -35,6 +35,12 @@ STRETCH = 0.09
 cold start have others; their longest contacts are 0.099 to 0.9 of the pitch, those of 58 % of all packs are shorter."""
 
 
+SLOW = 3.0
+"""Decay of an answer per radian of rotation below which others are looked for beside it. At the end of a branch it is
+zero. Of 600 random packs 21 have several equilibria: where the steps to the answer were not short, it decays by 1.12 at
+most, those that touch as long by 6 in the median."""
+
+
 CHANCE = 0.01
 """Shortest step over Newton's below which rounding decides where the interior point ends: of 200 random bearings eight
 took one, of 600 equal problems one such answer was another. Others are then looked for on its own grid."""
@@ -45,14 +51,19 @@ def found_by_chance(answer: Solution | None) -> bool:
     return answer is None or (answer.shortest_step is not None and answer.shortest_step < CHANCE)
 
 
-def may_have_others(answer: Solution) -> bool:
-    """Whether other equilibria are worth looking for beside a stable one.
+def off_path(answer: Solution) -> bool:
+    """Whether the path to an answer is not the central one: by a short step, or not by the interior point."""
+    return answer.shortest_step is None or answer.shortest_step < InteriorOptions.short
 
-    They are where a petal touches along `STRETCH` or more and may rest on the next in more than one way, and where the
-    path to the answer is not the central one: it was reached by a short step, or not by the interior point.
+
+def may_have_others(answer: Solution, rate: complex) -> bool:
+    """Whether other equilibria are worth looking for beside an answer with the leading eigenvalue `rate`.
+
+    They are where it is unstable, where a petal touches along `STRETCH` or more, may rest on the next in more than one
+    way and does not soon come back to the way it does, and where the path to the answer is not the central one.
     """
-    off_path = answer.shortest_step is None or answer.shortest_step < InteriorOptions.short
-    return off_path or longest_contact(answer) >= STRETCH
+    comes_back = rate.real <= -SLOW
+    return off_path(answer) or rate.real > 0.0 or (longest_contact(answer) >= STRETCH and not comes_back)
 
 
 def longest_contact(answer: Solution) -> float:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
-from petalfoil.equilibrium.branches import STRETCH, longest_contact, may_have_others
+from petalfoil.equilibrium.branches import STRETCH, longest_contact, off_path
 from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
 from petalfoil.equilibrium.line_sets import by_tangent, with_lines
 from petalfoil.equilibrium.line_signs import corrected_early, freed, revised
@@ -111,11 +111,11 @@ def found_there(problem: CoupledProblem, load: Array | None) -> Solution | None:
 
 
 def doubtful(answer: Solution) -> bool:
-    """Whether it is to be found on its own grid: petals lie along each other, or others are looked for beside it.
+    """Whether it is to be found on its own grid: petals lie along each other, or its path was left.
 
     Ends of long contacts recede node by node. Under a load no others are looked for.
     """
-    return longest_contact(answer) >= STRETCH or (answer.load is None and may_have_others(answer))
+    return longest_contact(answer) >= STRETCH or (answer.load is None and off_path(answer))
 
 
 def settled_early(state: LineContacts) -> LineContacts:
