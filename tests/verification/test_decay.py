@@ -17,15 +17,17 @@ from petalfoil.analysis.release import OrbitRequest, released
 from petalfoil.case import Case, Rotor
 from petalfoil.dynamics.adaptive_steps import MarchOptions, march
 from petalfoil.dynamics.critical_mass import whirl_impedance
-from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
+from petalfoil.dynamics.harmonic_balance import SlidingContacts
 from petalfoil.dynamics.natural_modes import natural_modes
 from petalfoil.dynamics.rotor_motion import Inertia, RotorMotion
+from petalfoil.dynamics.rubbing_cycle import RubbingCycle
 from petalfoil.dynamics.rubbing_modes import RubbingRotor
 from petalfoil.dynamics.rubbing_whirl import RubbingWhirl
 from petalfoil.equilibrium.linear_response import SmallMotion
-from petalfoil.equilibrium.run_context import current_run, running
+from petalfoil.equilibrium.run_context import running
 from petalfoil.equilibrium.small_motion import Motion
 from petalfoil.equilibrium.solution import Solution
+from petalfoil.system.friction import slips
 from tests.cases import case
 from tests.verification.test_sliding_histories import swings
 
@@ -78,7 +80,7 @@ def led(bearing: Case, amplitude: float, ratio: float, steps: int) -> tuple[comp
         answer = operating_point(bearing, None).answer
         sliding, scales, speed = sliding_at(bearing, answer), answer.problem.layout.scales, bearing.operation.speed
         assert sliding is not None
-        K, C = cycle_impedance(SmallMotion.at_nodes(answer), ratio * speed, speed, (sliding, amplitude))
+        K, C, _ = cycle_impedance(SmallMotion.at_nodes(answer), ratio * speed, speed, (sliding, amplitude))
         x, y = answer.problem.displacement * scales.length
         begun = Orbit.begin(
             bearing.replace(rotor=Rotor(mass=MASS)), OrbitRequest(duration=1.0, initial=(x + amplitude, y))
@@ -102,30 +104,28 @@ def led(bearing: Case, amplitude: float, ratio: float, steps: int) -> tuple[comp
 
 @pytest.mark.slow
 def test_a_led_journal_loses_what_harmonic_balance_says() -> None:
-    """Eight petals: within 3 %, and by as much at every amplitude as long as friction is in proportion to it.
+    """Eight petals, contacts of both at the same nodes: within 0.5 %, friction in proportion to the amplitude.
 
-    Then normal forces, film and contacts change little, and all that is left is that slips of contacts are no sines.
+    Normal forces, film and contacts then change little.
     """
-    apart = []
     for amplitude in (2e-6, 8e-6):
         loop, harmonic = led(rubbing("paper_n8", amplitude * 312.5, 24), amplitude, 0.7, 60)
-        assert loop.imag == pytest.approx(harmonic.imag, rel=0.03)
-        assert loop.real == pytest.approx(harmonic.real, rel=0.03)
-        apart.append(loop.imag / harmonic.imag)
-    assert apart[0] == pytest.approx(apart[1], abs=1e-3)
-    assert abs(apart[0] - 1.0) > 0.01
+        assert loop.imag == pytest.approx(harmonic.imag, rel=0.005)
+        assert loop.real == pytest.approx(harmonic.real, rel=0.005)
 
 
 # ------------------------------------------------------------------------------------------ swings that die out
 
 
-def passing(motion: Motion, sliding: SlidingContacts, amplitude: float, guess: complex) -> complex:
+def passing(motion: Motion, sliding: SlidingContacts, amplitude: float, guess: complex, harmonics: int = 16) -> complex:
     """`s` [rad/s] with which a rotor swings along x past an amplitude [m]: `m s^2 + Z(s, a) = 0`, by secants."""
     scales, speed = motion.problem.layout.scales, motion.problem.layout.case.operation.speed
 
     def left(s: complex) -> complex:
-        response = motion.growing(s / speed, current_run().probe_solver)
-        gradient = FrictionCycle(sliding, response, amplitude / scales.length).force_gradient()[0, 0]
+        rubbing = RubbingCycle.of(sliding, motion, s / speed, amplitude / scales.length)
+        response = rubbing.cycle.response
+        friction = rubbing.force(slips(sliding.friction, response.units[:, 0]), harmonics)
+        gradient = response.force_gradient[0, 0] + friction[0]
         return complex(MASS * s**2 - gradient * scales.force / scales.length)
 
     last, s = guess, 1.001 * guess
@@ -171,7 +171,10 @@ def test_a_rotor_on_the_rig_decays_as_harmonic_balance_says(friction: float) -> 
 @pytest.mark.long
 @pytest.mark.parametrize("cells", [48, 128])
 def test_small_swings_on_fine_grids_decay_as_harmonic_balance_says(cells: int) -> None:
-    """Eight petals, swings of 7 to 9 um, nearly all of the damping friction: within 3 %, frequencies within 2 %.
+    """Eight petals, swings of 7 to 9 um, nearly all of the damping friction: 3 to 5 % more, frequencies within 1 %.
+
+    A swing that dies out takes no energy from the springs of contacts that slip at both turns, which harmonic balance
+    counts as stiffness: friction's part of it is 5 %. In a cycle both agree (`test_friction_in_time.py`).
 
     Contacts at nodes hold the journal by 11 % less damping on 128 cells, within whose cells their points stay.
     """
@@ -182,8 +185,8 @@ def test_small_swings_on_fine_grids_decay_as_harmonic_balance_says(cells: int) -
         assert sliding is not None
         for amplitude, s in decay[:2]:
             expected = passing(points.frictionless, sliding, amplitude, s)
-            assert damping_ratio(s) == pytest.approx(damping_ratio(expected), rel=0.03)
-            assert s.imag == pytest.approx(expected.imag, rel=0.02)
+            assert 1.0 < damping_ratio(s) / damping_ratio(expected) < 1.05
+            assert s.imag == pytest.approx(expected.imag, rel=0.01)
 
 
 @pytest.mark.long

@@ -20,6 +20,7 @@ from petalfoil.dynamics.adaptive_steps import MarchOptions, march
 from petalfoil.dynamics.harmonic_balance import SlidingContacts
 from petalfoil.dynamics.point_path import nodal_friction
 from petalfoil.dynamics.point_stage import PointStage
+from petalfoil.dynamics.rubbing_cycle import RubbingCycle
 from petalfoil.dynamics.stage import StageOptions
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import IMPLICIT
@@ -213,19 +214,28 @@ def test_much_friction_loses_nothing_and_is_as_stiff_as_petals_that_stick() -> N
 
 @pytest.mark.long
 @pytest.mark.parametrize(("friction", "amplitude"), [(0.002, 4.7e-6), (0.002, 6e-6), (0.0025, 7.6e-6)])
-def test_a_led_journal_loses_less_than_the_first_harmonic_of_its_slips(friction: float, amplitude: float) -> None:
-    """As in swings of these amplitudes, at their frequency, on 24 cells: 3 to 5 % less, and is as much stiffer."""
+def test_a_led_journal_loses_what_the_harmonics_of_its_slips_say(friction: float, amplitude: float) -> None:
+    """As in swings of these amplitudes, at their frequency, on 24 cells: within 0.5 %; stiffness too.
+
+    With one harmonic (E11) the loss is 3 to 5 % too large, and the stiffness 3 % too small.
+    """
     ratio = 0.118
     orbit, path, rotor = led(friction, amplitude, 80, 2, (24, ratio))
     Z = -first_harmonic(orbit, path[-81:], rotor) / amplitude
     bearing = rubbing("paper_n8", friction, 24)
     speed = bearing.operation.speed
     with running():
-        motion, sliding = elastic_and_sliding(bearing, operating_point(bearing, None).answer)
+        answer = operating_point(bearing, None).answer
+        motion, sliding = elastic_and_sliding(bearing, answer)
         assert sliding is not None
-        K, C = cycle_impedance(motion.frictionless, ratio * speed, speed, (sliding, amplitude))
-    assert Z.imag / (ratio * speed * C[0, 0]) == pytest.approx(0.965, abs=0.01)
-    assert Z.real / K[0, 0] == pytest.approx(1.03, abs=0.01)
+        scales = answer.problem.layout.scales
+        K, C, _ = cycle_impedance(motion.frictionless, ratio * speed, speed, (sliding, amplitude))
+        first = RubbingCycle.of(sliding, motion.frictionless, 1j * ratio, amplitude / scales.length).cycle
+        one = -first.force_gradient()[0, 0] * scales.force / scales.length
+    assert Z.imag == pytest.approx(ratio * speed * C[0, 0], rel=0.005)
+    assert Z.real == pytest.approx(K[0, 0], rel=0.005)
+    assert Z.imag / one.imag == pytest.approx(0.965, abs=0.01)
+    assert Z.real / one.real == pytest.approx(1.03, abs=0.01)
 
 
 @pytest.mark.slow

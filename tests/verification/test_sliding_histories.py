@@ -193,10 +193,11 @@ def swings(t: Array, x: Array) -> tuple[Array, Array]:
 @pytest.mark.slow
 @pytest.mark.parametrize(("released", "friction"), [(8e-6, 0.002), (50e-6, 0.0125)])
 def test_a_rotor_decays_as_harmonic_balance_says(released: float, friction: float) -> None:
-    """A rotor of 100 g released from off its balance: damping ratios of two swings within 5 %, mostly of friction.
+    """A rotor of 100 g released from off its balance: damping ratios of later swings within 5 %, mostly of friction.
 
-    Histories are those of contacts at nodes (`test_decay.py` has those of contact points); within 4 % of a harmonic
-    balance at the same nodes, within 5 % of the one with contact points.
+    The loss of a cycle is taken from the stiffness without friction, for contacts hold as much energy at every turn
+    (`test_friction_harmonics.py`). The first swing begins without friction. Histories are those of contacts at nodes
+    (`test_decay.py` has contact points).
     """
     mass = 0.1
     bearing = case("paper_n8", **{
@@ -211,16 +212,17 @@ def test_a_rotor_decays_as_harmonic_balance_says(released: float, friction: floa
         assert nodes is not None
         x, y = answer.problem.displacement * answer.problem.layout.scales.length
         rotor = bearing.replace(rotor=Rotor(mass=mass), **{"model.contacts": "nodes"})
-        record = orbit.record(rotor, revolutions=13.0, initial=(x + released, y))
+        record = orbit.record(rotor, revolutions=18.0, initial=(x + released, y))
         sizes, times = swings(record.coords["time"].astype(float), np.asarray(record.fields["x"], dtype=float))
-        for k in range(2):
+        for k in (1, 2):
             ratio = np.log(sizes[k] / sizes[k + 1]) / np.pi
             amplitude, frequency = np.sqrt(sizes[k] * sizes[k + 1]), 2.0 * np.pi / (times[k] + times[k + 1])
-            for motion, sliding, within in ((at_nodes, nodes, 0.04), (at_points.frictionless, points, 0.05)):
-                K, C = cycle_impedance(motion, frequency, bearing.operation.speed, (sliding, float(amplitude)))
-                assert ratio == pytest.approx(frequency * C[0, 0] / (2.0 * K[0, 0]), rel=within)
-                free = impedance(motion.frictionless, frequency, bearing.operation.speed)[1]
-                assert free[0, 0] < 0.2 * C[0, 0]
+            for motion, sliding in ((at_nodes, nodes), (at_points.frictionless, points)):
+                K, C, _ = cycle_impedance(motion, frequency, bearing.operation.speed, (sliding, float(amplitude)))
+                K_free, C_free = impedance(motion.frictionless, frequency, bearing.operation.speed)
+                assert ratio == pytest.approx(frequency * C[0, 0] / (2.0 * K_free[0, 0]), rel=0.05)
+                assert K_free[0, 0] < K[0, 0]
+                assert C_free[0, 0] < 0.2 * C[0, 0]
 
 
 @pytest.mark.slow

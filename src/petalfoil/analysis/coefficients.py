@@ -26,6 +26,7 @@ from petalfoil.analysis.session import part
 from petalfoil.analysis.tilt_coefficients import ENTRIES, TILTING, blocks
 from petalfoil.analysis.tilted_journal import free_to_tilt, held, whole_length
 from petalfoil.case import Case
+from petalfoil.dynamics.rubbing_cycle import HarmonicsTold
 from petalfoil.equilibrium.run_context import Progress, current_run, running
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.layout import ArrayTable, Cell, Series, SinglePoint, at_speed
@@ -257,17 +258,21 @@ def point(case: Case, asked: CoefficientRequest, load: Vector | None) -> Record:
     bearing = bearing_of(case, found.answer)
     answer = free_to_tilt(bearing, found.answer) if asked.tilt else held(bearing, found.answer)
     motion, sliding = elastic_and_sliding(bearing, answer)
+    harmonics: list[HarmonicsTold] = []
     if asked.amplitude is None or sliding is None:
         pairs = impedances(motion, asked.frequencies, speed)
     else:
-        free, rubs = motion.frictionless, (sliding, asked.amplitude)
-        pairs = [cycle_impedance(free, frequency, speed, rubs) for frequency in asked.frequencies]
+        rubs = sliding, asked.amplitude
+        cycles = [cycle_impedance(motion.frictionless, frequency, speed, rubs) for frequency in asked.frequencies]
+        pairs = [(K, C) for K, C, _ in cycles]
+        harmonics.append(HarmonicsTold.most_of([told for *_, told in cycles]))
     cost = effort(current_run().seconds)
     return record_of(
         "coefficients",
         case,
         *state_parts(case, found),
         Amplitudes(asked.amplitude),
+        *harmonics,
         ContactModel.of_motion(motion),
         RunOutcome(residual=found.answer.reported_residual),
         cost,

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
-from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
+from petalfoil.dynamics.harmonic_balance import SlidingContacts
 from petalfoil.dynamics.reduced_impedance import Impedance
+from petalfoil.dynamics.rubbing_cycle import HarmonicsTold, RubbingCycle
 from petalfoil.equilibrium.element_contacts import near_nodes
 from petalfoil.equilibrium.element_response import ElementMotion
 from petalfoil.equilibrium.led_points import with_nodal_contacts
@@ -119,8 +120,10 @@ def impedance(motion: Motion, frequency: float, speed: float) -> tuple[Array, Ar
 
 def cycle_impedance(
     motion: Motion, frequency: float, speed: float, rubs: tuple[SlidingContacts, float]
-) -> tuple[Array, Array]:
-    """The same where contacts rub in a whirl of an amplitude [m]; `motion` is without their friction.
+) -> tuple[Array, Array, HarmonicsTold]:
+    """The same where contacts rub in a whirl of an amplitude [m], and with how many harmonics of the slips.
+
+    `motion` is without their friction.
 
     Raises
     ------
@@ -128,8 +131,7 @@ def cycle_impedance(
         Slips and friction did not agree.
     """
     scales, (sliding, amplitude) = motion.problem.layout.scales, rubs
-    cycle = FrictionCycle(
-        sliding, motion.respond(frequency / speed, current_run().probe_solver), amplitude / scales.length
-    )
-    Z = -cycle.force_gradient() * scales.force / scales.length
-    return Z.real, Z.imag / frequency
+    cycle = RubbingCycle.of(sliding, motion, 1j * frequency / speed, amplitude / scales.length)
+    gradient, told = cycle.force_gradient()
+    Z = -gradient * scales.force / scales.length
+    return Z.real, Z.imag / frequency, told

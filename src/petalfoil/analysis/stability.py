@@ -29,6 +29,7 @@ from petalfoil.dynamics.critical_mass import EVEN_FILM, Whirl
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.dynamics.natural_modes import Mode
 from petalfoil.dynamics.reduced_impedance import Impedance
+from petalfoil.dynamics.rubbing_cycle import ONE_HARMONIC
 from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.grid import LoadSpeedGrid
@@ -224,7 +225,7 @@ def point(
         parts = (
             *(() if amplitude is not None else (RotorVerdict.of(case, whirl, rotor.mass, modes),)),
             RotorThreshold(rotor.mass, threshold),
-            *(() if amplitude is None else (Amplitudes(amplitude),)),
+            *(() if amplitude is None else (Amplitudes(amplitude), ONE_HARMONIC)),
             *whirl_parts(case, found, whirl, ended, modes),
             ContactModel.of_motion(impedance.motion),
             effort(run.seconds),

@@ -7,7 +7,9 @@
 `joint_motion.py`          small motions of a shaft in two bearings that differ
 `critical_mass.py`         smallest unstable mass of a rigid rotor
 `natural_modes.py`         damped natural motions of a rigid rotor
-`harmonic_balance.py`      friction between petals in a whirl of given amplitude
+`harmonic_balance.py`      friction between petals in a whirl of given amplitude, one harmonic of the slips
+`friction_harmonics.py`    the same with several harmonics
+`rubbing_cycle.py`         force of either on the journal, with as many harmonics as it needs
 `rubbing_whirl.py`         the bearing in such a whirl, on an ellipse of any shape
 `rubbing_modes.py`         natural modes and neutral whirls at that amplitude
 `speed_schedule.py`        speed and angle of the shaft over time

@@ -194,6 +194,10 @@ SCALARS: dict[str, Variable] = {
     ),
     "contact_fraction_limit": _given("1", "contact fraction at lift-off and touchdown", "s_c*"),
     "whirl_amplitude": _given("m", "amplitude of the whirl at which petals rub", "a"),
+    "friction_harmonics": _run("1", "odd harmonics of the slips of petals that rub", "N_h", DataType.INT),
+    "friction_harmonics_change": _run(
+        "1", "change of the friction on the journal from half as many harmonics, over it", "dT_h"
+    ),
     "rotor_mass": _given("kg", "mass of a rigid rotor; in two bearings all of it", "m"),
     "force_x": _answer("N", "force of film and contact on the journal along x", "F_x"),
     "force_y": _answer("N", "force of film and contact on the journal along y", "F_y"),

@@ -1,0 +1,158 @@
+"""Friction between petals on a journal in a small whirl of a stated amplitude, slips in as many harmonics as they need.
+
+The force on the journal is that of the first harmonic of friction, which alone works on a sinusoidal displacement.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petalfoil.dynamics.friction_harmonics import FrictionHarmonics
+from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
+from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.small_motion import Motion
+from petalfoil.system.friction import against_slip, slips
+
+Complex = NDArray[np.complex128]
+
+FREQUENCIES = 3
+"""Harmonics at whose own frequency petals and film are solved: 1, 3 and 5. Above, contacts move as at the last: the
+film hardly yields there. With all of them the loss of bearings changes by up to 2e-3 of it."""
+
+FEWEST, MOST = 4, 32
+"""Odd harmonics to begin with; the most."""
+
+CHANGE = 5e-3
+"""Change of the friction on the journal by twice as many harmonics, over it, at which they are enough."""
+
+LARGEST = 64
+"""Most directions of slip, of all contacts, with several harmonics: the step of Newton takes time in their cube."""
+
+
+@dataclass(frozen=True)
+class HarmonicsTold:
+    """Odd harmonics of the slips, and by how much half as many would change the friction on the journal, over it.
+
+    One harmonic has no half; the change is not known (nan).
+    """
+
+    friction_harmonics: int
+    friction_harmonics_change: float
+
+    @classmethod
+    def between(cls, harmonics: int, force: Complex, half: Complex) -> HarmonicsTold:
+        """From the force on the journal with so many and with half as many."""
+        size = float(np.linalg.norm(force))
+        return cls(harmonics, float(np.linalg.norm(force - half)) / size if size > 0.0 else 0.0)
+
+    @classmethod
+    def most_of(cls, told: list[HarmonicsTold]) -> HarmonicsTold:
+        """The most harmonics, and the largest change."""
+        changes = [one.friction_harmonics_change for one in told]
+        return cls(max(one.friction_harmonics for one in told), float(np.max(changes)))
+
+
+ONE_HARMONIC = HarmonicsTold(1, np.nan)
+"""What is told of slips with one harmonic."""
+
+
+def takes_several(sliding: SlidingContacts) -> bool:
+    """Whether slips have several harmonics: of few contacts, each along a line."""
+    return sliding.friction.directions == 1 and len(sliding.limit) <= LARGEST
+
+
+@dataclass(frozen=True)
+class RubbingCycle:
+    """A whirl of one frequency with friction.
+
+    Attributes
+    ----------
+    cycle : FrictionCycle
+        Contacts, response without friction and amplitude.
+    compliances : (m, k, k) array
+        Slips against unit friction forces at the harmonics 1, 3, 5; of the first alone where slips have one.
+    """
+
+    cycle: FrictionCycle
+    compliances: Complex
+
+    @classmethod
+    def of(cls, sliding: SlidingContacts, motion: Motion, s: complex, amplitude: float) -> RubbingCycle:
+        """A whirl in `exp(s tau)`, from small motions without friction, at an amplitude over the reference length.
+
+        As many factorisations as `FREQUENCIES`, and as many solves for each contact.
+        """
+        harmonics = range(1, 2 * FREQUENCIES, 2) if takes_several(sliding) else range(1, 2)
+        solver = current_run().probe_solver
+        each = [
+            FrictionCycle(sliding, motion.growing(complex(s.real, h * s.imag), solver), amplitude) for h in harmonics
+        ]
+        return cls(each[0], np.array([one.compliance() for one in each]))
+
+    def force_gradient(self) -> tuple[Complex, HarmonicsTold]:
+        """`dF/de` of film and contacts on the journal over unit of force and length [1]; the harmonics it took.
+
+        Raises
+        ------
+        ConvergenceError
+            Slips and friction did not agree.
+        """
+        response, columns, told = self.cycle.response, [], []
+        for unit, force in zip(response.units.T, response.force_gradient.T, strict=True):
+            by_friction, harmonics = self.with_enough(slips(self.cycle.sliding.friction, unit))
+            columns.append(force + by_friction)
+            told.append(harmonics)
+        return np.column_stack(columns), HarmonicsTold.most_of(told)
+
+    def with_enough(self, free: Complex) -> tuple[Complex, HarmonicsTold]:
+        """Force of friction on the journal with as many harmonics as it needs, over the amplitude.
+
+        Raises
+        ------
+        ConvergenceError
+            Slips and friction did not agree.
+        """
+        if len(self.compliances) == 1:
+            return self.force(free, 1), ONE_HARMONIC
+        force, told = self.force(free, FEWEST), HarmonicsTold(FEWEST, np.inf)
+        while told.friction_harmonics_change > CHANGE and told.friction_harmonics < MOST:
+            half, harmonics = force, 2 * told.friction_harmonics
+            force = self.force(free, harmonics)
+            told = HarmonicsTold.between(harmonics, force, half)
+        return force, told
+
+    def force(self, free: Complex, harmonics: int) -> Complex:
+        """Force of friction on the journal with so many harmonics, a power of 2, over the amplitude.
+
+        `free` (k,) are the slips without friction.
+
+        Raises
+        ------
+        ConvergenceError
+            Slips and friction did not agree.
+        """
+        cycle = self.cycle
+        if harmonics == 1:
+            slip = cycle.settled(free, self.compliances[0])
+            friction = cycle.sliding.equivalent(slip, cycle.amplitude)[0] * slip
+        else:
+            friction = self.with_harmonics(free, harmonics)
+        return cycle.response.forced(-against_slip(cycle.sliding.friction, friction, len(cycle.response.units)))[1]
+
+    def with_harmonics(self, free: Complex, harmonics: int) -> Complex:
+        """First harmonic of the friction forces of so many (E22), (k,), from half as many, and so on from one.
+
+        Samples begin where the slips without friction are largest together, so that turning their phase turns that of
+        friction and changes nothing else.
+        """
+        sliding = self.cycle.sliding
+        law = FrictionHarmonics(sliding.friction.stiffness, sliding.limit / self.cycle.amplitude, self.compliances)
+        phase = np.exp(0.5j * np.angle(complex(np.sum(free**2))))
+        found = law.settled(free / phase, 1)
+        while len(found.joint) < harmonics:
+            found = law.settled(free / phase, 2 * len(found.joint), found)
+        current_run().note("harmonic balance", steps=found.steps, contacts=len(free), harmonics=harmonics)
+        return np.asarray(phase * found.friction[0])
