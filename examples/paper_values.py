@@ -3,7 +3,7 @@
     python examples/paper_values.py docs/paper-values.md
 
 6, 8 and 10 petals at four displacements, 2-D and 3-D, and the foil packs at zero speed; each value extrapolated from
-several grids, with its error bar. Half an hour of processor time, half of it for the finest 3-D grid.
+several grids, with its error bar. Some 45 minutes of processor time, a third of them for the finest 3-D grid.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from petalfoil.analysis.richardson import Extrapolation, fitted, richardson
 HERE = Path(__file__).parent
 COUNTS, DISPLACEMENTS = (6, 8, 10), (0, 100, 200, 280)  # the latter in µm, downward
 MODELS = {"2d": "2-D", "3d": "3-D"}
-GRIDS = {"2d": (64, 128, 256, 512), "3d": (64, 80, 96, 128)}
-"""Cells per pitch; in 3-D half as many over the length. With 48 among them the peak pressure of eight petals at 280 µm
-would have a bar of 1.7 %; on 24 petals come down where they should not."""
+GRIDS = {"2d": (64, 128, 256, 512), "3d": (64, 72, 80, 88, 96, 112, 128)}
+"""Cells per pitch; in 3-D half as many over the length, and many sizes, because values scatter. On 24 petals come down
+where they should not."""
 
 RESTING_GRIDS = GRIDS | {"3d": (32, 48, 64, 96)}
 """At zero speed nothing scatters."""
@@ -50,13 +50,12 @@ Plain: no such order is observed, because the coarsest of the grids do not resol
 change between them; the bar is 3 (`SUSPICION`) times the largest distance that the differences between the grids allow.
 `petalfoil converge` follows the same rules; see [analysis/richardson.py](../src/petalfoil/analysis/richardson.py).
 
-In 3-D contact lines begin and end at stations, and values scatter by some thousandths from grid to grid: from three
-grids, bars would be up to two per cent. The value is that of a line in the square of the cells' size by least squares
-through those of all four grids (`richardson.fitted`). Its bar is the sum of 1.25 (`FITTED`) times the distance of the
-finest grid from the value, the standard deviation from the line, and the distance of the finest grid from the line (Eça
-and Hoekstra 2014, [doi:10.1016/j.jcp.2014.01.006](https://doi.org/10.1016/j.jcp.2014.01.006)). **Bold**: values scatter
-less than they change from grid to grid. Plain: they do not, and the bar is 3 (`SUSPICION`) times the sum of these
-distances, and more in proportion.
+In 3-D contact lines begin and end at stations, and values scatter by some thousandths from grid to grid. The value is
+that of a line in the square of the cells' size by least squares through those of all grids (`richardson.fitted`; Eça
+and Hoekstra 2014, [doi:10.1016/j.jcp.2014.01.006](https://doi.org/10.1016/j.jcp.2014.01.006)). Its bar is the interval
+in which it lies with a confidence of 95 % (`richardson.CONFIDENCE`) by Student's t, at least 1.25 (`FITTED`) times the distance of
+the finest grid from it. **Bold**: the change with the size of the cells is seen through the scatter with that
+confidence. Plain: it is not.
 
 Stations along the shaft are those of the default, adapted to a coarse solution (`model.axial_density`): grids of
 all sizes lie in the same map. At zero speed they are equal, and the 3-D grids are {resting}. Petals bend

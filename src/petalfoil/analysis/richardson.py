@@ -8,8 +8,8 @@ The bar is the grid convergence index (Roache 1994) of the finest value, `1.75 |
 to the order of the discretisation. Contacts begin at nodes, so figures may jump by a cell as grids are refined, and two
 differences may be small or large by accident. Then the bar is the largest that the differences allow.
 
-More grids than three tell scatter from error: the limit is then that of a line in `h**2` by least squares (Eça and
-Hoekstra 2014), whatever their ratios.
+More grids than three tell scatter from error: the limit is then that of a line in `h**2` by least squares, whatever
+their ratios (Eça and Hoekstra 2014), and its bar the interval in which Student's t says that it lies.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.special import stdtrit
 
 DECLARED_ORDER = 2.0
 """Order of shell and film where they are smooth."""
@@ -38,7 +39,10 @@ SUSPICION = 3.0
 """Safety factor where the order is not credible, or not known (Roache 1994)."""
 
 FITTED = 1.25
-"""Safety factor of a bar from a fit whose values scatter less than they change from grid to grid (Eça and Hoekstra)."""
+"""Least bar of a fit over the distance of the finest value from its limit (Roache 1994)."""
+
+CONFIDENCE = 0.95
+"""Part of the limits of scattering values that lie within the bars of their fits."""
 
 AGREEMENT = 1e-8
 """Relative difference below which values are equal: residuals are solved to this."""
@@ -113,11 +117,11 @@ def richardson(
 
 
 def fitted(values: Sequence[float], cells: Sequence[int], resolution: float = 0.0) -> Extrapolation:
-    """Extrapolate values that scatter, from four or more grids: least squares of `f + C h**2` with weights `1 / h`.
+    """Extrapolate values that scatter, from four or more grids: least squares of `f + C h**2`.
 
-    The bar is that of Eça and Hoekstra (2014): `1.25 |f_n - f| + sigma + |f_n - fit_n|` with the finest value `f_n`
-    and the standard deviation `sigma` from the fit; where that is not below the mean change from grid to grid, three
-    times that with all terms in proportion.
+    The bar is `t s` with the standard error `s` of the limit and Student's t for a confidence of 95 % (`CONFIDENCE`);
+    1.25 (`FITTED`) times the distance of the finest value from the limit where that is more. Grids of many sizes make
+    it narrow, also where values scatter more than they change from one grid to the next.
 
     Parameters
     ----------
@@ -131,7 +135,7 @@ def fitted(values: Sequence[float], cells: Sequence[int], resolution: float = 0.
     Returns
     -------
     Extrapolation
-        Limit, no order, error bar, and whether the values scatter less than they change.
+        Limit, no order, error bar, and whether `C` is seen through the scatter with the same confidence.
 
     Raises
     ------
@@ -144,16 +148,15 @@ def fitted(values: Sequence[float], cells: Sequence[int], resolution: float = 0.
     resolved = max(resolution, AGREEMENT * float(np.max(np.abs(f))))
     if np.ptp(f) <= resolved:
         return Extrapolation(float(f[-1]), math.nan, resolved, True)
-    weight = len(f) / (h * np.sum(1.0 / h))
     line = np.stack([np.ones(len(f)), h**2], axis=1)
-    root = np.sqrt(weight)
-    limit, slope = np.linalg.lstsq(line * root[:, None], f * root)[0]
+    inverse = np.linalg.inv(line.T @ line)
+    limit, slope = inverse @ line.T @ f
     off = f - limit - slope * h**2
-    sigma = math.sqrt(float(np.sum(weight * off**2)) / (len(f) - 2))
-    scatter = sigma * (len(f) - 1) / float(np.ptp(f))
-    terms = (abs(limit - f[-1]), sigma, abs(off[-1]))
-    bar = FITTED * terms[0] + terms[1] + terms[2] if scatter < 1.0 else SUSPICION * scatter * sum(terms)
-    return Extrapolation(float(limit), math.nan, max(float(bar), resolved), scatter < 1.0)
+    freedom = len(f) - 2
+    standard_errors = np.sqrt(np.diag(inverse) * np.sum(off**2) / freedom)
+    scatter, unsure = stdtrit(freedom, 0.5 * (1.0 + CONFIDENCE)) * standard_errors
+    bar = max(FITTED * abs(limit - f[-1]), scatter, resolved)
+    return Extrapolation(float(limit), math.nan, float(bar), bool(abs(slope) > unsure))
 
 
 def observed_order(differences: Sequence[float], ratio: float) -> float:
