@@ -52,10 +52,10 @@ change between them; the bar is 3 (`SUSPICION`) times the largest distance that 
 
 In 3-D contact lines begin and end at stations, and values scatter by some thousandths from grid to grid. The value is
 that of a line in the square of the cells' size by least squares through those of all grids (`richardson.fitted`; Eça
-and Hoekstra 2014, [doi:10.1016/j.jcp.2014.01.006](https://doi.org/10.1016/j.jcp.2014.01.006)). Its bar is the interval
-in which it lies with a confidence of 95 % (`richardson.CONFIDENCE`) by Student's t, at least 1.25 (`FITTED`) times the distance of
-the finest grid from it. **Bold**: the change with the size of the cells is seen through the scatter with that
-confidence. Plain: it is not.
+and Hoekstra 2014, [doi:10.1016/j.jcp.2014.01.006](https://doi.org/10.1016/j.jcp.2014.01.006)). Its bar is the
+interval in which it lies with a confidence of 95 % (`richardson.CONFIDENCE`) by Student's t, at least 1.25 (`FITTED`)
+times the distance of the finest grid from it. **Bold**: the change with the size of the cells is seen through the
+scatter with that confidence. Plain: it is not.
 
 Stations along the shaft are those of the default, adapted to a coarse solution (`model.axial_density`): grids of
 all sizes lie in the same map. At zero speed they are equal, and the 3-D grids are {resting}. Petals bend
