@@ -58,6 +58,11 @@ class Slips:
     friction: Complex
     steps: int
 
+    def turned(self, phase: complex) -> Slips:
+        """The same motion by a journal whose displacement is multiplied by `phase`, of size 1."""
+        turns = phase ** np.arange(1, 2 * len(self.joint), 2)[:, None]
+        return Slips(self.joint * turns, self.friction * turns, self.steps)
+
 
 @dataclass(frozen=True)
 class FrictionHarmonics:

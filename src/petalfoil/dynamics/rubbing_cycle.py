@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.dynamics.friction_harmonics import FrictionHarmonics
+from petalfoil.dynamics.friction_harmonics import FrictionHarmonics, Slips
 from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import Motion
@@ -53,6 +53,12 @@ class HarmonicsTold:
         """The most harmonics, and the largest change."""
         changes = [one.friction_harmonics_change for one in told]
         return cls(max(one.friction_harmonics for one in told), float(np.max(changes)))
+
+    @classmethod
+    def fewest_of(cls, told: list[HarmonicsTold]) -> HarmonicsTold:
+        """The fewest harmonics, and the largest change: not known where one of them is not."""
+        changes = [one.friction_harmonics_change for one in told]
+        return cls(min(one.friction_harmonics for one in told), float(np.max(changes)))
 
 
 ONE_HARMONIC = HarmonicsTold(1, np.nan)
@@ -139,20 +145,55 @@ class RubbingCycle:
             slip = cycle.settled(free, self.compliances[0])
             friction = cycle.sliding.equivalent(slip, cycle.amplitude)[0] * slip
         else:
-            friction = self.with_harmonics(free, harmonics)
+            friction = self.with_harmonics(free, harmonics).friction[0]
         return cycle.response.forced(-against_slip(cycle.sliding.friction, friction, len(cycle.response.units)))[1]
 
-    def with_harmonics(self, free: Complex, harmonics: int) -> Complex:
-        """First harmonic of the friction forces of so many (E22), (k,), from half as many, and so on from one.
+    def with_harmonics(self, free: Complex, harmonics: int, last: Slips | None = None) -> Slips:
+        """Slips of so many harmonics (E22) from half as many, and so on from one; or from `last`, of as many.
 
         Samples begin where the slips without friction are largest together, so that turning their phase turns that of
         friction and changes nothing else.
+
+        Raises
+        ------
+        ConvergenceError
+            Slips and friction did not agree.
         """
         sliding = self.cycle.sliding
         law = FrictionHarmonics(sliding.friction.stiffness, sliding.limit / self.cycle.amplitude, self.compliances)
-        phase = np.exp(0.5j * np.angle(complex(np.sum(free**2))))
-        found = law.settled(free / phase, 1)
+        phase = complex(np.exp(0.5j * np.angle(complex(np.sum(free**2)))))
+        if last is None:
+            found = law.settled(free / phase, 1)
+        else:
+            found = law.solved(last.turned(1.0 / phase).joint, free / phase, 0)
         while len(found.joint) < harmonics:
             found = law.settled(free / phase, 2 * len(found.joint), found)
         current_run().note("harmonic balance", steps=found.steps, contacts=len(free), harmonics=harmonics)
-        return np.asarray(phase * found.friction[0])
+        return found.turned(phase)
+
+
+@dataclass
+class FollowedSlips:
+    """Slips in a number of harmonics, each solution the start of the next, for whirls near each other.
+
+    Attributes
+    ----------
+    harmonics : int
+        Odd harmonics, a power of 2.
+    last : Slips or None
+        The last solution.
+    """
+
+    harmonics: int
+    last: Slips | None = None
+
+    def friction(self, rubbing: RubbingCycle, free: Complex) -> Complex:
+        """First harmonic of the friction forces over the amplitude, (k,), from the slips without friction.
+
+        Raises
+        ------
+        ConvergenceError
+            Slips and friction did not agree.
+        """
+        self.last = rubbing.with_harmonics(free, self.harmonics, self.last)
+        return np.asarray(self.last.friction[0])
