@@ -135,7 +135,7 @@ class RotorOnBearings:
         """The natural modes at a speed [rad/s], and at the amplitude if there is one."""
         if self.amplitude is None:
             return natural_modes(impedance, self.inertia, speed)
-        return RubbingRotor(RubbingWhirl.of(impedance.motion, self.amplitude), self.inertia, speed).modes(impedance)
+        return [*RubbingRotor(RubbingWhirl.of(impedance.motion, self.amplitude), self.inertia, speed).modes(impedance)]
 
     def deciding_modes(self, whirl: Whirl, impedance: Impedance, speed: float) -> list[Mode] | None:
         """The modes where no mass is critical, for they decide there; None where one is, or the mass is unknown."""

@@ -29,7 +29,8 @@ from petalfoil.dynamics.critical_mass import EVEN_FILM, Whirl
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.dynamics.natural_modes import Mode
 from petalfoil.dynamics.reduced_impedance import Impedance
-from petalfoil.dynamics.rubbing_cycle import ONE_HARMONIC
+from petalfoil.dynamics.rubbing_cycle import ONE_HARMONIC, HarmonicsTold
+from petalfoil.dynamics.rubbing_modes import RubbingMode, RubbingNeutral
 from petalfoil.equilibrium.run_context import Progress, running
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.grid import LoadSpeedGrid
@@ -43,6 +44,8 @@ MODES = ("natural_frequency", "mode_growth_rate", "damping_ratio", "participatio
 """What is told of each natural mode."""
 TILT = "mode_tilt"
 """The same of a rotor that tilts."""
+HARMONICS = "mode_friction_harmonics"
+"""The same at an amplitude."""
 MODE_BARS = ("natural_frequency_error", "mode_growth_rate_error", "damping_ratio_error")
 """Their error bars."""
 
@@ -74,6 +77,9 @@ MODE_TABLE = ArrayTable(
         "participation\nof the rotor": lambda record, k: float(record.fields["participation"][k]),
         "forward (+1) or\nbackward (-1)": lambda record, k: between_ends("whirl_direction", record, k),
         "cylindrical (0)\nor conical (1)": lambda record, k: between_ends(TILT, record, k),
+        "harmonics\nof slips": lambda record, k: (
+            str(int(record.fields[HARMONICS][k])) if HARMONICS in record.fields else ABSENT
+        ),
     },
 )
 CAMPBELL_TABLE = ArrayTable(
@@ -137,7 +143,7 @@ class RotorThreshold:
 
 
 @analysis(
-    SinglePoint(lists=MODES, histories=(TILT, *MODE_BARS), table=MODE_TABLE),
+    SinglePoint(lists=MODES, histories=(TILT, HARMONICS, *MODE_BARS), table=MODE_TABLE),
     GRID,
     Campbell(lists=(*MODES, CRITICAL), histories=(TILT,), table=CAMPBELL_TABLE, at=at_speed),
     excludes={"speed": ("speeds",), "load": ("loads",), "mass": ("loads",), "amplitude": ("speeds", "loads")},
@@ -225,7 +231,7 @@ def point(
         parts = (
             *(() if amplitude is not None else (RotorVerdict.of(case, whirl, rotor.mass, modes),)),
             RotorThreshold(rotor.mass, threshold),
-            *(() if amplitude is None else (Amplitudes(amplitude), ONE_HARMONIC)),
+            *(() if amplitude is None else (Amplitudes(amplitude), harmonics_told(whirl, modes))),
             *whirl_parts(case, found, whirl, ended, modes),
             ContactModel.of_motion(impedance.motion),
             effort(run.seconds),
@@ -255,6 +261,12 @@ def whirl_parts(
     return *state_parts(case, found), CriticalMass(whirl.mass, whirl.ratio), outcome
 
 
+def harmonics_told(whirl: Whirl, modes: Sequence[Mode] | None) -> HarmonicsTold:
+    """Harmonics of the slips in the critical whirl and the modes: the fewest."""
+    told = [one.told for one in (whirl, *(modes or ())) if isinstance(one, RubbingNeutral | RubbingMode)]
+    return HarmonicsTold.fewest_of(told or [ONE_HARMONIC])
+
+
 def any_grows(modes: Sequence[Mode] | None) -> bool:
     """Whether one of the natural modes, as far as there are any, grows, and is not neutral."""
     return any(mode.grows for mode in modes or ())
@@ -271,6 +283,9 @@ def mode_fields(modes: list[Mode], speed: float, *, tilts: bool) -> tuple[dict[s
     }
     if tilts:
         values[TILT] = [mode.tilt for mode in modes]
+    rubbing = [float(mode.told.friction_harmonics) for mode in modes if isinstance(mode, RubbingMode)]
+    if rubbing:
+        values[HARMONICS] = rubbing
     fields: dict[str, Array] = {name: np.array(each, dtype=float) for name, each in values.items()}
     return fields, {"mode": np.arange(1, len(modes) + 1)}
 

@@ -12,6 +12,7 @@
 `rubbing_cycle.py`         force of either on the journal, with as many harmonics as it needs
 `rubbing_whirl.py`         the bearing in such a whirl, on an ellipse of any shape
 `rubbing_modes.py`         natural modes and neutral whirls at that amplitude
+`more_harmonics.py`        those with as many harmonics of the slips as they need
 `speed_schedule.py`        speed and angle of the shaft over time
 `rotor_motion.py`          mass, loads and unbalance in the units of the problem
 `time_state.py`            state at an instant

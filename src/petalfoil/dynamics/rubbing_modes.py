@@ -5,13 +5,14 @@
 A natural mode passes the amplitude `a` with the frequency `Im s` and decays or grows there at the rate `Re s`; a
 neutral whirl goes on with it. Both are solved by Levenberg and Marquardt's method in `s` (or the eigenvalue) and the
 shape `v`, one of whose coordinates is 1. Modes are led from those in which petals stick, by raising the amplitude from
-the largest at which all of them do; those without friction are tried as well.
+the largest at which all of them do; those without friction are tried as well. Searches have one harmonic of the slips;
+what they find is solved for again with as many as it needs (`more_harmonics.py`).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,9 +20,11 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from petalfoil.dynamics.critical_mass import SCAN, Whirl, whirl_impedance, whirls_at_any_mass
-from petalfoil.dynamics.natural_modes import Mode, natural_modes, orbit, same, shows, tilt_of, upper
+from petalfoil.dynamics.more_harmonics import bettered
+from petalfoil.dynamics.natural_modes import APART, Mode, natural_modes, orbit, same, shows, tilt_of, upper
 from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.dynamics.rotor_motion import Inertia
+from petalfoil.dynamics.rubbing_cycle import ONE_HARMONIC, HarmonicsTold
 from petalfoil.dynamics.rubbing_whirl import IN_PLANE, RubbingWhirl
 from petalfoil.equilibrium.run_context import current_run
 
@@ -80,6 +83,45 @@ class Eigenpair:
     slope: Array
     unit: float
 
+    @property
+    def motion(self) -> tuple[complex, Complex]:
+        """`s` and `v` of a mode."""
+        return self.number, self.v
+
+
+@dataclass(frozen=True)
+class RubbingMode(Mode):
+    """A natural mode at an amplitude.
+
+    Attributes
+    ----------
+    told : HarmonicsTold
+        Harmonics of its slips.
+    """
+
+    told: HarmonicsTold
+
+
+@dataclass(frozen=True)
+class RubbingNeutral(Whirl):
+    """A neutral whirl at an amplitude.
+
+    Attributes
+    ----------
+    v : (d,) array
+        Its shape.
+    told : HarmonicsTold
+        Harmonics of its slips.
+    """
+
+    v: Complex
+    told: HarmonicsTold
+
+    @property
+    def motion(self) -> tuple[complex, Complex]:
+        """`s` and `v`."""
+        return 1j * self.ratio, self.v
+
 
 def solved(
     residual: Callable[[complex, Complex], Complex], start: tuple[complex, Complex], size: float
@@ -130,21 +172,27 @@ class RubbingRotor:
     inertia: Inertia
     speed: float
 
-    def modes(self, stuck: Impedance) -> list[Mode]:
+    def modes(self, stuck: Impedance) -> list[RubbingMode]:
         """The natural modes at the amplitude that show a resonance or grow, by frequency.
 
-        `stuck` is the impedance of petals that stick. A mode that is lost on the way is told by the run log.
+        `stuck` is the impedance of petals that stick. Modes that are lost on the way, and those that several harmonics
+        make one, are counted by the run log.
         """
         every = [self.led(start) for start in self.starts(stuck)]
         every += [self.near(start) for start in self.starts(whirl_impedance(self.whirl.frictionless))]
         known = [one for one in every if one is not None]
         every += [self.near((one.number, across(one.v))) for one in known]
-        modes: list[Mode] = []
-        for mode in (self.mode(one) for one in every if one is not None):
-            if shows(mode.s) and not any(same(mode, other) for other in modes):
-                modes.append(mode)
-        current_run().note("modes", found=len(modes), lost=sum(one is None for one in every))
+        alone = apart((self.mode(one, ONE_HARMONIC), one) for one in every if one is not None)
+        better = [bettered(self.whirl, one, self.near_in) for _, one in alone]
+        kept = apart((self.mode(one, told), one) for one, told in better)
+        modes = [mode for mode, _ in kept if shows(mode.s)]
+        lost, joined = sum(one is None for one in every), len(alone) - len(kept)
+        current_run().note("modes", found=len(modes), lost=lost, joined=joined)
         return sorted(modes, key=lambda mode: mode.s.imag)
+
+    def near_in(self, whirl: RubbingWhirl, known: Eigenpair) -> Eigenpair | None:
+        """The mode near a known one, with other harmonics."""
+        return replace(self, whirl=whirl).near(known.motion)
 
     def starts(self, impedance: Impedance) -> Iterator[tuple[complex, Complex]]:
         """Eigenvalues and shapes of the modes on a linear bearing."""
@@ -177,13 +225,22 @@ class RubbingRotor:
             start = found.number, found.v
         return found
 
-    def mode(self, found: Eigenpair) -> Mode:
+    def mode(self, found: Eigenpair, told: HarmonicsTold) -> RubbingMode:
         """A solution as a mode. Its participation (E9) is that of the nonlinear equations, the amplitude held."""
         by_mass = self.inert(found.number) @ found.v
         moved = np.linalg.solve(found.slope, -np.concatenate([by_mass.real, by_mass.imag]))
         change = found.unit * complex(moved[0], moved[len(moved) // 2])
         share = 2.0 * abs(change / found.number)
-        return Mode(upper(found.number), share, orbit(found.v), tilt_of(found.v))
+        return RubbingMode(upper(found.number), share, orbit(found.v), tilt_of(found.v), told)
+
+
+def apart(modes: Iterable[tuple[RubbingMode, Eigenpair]]) -> list[tuple[RubbingMode, Eigenpair]]:
+    """Those that differ, with their solutions."""
+    kept: list[tuple[RubbingMode, Eigenpair]] = []
+    for mode, found in modes:
+        if not any(same(mode, other) for other, _ in kept):
+            kept.append((mode, found))
+    return kept
 
 
 # ------------------------------------------------------------------------------------------ the neutral whirl
@@ -216,7 +273,16 @@ class NeutralWhirls:
         if whirls_at_any_mass(self.whirl.frictionless):
             return Whirl(0.0, 0.5)
         found = [self.near(nu, v) for nu in LOOKS for v in self.shapes(nu)]
-        return min((one for one in found if one is not None), key=lambda one: one.mass, default=Whirl(np.inf, np.nan))
+        alone: list[RubbingNeutral] = []
+        for whirl in (one for one in found if one is not None):
+            if not any(alike(whirl, other) for other in alone):
+                alone.append(whirl)
+        better = [replace(one, told=told) for one, told in (bettered(self.whirl, one, self.near_in) for one in alone)]
+        return min(better, key=lambda one: one.mass, default=Whirl(np.inf, np.nan))
+
+    def near_in(self, whirl: RubbingWhirl, known: RubbingNeutral) -> RubbingNeutral | None:
+        """The neutral whirl near a known one, with other harmonics."""
+        return replace(self, whirl=whirl).near(known.ratio, known.v)
 
     def shapes(self, nu: float) -> Iterator[Complex]:
         """Shapes to begin with at a whirl ratio."""
@@ -231,7 +297,7 @@ class NeutralWhirls:
         """`(M - i G / nu) / m`, inertia over mass at a whirl ratio, (d, d) [1]."""
         return np.asarray((self.inertia.mass - 1j * self.inertia.gyroscopic / nu) / self.inertia.mass[0, 0])
 
-    def near(self, nu: float, v: Complex) -> Whirl | None:
+    def near(self, nu: float, v: Complex) -> RubbingNeutral | None:
         """The neutral whirl near a whirl ratio and a shape; None if none is found there, or none of a positive mass."""
         resists = self.whirl.resistance(self.whirl.at(1j * nu), v)
         value = float((v.conj() @ resists / (v.conj() @ self.shape(nu) @ v)).real)
@@ -252,7 +318,13 @@ class NeutralWhirls:
         ratio = nu * math.exp(found.number.real)
         if within(ratio) != ratio:
             return None
-        return Whirl(value * math.exp(found.number.imag) / (ratio * self.speed) ** 2, ratio)
+        mass = value * math.exp(found.number.imag) / (ratio * self.speed) ** 2
+        return RubbingNeutral(mass, ratio, found.v, ONE_HARMONIC)
+
+
+def alike(one: Whirl, other: Whirl) -> bool:
+    """Whether two solutions are the same neutral whirl."""
+    return abs(one.mass - other.mass) <= APART * one.mass and abs(one.ratio - other.ratio) <= APART * one.ratio
 
 
 def within(ratio: float) -> float:

@@ -6,12 +6,12 @@ In `e = Re(a v exp(s tau))` every contact slips on a cycle of its own size, and 
     dF = -Z(s) v - N(s, a, v)                                                                          (E18)
 
 is homogeneous in `v` but not linear. Unlike columns of stiffness and damping it does not depend on the directions of
-the axes. Its free whirls are in `rubbing_modes.py`.
+the axes. With several harmonics of the slips, `N` is that of (E22). Its free whirls are in `rubbing_modes.py`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
 from petalfoil.dynamics.joint_motion import JointMotion
+from petalfoil.dynamics.rubbing_cycle import ONE_HARMONIC, FollowedSlips, HarmonicsTold, RubbingCycle, takes_several
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import JournalMotion, Motion, Response
 from petalfoil.system.friction import against_slip, slips
@@ -49,12 +50,15 @@ class RubbingBearing:
         Displacement of its journal by the coordinates of the motion.
     units : (float, float)
         Unit of length of the first bearing over its own, unit of force of its own over that of the first.
+    several : FollowedSlips or None
+        Slips in several harmonics (E22); None where they have one (E11).
     """
 
     motion: Motion
     sliding: SlidingContacts | None
     by_shaft: Array
     units: tuple[float, float]
+    several: FollowedSlips | None = None
 
     @classmethod
     def of(cls, motion: Motion, by_shaft: Array, units: tuple[float, float]) -> RubbingBearing:
@@ -63,11 +67,32 @@ class RubbingBearing:
         return cls(motion.frictionless, sliding, by_shaft, units)
 
     def at(self, s: complex) -> RubbingResponse:
-        """The response to motions in `exp(s tau)`; one factorisation, and a solve for each contact."""
+        """The response to motions in `exp(s tau)`: a factorisation, and a solve for each contact.
+
+        As many as `rubbing_cycle.FREQUENCIES` where slips have several harmonics.
+        """
+        if self.sliding is not None and self.several is not None:
+            rubbing = RubbingCycle.of(self.sliding, self.motion, s, 1.0)
+            return RubbingResponse(self, rubbing.cycle.response, rubbing.compliances)
         response = self.motion.growing(s, current_run().probe_solver)
         if self.sliding is None:
-            return RubbingResponse(self, response, np.zeros((0, 0), dtype=complex))
-        return RubbingResponse(self, response, FrictionCycle(self.sliding, response, 1.0).compliance())
+            return RubbingResponse(self, response, np.zeros((1, 0, 0), dtype=complex))
+        return RubbingResponse(self, response, FrictionCycle(self.sliding, response, 1.0).compliance()[None])
+
+    def with_enough(self, motion: tuple[complex, Complex], scale: float) -> RubbingBearing:
+        """With as many harmonics of the slips as a motion `s`, `v` of the shaft needs.
+
+        Raises
+        ------
+        ConvergenceError
+            Slips and friction did not agree.
+        """
+        s, v = motion
+        if self.sliding is None:
+            return self
+        rubbing = RubbingCycle.of(self.sliding, self.motion, s, scale)
+        free = RubbingResponse(self, rubbing.cycle.response, rubbing.compliances).free(v)
+        return replace(self, several=FollowedSlips(rubbing.with_enough(free)[1].friction_harmonics))
 
 
 @dataclass(frozen=True)
@@ -80,22 +105,22 @@ class RubbingResponse:
         The bearing.
     response : Response
         Linear response without friction.
-    compliance : (k, k) array
-        Slips against unit friction forces.
+    compliances : (m, k, k) array
+        Slips against unit friction forces, at the frequency and at its harmonics as far as slips have them.
     """
 
     bearing: RubbingBearing
     response: Response
-    compliance: Complex
+    compliances: Complex
 
     def sticks(self, v: Complex, scale: float) -> float:
         """Part of the amplitude `scale`, of a shaft that moves by `v`, up to which contacts stick; inf without any."""
         sliding = self.bearing.sliding
         if sliding is None or not len(sliding.limit):
             return np.inf
-        free = slips(sliding.friction, self.response.units @ (self.bearing.units[0] * (self.bearing.by_shaft @ v)))
+        free = self.free(v)
         stiffness = sliding.friction.stiffness
-        slip = np.linalg.solve(np.eye(len(free)) + self.compliance * stiffness, free)
+        slip = np.linalg.solve(np.eye(len(free)) + self.compliances[0] * stiffness, free)
         return float(np.min(sliding.limit / (stiffness * scale * sliding.friction.magnitude(slip))))
 
     def force(self, v: Complex, scale: float) -> Complex:
@@ -106,15 +131,42 @@ class RubbingResponse:
         ConvergenceError
             Slips and friction did not agree.
         """
-        (length, unit), arm, sliding = self.bearing.units, self.bearing.by_shaft, self.bearing.sliding
-        e = length * (arm @ v)
-        total = self.response.force_gradient @ e
+        unit, arm, sliding = self.bearing.units[1], self.bearing.by_shaft, self.bearing.sliding
+        total = self.response.force_gradient @ self.displacement(v)
         if sliding is not None:
-            cycle, n = FrictionCycle(sliding, self.response, scale), len(self.response.units)
-            slip = cycle.settled(slips(sliding.friction, self.response.units @ e), self.compliance)
-            against = sliding.equivalent(slip, scale)[0] * slip
-            total = total + self.response.forced(-against_slip(sliding.friction, against, n))[1]
+            against = against_slip(sliding.friction, self.friction(v, scale), len(self.response.units))
+            total = total + self.response.forced(-against)[1]
         return np.asarray(unit * (arm.T @ total), dtype=np.complex128)
+
+    def displacement(self, v: Complex) -> Complex:
+        """Displacement of the journal over its unit of length, of a shaft that moves by `v`."""
+        return np.asarray(self.bearing.units[0] * (self.bearing.by_shaft @ v), dtype=np.complex128)
+
+    def free(self, v: Complex) -> Complex:
+        """Slips without friction by `v`, (k,)."""
+        sliding = cast(SlidingContacts, self.bearing.sliding)  # asked for only where there are contacts
+        return slips(sliding.friction, self.response.units @ self.displacement(v))
+
+    def rubbing(self, scale: float) -> RubbingCycle:
+        """The whirl of contacts."""
+        sliding = cast(SlidingContacts, self.bearing.sliding)
+        return RubbingCycle(FrictionCycle(sliding, self.response, scale), self.compliances)
+
+    def friction(self, v: Complex, scale: float) -> Complex:
+        """First harmonic of the friction forces over `scale`, (k,)."""
+        rubbing, free = self.rubbing(scale), self.free(v)
+        if self.bearing.several is not None:
+            return self.bearing.several.friction(rubbing, free)
+        slip = rubbing.cycle.settled(free, self.compliances[0])
+        return np.asarray(rubbing.cycle.sliding.equivalent(slip, scale)[0] * slip)
+
+    def told(self, v: Complex, scale: float) -> HarmonicsTold | None:
+        """What half as many harmonics change; None where slips have one."""
+        if self.bearing.several is None:
+            return None
+        count, free = self.bearing.several.harmonics, self.free(v)
+        force, half = (self.rubbing(scale).force(free, harmonics) for harmonics in (count, count // 2))
+        return HarmonicsTold.between(count, force, half)
 
 
 @dataclass(frozen=True)
@@ -161,6 +213,23 @@ class RubbingWhirl:
     def at(self, s: complex) -> tuple[RubbingResponse, ...]:
         """The responses to motions in `exp(s tau)`."""
         return tuple(one.at(s) for one in self.bearings)
+
+    def with_enough(self, motion: tuple[complex, Complex]) -> RubbingWhirl:
+        """With as many harmonics of the slips as a motion `s`, `v` needs."""
+        scale = self.scale(motion[1])
+        return replace(self, bearings=tuple(one.with_enough(motion, scale) for one in self.bearings))
+
+    def told(self, motion: tuple[complex, Complex]) -> HarmonicsTold:
+        """Harmonics of the slips in a motion `s`, `v`, and what half as many change."""
+        s, v = motion
+        told = [one.told(v, self.scale(v)) for one in self.at(s)]
+        return HarmonicsTold.most_of([one for one in told if one is not None] or [ONE_HARMONIC])
+
+    @property
+    def takes_several(self) -> bool:
+        """Whether slips of all bearings have several harmonics."""
+        each = [takes_several(one.sliding) for one in self.bearings if one.sliding is not None]
+        return bool(each) and all(each)
 
     def sticks(self, motion: tuple[complex, Complex]) -> float:
         """Amplitude over the reference length up to which all contacts stick in a motion `s`, `v`."""

@@ -108,6 +108,9 @@ FIELDS: dict[str, Variable] = {
     "participation": Variable(("mode",), "1", "part of the rotor's mass in the mode", "q"),
     "whirl_direction": Variable(("mode",), "1", "1 for forward, -1 for backward whirl, 0 along a line", "kappa"),
     "mode_tilt": Variable(("mode",), "1", "part of the tilt in the motion of the journals, by its square", "t"),
+    "mode_friction_harmonics": Variable(
+        ("mode",), "1", "odd harmonics of the slips of petals that rub in a mode", "N_hk"
+    ),
     "bending_stress": Variable(
         _PETAL, "Pa", "bending stress of the petal's metal along phi, assembly included", "sigma_phi"
     ),
