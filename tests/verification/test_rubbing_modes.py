@@ -18,6 +18,7 @@ from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
 from petalfoil.analysis.stability import AT_AMPLITUDE, stability, whirl_parts
 from petalfoil.case import Case, Rotor
 from petalfoil.dynamics.critical_mass import Whirl, whirl_impedance
+from petalfoil.dynamics.more_harmonics import bettered
 from petalfoil.dynamics.natural_modes import Mode, natural_modes, tilt_of
 from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.dynamics.rotor_motion import Inertia
@@ -130,9 +131,15 @@ def test_two_bearings_that_share_a_rotor_rub_as_one_with_half_of_it() -> None:
         assert known is not None
         found = two.near((known.number, np.append(known.v, [0.0, 0.0])))
         other = two.near(conical)
-    assert found is not None
+        assert found is not None
+        (several, told), (single_one, _) = (
+            bettered(of.whirl, at, of.near_in) for of, at in ((two, found), (one, known))
+        )
     assert other is not None
     assert found.number == pytest.approx(known.number, rel=1e-6)
+    assert told.friction_harmonics >= 8
+    assert several.number != pytest.approx(found.number, rel=1e-4)
+    assert several.number == pytest.approx(single_one.number, rel=1e-6)
     assert tilt_of(other.v) > 0.5
 
 
