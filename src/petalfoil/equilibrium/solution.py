@@ -24,7 +24,11 @@ REFINEMENTS = 8
 before, five were needed."""
 
 WORTH = 0.5
-"""A correction that leaves more than this of a residual within the tolerance is the last."""
+"""A correction that leaves more than this of a residual below `SPARE` is the last."""
+
+SPARE = 0.1 * RESIDUAL_TOLERANCE
+"""Residual above which corrections go on, as many as there may be: on the finest grids a node goes up and down by the
+last digit from one to the next, and some of them leave a tenth of what those before and after leave."""
 
 
 @dataclass(frozen=True)
@@ -299,6 +303,6 @@ def refine(problem: CoupledProblem, contacts: ActiveContacts) -> tuple[RefinedSt
         before, residual = least, total_residual(problem, state, linearized)
         if residual < least:
             best, least = state, residual
-        if residual > (WORTH if before <= RESIDUAL_TOLERANCE else 1.0) * before:
+        if residual > WORTH * before and least <= SPARE:
             break
     return best, least
