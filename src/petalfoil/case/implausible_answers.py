@@ -78,6 +78,12 @@ def of_answer(case: Case, scalars: Scalars) -> Iterator[str]:
             "such stiff packs forces change by several per cent from grid to grid, stiffness and damping by more; "
             "compare two grids (--error)"
         )
+    if number(scalars, "friction_harmonics") == 1.0:
+        yield (
+            "friction_harmonics: slips of petals that rub were taken for sines, as they are in 3-D, with many contacts "
+            "and in modes that are lost with more harmonics: where contacts stick and slip in turn damping is off by "
+            'up to a quarter; compare `coefficients --amplitude` with model.kind = "2d"'
+        )
     apart = number(scalars, "nodal_force_difference")
     if apart > NODES_APART:
         yield (

@@ -120,6 +120,8 @@ _SHOWN: dict[str, TableLabel] = {
     "solution_path": TableLabel("solution path"),
     "friction_path": TableLabel("petal friction"),
     "contact_model": TableLabel("contacts"),
+    "friction_harmonics": TableLabel("harmonics of slips"),
+    "friction_harmonics_change": TableLabel("change by half as many", "%", 100.0),
     "nodal_force_difference": TableLabel("difference to contacts at nodes", "%", 100.0),
     "known_equilibria": TableLabel("equilibria known here"),
     "jump": TableLabel("jump"),

@@ -170,6 +170,11 @@ EVERY: dict[str, tuple[str, Callable[[], Told], Callable[[], Told]]] = {
         lambda: of(scalars={"contact_model": "contacts at nodes"}),
         lambda: of(scalars={"contact_model": "contact points on petals with continuous slopes"}),
     ),
+    "of_answer friction_harmonics": (
+        "friction_harmonics",
+        lambda: of(scalars={"friction_harmonics": 1}),
+        lambda: of(scalars={"friction_harmonics": 4}),
+    ),
     "of_answer nodal_force_difference": (
         "nodal_force_difference",
         lambda: of(scalars={"nodal_force_difference": 0.11}),
