@@ -112,6 +112,17 @@ def audits(orbit: Orbit, path: list[Instant]) -> Audits:
     return trace.audits(trace.histories()[1])
 
 
+def test_a_rotor_that_rests_at_its_balance_has_no_error_of_energy() -> None:
+    """The work of a journal that moves by rounding is no measure: its error would be of the order of one."""
+    still, moving = (
+        orbit(on_grid(16).replace(rotor={"mass": 3.0}), load=(0.0, -WEIGHT), initial=start, revolutions=0.1)
+        for start in ("balance", (0.0, -315e-6))
+    )
+    assert float(still["amplitude"]) < 1e-12
+    assert float(still["energy_balance_error"]) == 0.0
+    assert 0.0 < float(moving["energy_balance_error"]) < 0.05
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("friction", [0.0, 0.05])
 def test_energy_of_a_step_from_points_to_nodes_is_told_and_not_counted(friction: float) -> None:
