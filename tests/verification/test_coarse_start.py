@@ -207,3 +207,20 @@ def test_results_say_so_and_count_both_grids() -> None:
     assert float(told["residual"]) < 1e-8
     assert float(told["reaction_balance_error"]) < 1e-9
     assert float(told["mass_balance_error"]) < 1e-9
+
+
+@pytest.mark.slow
+def test_who_asks_is_told_of_every_step_and_may_end_it() -> None:
+    """A page that cancels waits for the factorisation at work: steps on the coarse grid are told too."""
+    told: list[str] = []
+    found = petalfoil.solve.record(bearing(64, 24), progress=lambda _, text: told.append(text)).scalars
+    assert len(told) > 20
+    assert {"solve: pack", "solve: film", "solve: contact lines"} <= set(told)
+    assert found["coarse_factorizations"] == pytest.approx(21, abs=5)
+
+    def ended(_: float, text: str) -> None:
+        if text == "solve: pack":  # on the coarse grid: the fine one has no steps of a pack
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        petalfoil.solve.record(bearing(64, 24), progress=ended)

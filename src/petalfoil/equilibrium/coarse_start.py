@@ -90,11 +90,13 @@ def on_coarse_grid(problem: CoupledProblem, case: Case, load: Array | None) -> S
     if coarse.layout.n_position != problem.layout.n_position:  # free to tilt by itself, not by its case
         return None
     coarse = coarse.at(bearing_number=problem.bearing_number, displacement=problem.displacement)
+    outer = current_run()
     with running() as run:
+        run.tell = outer.tell  # who asked is told of each step, and may end it
         if load is not None:
             load = load * problem.layout.scales.force / coarse.layout.scales.force
         found = found_there(coarse, load) if coarser(case) is None else by_coarse_grid(coarse, load)
-    current_run().coarse.factorizations += sum(
+    outer.coarse.factorizations += sum(
         counter.factorizations for counter in (run.film, run.pack, run.probes, run.coarse)
     )
     return found

@@ -159,7 +159,9 @@ def by_tangent(state: LineContacts) -> LineContacts:
         response = state.motion.growing(0.0, current_run().film_solver)
     except SingularMatrixError:
         raise NoLinesError("the contacts do not determine the petals") from None
-    return chords(stepped(state, response), response)
+    after = chords(stepped(state, response), response)
+    current_run().note("contact lines", left=after.residual)
+    return after
 
 
 def chords(state: LineContacts, response: LinearResponse) -> LineContacts:
