@@ -101,7 +101,7 @@ print(peak() - before)
     [
         ("paper_n8_spatial", (64, 24), "inextensible"),
         ("plain_journal", (512, 128), "-"),
-        ("paper_n8", (24, 12), "shell"),
+        ("paper_n8", (64, 24), "shell"),
     ],
 )
 def test_the_estimate_holds_within_a_factor_of_two(name: str, grid: tuple[int, int], theory: str) -> None:
