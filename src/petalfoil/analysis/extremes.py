@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -192,7 +193,7 @@ def _quartic(rise: Array, lines: tuple[NodalProfile, NodalProfile]) -> tuple[flo
     c = (along @ rise @ across.T).tolist()  # sum c[a][b] x^a y^b
     x = y = 0.0
     for _ in range(STEPS):
-        value, slope, bend = _taylor(c, x, y)
+        value, slope, bend = taylor(c, x, y)
         step = _newton_step(slope, bend, (lines[0].inside, lines[1].inside))
         if step is None:
             return None
@@ -232,10 +233,11 @@ def _newton_step(
     return (-g / xx if free[0] else 0.0), (-h / yy if free[1] else 0.0)
 
 
-def _taylor(c: list[list[float]], x: float, y: float) -> tuple[float, tuple[float, float], tuple[float, float, float]]:
+def taylor(c: Any, x: Any, y: Any) -> tuple[Any, tuple[Any, Any], tuple[Any, Any, Any]]:
     """Value, gradient and second derivatives (by x, by both, by y) of the polynomial `sum c[a][b] x^a y^b`.
 
-    Horner's scheme in plain numbers: arrays of five cost ten times as much.
+    Horner's scheme in what it is given: plain numbers, for arrays of five cost ten times as much, or entries `c[a][b]`,
+    `x` and `y` (m,) of many polynomials.
     """
     value = by_x = by_xx = by_y = by_xy = by_yy = 0.0
     for row in reversed(c):

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.analysis.extremes import BEYOND, SHORTEST, STENCIL, STEPS, NodalProfile
+from petalfoil.analysis.extremes import BEYOND, SHORTEST, STENCIL, STEPS, NodalProfile, taylor
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -141,7 +141,7 @@ def falls(c: Array, along: ManyProfiles, across: ManyProfiles) -> tuple[Array, M
     at, reach, free = np.zeros((2, count)), np.stack([along.reach, across.reach]), (along.inside, across.inside)
     below, found, left = np.zeros(count), np.zeros(count, dtype=bool), np.arange(count)
     for _ in range(STEPS):
-        value, slope, bend = taylor(c[left], at[:, left])
+        value, slope, bend = taylor(c[left].transpose(1, 2, 0), *at[:, left])
         step, convex = newton_step(slope, bend, (free[0][left], free[1][left]))
         here = left[convex]
         near, far = reach[:, here, 0], reach[:, here, 1]
@@ -159,8 +159,10 @@ def falls(c: Array, along: ManyProfiles, across: ManyProfiles) -> tuple[Array, M
     return below, found
 
 
-def newton_step(slope: Array, bend: tuple[Array, Array, Array], free: tuple[Mask, Mask]) -> tuple[Array, Mask]:
-    """Steps (2, m) to where gradients (2, m) vanish in the directions that are free, and whether they lead down.
+def newton_step(
+    slope: tuple[Array, Array], bend: tuple[Array, Array, Array], free: tuple[Mask, Mask]
+) -> tuple[Array, Mask]:
+    """Steps (2, m) to where gradients, (m,) by x and by y, vanish in free directions; whether they lead down.
 
     `bend` are the second derivatives by x, by both, and by y.
     """
@@ -179,25 +181,3 @@ def newton_step(slope: Array, bend: tuple[Array, Array, Array], free: tuple[Mask
         ]
     )
     return step, convex
-
-
-def taylor(c: Array, at: Array) -> tuple[Array, Array, tuple[Array, Array, Array]]:
-    """Values (m,), gradients (2, m) and second derivatives of polynomials `sum c[m, a, b] x^a y^b` `at` (2, m).
-
-    Horner's scheme, as in `extremes`.
-    """
-    x, y = at
-    value = by_x = by_xx = by_y = by_xy = by_yy = np.zeros(len(c))
-    for a in reversed(range(c.shape[1])):
-        f = f_y = f_yy = np.zeros(len(c))
-        for b in reversed(range(c.shape[2])):
-            f_yy = f_yy * y + 2.0 * f_y
-            f_y = f_y * y + f
-            f = f * y + c[:, a, b]
-        by_xx = by_xx * x + 2.0 * by_x
-        by_x = by_x * x + value
-        value = value * x + f
-        by_xy = by_xy * x + by_y
-        by_y = by_y * x + f_y
-        by_yy = by_yy * x + f_yy
-    return value, np.stack([by_x, by_y]), (by_xx, by_xy, by_yy)
