@@ -238,7 +238,7 @@ def by_samples(fields: FieldGradient, equations: AsperityEquations) -> StateWeig
 def by_reactions(fields: FieldGradient, equations: AsperityEquations) -> Array:
     """Derivatives of a result by the reactions of the samples, (E, S)."""
     whole, samples = equations.smooth.whole, equations.samples
-    by_nodal = whole.curves.by_e @ fields.contact_force
+    by_nodal = whole.reaction_on_journal @ fields.contact_force
     on_journal = samples.curve[:, None] < whole.pack.mesh.count
     return np.asarray(samples.at_samples(by_nodal) + fields.reactions * on_journal)
 

@@ -26,6 +26,7 @@ from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.point_equations import PointEquations, PointState
 from petalfoil.system.point_layout import PointLayout
 from petalfoil.walls.element_pack import ElementPack
+from petalfoil.walls.pack_slip import dragged_samples
 
 Array = NDArray[np.float64]
 
@@ -108,8 +109,8 @@ class AsperityContacts:
         """The same state under other equations with as many elements, unsolved."""
         equations = self.equations
         smooth = PointEquations(whole, problem, equations.smooth.state)
-        samples = replace(equations.samples, curves=whole.curves)
-        return replace(self, equations=replace(equations, smooth=smooth, samples=samples, followed=NO_PRESSURE))
+        equations = replace(equations, smooth=smooth, samples=samples_of(whole), followed=NO_PRESSURE)
+        return replace(self, equations=equations)
 
     def moved(self, problem: CoupledProblem, change: Array) -> AsperityContacts:
         """The state after a small `change` (n,) of the unknowns, under the equations of `problem`, unsolved."""
@@ -149,8 +150,9 @@ def with_asperities(
 
 def samples_of(whole: PointLayout) -> ContactSamples:
     """Where contact pressures are."""
-    mesh = whole.pack.mesh
-    return ContactSamples(whole.curves, SAMPLES, 2.0 * np.pi / (mesh.count * mesh.cells))
+    mesh, friction = whole.pack.mesh, whole.journal_friction
+    samples = ContactSamples(whole.curves, SAMPLES, 2.0 * np.pi / (mesh.count * mesh.cells))
+    return replace(samples, dragged=dragged_samples(whole.pack, samples, friction)) if friction else samples
 
 
 def settled(equations: AsperityEquations, load: Array | None) -> AsperityContacts:

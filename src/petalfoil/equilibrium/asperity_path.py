@@ -101,8 +101,8 @@ def petals_alone(path: SoftenedAsperities) -> tuple[SoftenedAsperities, int]:
             return path, steps
         path = replace(path, product=np.full_like(path.slack, max(share(length) * barrier, FILM_JOINS)))
         reactions = path.samples.weight * path.pressure - path.contact.every(path.contact.left)
-        residual = path.whole.elastic(path.deflection) - by_w.T @ path.samples.nodal(reactions)
-        matrix = sp.csc_array(path.whole.stiffness + by_w.T @ path.contact.stiffness @ by_w)
+        residual = path.whole.elastic(path.deflection) - path.samples.on_petals(reactions)
+        matrix = sp.csc_array(path.whole.stiffness + path.contact.on_petals @ by_w)
         factor = current_run().pack_solver.factor(matrix)
         film = np.zeros(path.whole.n_film)
         path, length = moved(path, np.concatenate([factor.solve(-residual), film]), 1.0)

@@ -100,8 +100,6 @@ def ways(
     yield "contact points", partial(with_points, whole, problem, state, load)
     if neighbour is not None and neighbour.contact_model == AT_POINTS:
         yield "contact points", partial(neighbour.at, placed(problem, neighbour, load), load)
-    if whole.journal_friction:  # asperities push along the gaps alone
-        return
     if from_nothing:
         yield "asperities", partial(from_free_petals, whole, problem)
     else:

@@ -72,14 +72,19 @@ def entries_with_slopes(element: Index, t: Array, length: Array) -> tuple[Index,
     return 2 * element[:, None] + np.arange(4), weights
 
 
+def integral_basis(t: Array) -> Array:
+    """Integrals of `H_0 ... H_3` from the start of an element to places `t` (k,) by `t`, (k, 4)."""
+    powers = np.arange(1, COEFFICIENTS.shape[1] + 1)
+    return np.asarray(t[:, None] ** powers @ (COEFFICIENTS / powers).T)
+
+
 def integrals(element: Index, t: Array, length: Array) -> sp.csr_array:
     """Weights of nodal (value, slope) pairs in the integral of a curve from its first node; (k, 2 nodes).
 
     Places and `length` as in `rows`; the integral is by the same angle as `length`.
     """
-    powers = np.arange(1, COEFFICIENTS.shape[1] + 1)
-    over = np.asarray(t)[:, None] ** powers @ (COEFFICIENTS / powers).T
-    whole = (COEFFICIENTS / powers).sum(axis=1)
+    over = integral_basis(np.asarray(t))
+    whole = integral_basis(np.ones(1))[0]
     before = np.arange(len(length)) < element[:, None]
     each = np.where(before[:, :, None], whole, 0.0)
     each[np.arange(len(element)), element] = over

@@ -10,7 +10,7 @@ those of points do (K11), which couples the samples of an element:
 
     g = rows n + C b lam ,   lam = weight q ,   dlam = -(1 + W C b)^-1 W rows dn ,   W = lam / s         (K14)
 
-with the nodal gaps `n` of the element.
+with the nodal gaps `n` of the element. A journal that turns drags the petals that it presses on with `mu_f lam` (D6).
 """
 
 from __future__ import annotations
@@ -39,6 +39,22 @@ NOTHING = 1e-12
 
 
 @dataclass(frozen=True)
+class DraggedSamples:
+    """Motion of the inner faces along the journal at the samples, times `mu_f` (D6); zero where no journal is.
+
+    Attributes
+    ----------
+    within : (E, S, 4) array
+        Of a sample over the start of its element, from the nodal gaps of the element.
+    before : (E, n) sparse
+        Of the start of each element, from the unknowns of the petals.
+    """
+
+    within: Array
+    before: sp.csr_array
+
+
+@dataclass(frozen=True)
 class ContactSamples:
     """Samples of all gap curves; the element at a root, which always lies on the bushing, has none.
 
@@ -50,11 +66,14 @@ class ContactSamples:
         Samples per element.
     unit_angle : float
         Angle whose pressure of one is a reaction of one [rad].
+    dragged : DraggedSamples or None
+        What a journal that drags petals does beside pressing on them; None where it does not.
     """
 
     curves: GapCurves
     per_element: int
     unit_angle: float
+    dragged: DraggedSamples | None = None
 
     @cached_property
     def _sampled(self) -> tuple[Index, Index]:
@@ -120,6 +139,19 @@ class ContactSamples:
         forces = np.einsum("esk,es->ek", self.rows, reaction)
         return add_up(self.columns.ravel(), forces.ravel(), len(self.curves.rest))
 
+    @cached_property
+    def acting(self) -> Array:
+        """Forces of unit reactions on the nodal gaps of their element, friction on it included; (E, S, 4)."""
+        return self.rows if self.dragged is None else self.rows + self.dragged.within
+
+    def on_petals(self, reaction: Array) -> Array:
+        """Generalised forces on the petals by reactions (E, S) and the friction of a journal (D6); (n,)."""
+        forces = np.einsum("esk,es->ek", self.acting, reaction)
+        loads = self.curves.by_w.T @ add_up(self.columns.ravel(), forces.ravel(), len(self.curves.rest))
+        if self.dragged is not None:
+            loads = loads + self.dragged.before.T @ reaction.sum(axis=1)
+        return np.asarray(loads)
+
     def as_points(self, pressure: Array) -> ContactPoints:
         """One point in each element that carries load, at the centroid of its reactions."""
         reaction = (self.weight * pressure).sum(axis=1)
@@ -167,7 +199,26 @@ class ContactResponse:
     @cached_property
     def stiffness(self) -> sp.csr_array:
         """Generalised forces on the nodal gaps by these, (2 n_node, 2 n_node), symmetric."""
-        blocks = np.einsum("esk,esj->ekj", self.samples.rows[self.loaded], self.by_gaps)
+        return self._along(self.samples.rows)
+
+    @cached_property
+    def on_petals(self) -> sp.csr_array:
+        """Loss of the generalised forces on the petals by the nodal gaps, (n, 2 n_node): `by_w^T stiffness`.
+
+        With friction of a journal, whose part is not symmetric.
+        """
+        samples, by_w = self.samples, self.samples.curves.by_w
+        if samples.dragged is None:
+            return sp.csr_array(by_w.T @ self.stiffness)
+        columns, sums = samples.columns[self.loaded], self.by_gaps.sum(axis=1)
+        where = np.repeat(self.loaded, 4), columns.ravel()
+        shape = (len(samples.element), by_w.shape[0])
+        of_elements = sp.coo_array((sums.ravel(), where), shape=shape).tocsr()
+        return sp.csr_array(by_w.T @ self._along(samples.acting) + samples.dragged.before.T @ of_elements)
+
+    def _along(self, rows: Array) -> sp.csr_array:
+        """Loss of forces along `rows` (E, S, 4) by the nodal gaps, (2 n_node, 2 n_node)."""
+        blocks = np.einsum("esk,esj->ekj", rows[self.loaded], self.by_gaps)
         columns, n = self.samples.columns[self.loaded], len(self.samples.curves.rest)
         where = np.repeat(columns, 4, axis=1).ravel(), np.tile(columns, (1, 4)).ravel()
         return sp.coo_array((blocks.ravel(), where), shape=(n, n)).tocsr()

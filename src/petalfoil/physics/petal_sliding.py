@@ -89,6 +89,11 @@ class FacePlaces:
     side: Array
 
 
+def slide_by_integral(faces: Faces, petal: Index, side: Array) -> Array:
+    """Slip of faces by the integral of `W` over the angle from the root, (f,) [1/rad]."""
+    return np.asarray(-(faces.metric_radius / faces.bend_radius)[petal] * faces.share(petal, side))
+
+
 def face_slip(faces: Faces, at: FacePlaces, angle: Array) -> sp.csr_array:
     """Slip `-side u` without membrane force, from nodal (value, slope) pairs of each face's own petal.
 
@@ -97,7 +102,7 @@ def face_slip(faces: Faces, at: FacePlaces, angle: Array) -> sp.csr_array:
     turned = hermite.rows(at.element, at.place, angle, 1)
     integral = hermite.integrals(at.element, at.place, angle)
     arm = faces.arm[at.petal] / angle[at.element]
-    along = -(faces.metric_radius / faces.bend_radius)[at.petal] * faces.share(at.petal, at.side)
+    along = slide_by_integral(faces, at.petal, at.side)
     return sp.csr_array(sp.diags_array(arm) @ turned + sp.diags_array(along) @ integral)
 
 
@@ -105,7 +110,7 @@ def face_slip_by_place(faces: Faces, at: FacePlaces, angle: Array) -> sp.csr_arr
     """Derivative of `face_slip` by the place in the element, (f, 2 n_node)."""
     value, bend = (hermite.rows(at.element, at.place, angle, derivative) for derivative in (0, 2))
     own = angle[at.element]
-    along = -(faces.metric_radius / faces.bend_radius)[at.petal] * faces.share(at.petal, at.side) * own
+    along = slide_by_integral(faces, at.petal, at.side) * own
     return sp.csr_array(sp.diags_array(faces.arm[at.petal] / own) @ bend + sp.diags_array(along) @ value)
 
 

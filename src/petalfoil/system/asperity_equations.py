@@ -3,6 +3,7 @@
     wall     K w - A (P - 1) - rows^T lam = 0 ,   lam by (K13) from the gaps                           (C9)
     film     net outflow of each cell = 0
 
+Where the turning journal drags petals along, `rows + mu_f D` act in place of `rows` (D6), and it is held back (D7).
 The pressures are iterated on beside deflections and film, and follow (K13) exactly in a solution.
 """
 
@@ -106,6 +107,11 @@ class AsperityEquations:
         return self.samples.gaps(self.smooth.nodal_gaps, self.pressure)
 
     @property
+    def reaction(self) -> Array:
+        """Reactions of the samples, (E, S)."""
+        return np.asarray(self.samples.weight * self.pressure)
+
+    @property
     def law(self) -> Array:
         """Pressures of (K13) at the gaps, (E, S)."""
         return np.asarray(FULL_PRESSURE * np.exp(-np.clip(self.gaps / self.height, -OPEN, 5.0 * OPEN)))
@@ -129,17 +135,16 @@ class AsperityEquations:
     @cached_property
     def residual(self) -> tuple[Array, Array]:
         """Wall and film."""
-        by_w = self.smooth.whole.curves.by_w
         wall, film, *_ = self.smooth.residual
-        return wall - by_w.T @ self.samples.nodal(self.samples.weight * self.pressure), film
+        return wall - self.samples.on_petals(self.reaction), film
 
     @property
     def wall_forces(self) -> tuple[Array, Array, Array]:
         """Generalised forces on the petals: elastic, by pressure and contacts, and magnitudes of these, (n_wall,)."""
         elastic, loads, size = self.smooth.wall_forces
-        reaction = self.samples.nodal(self.samples.weight * self.pressure)
-        by_w = self.smooth.whole.curves.by_w
-        return elastic, loads + by_w.T @ reaction, size + abs(by_w.T) @ np.abs(reaction)
+        on_petals = self.samples.on_petals(self.reaction)
+        pressing = abs(self.smooth.whole.curves.by_w.T) @ np.abs(self.samples.nodal(self.reaction))
+        return elastic, loads + on_petals, size + np.maximum(pressing, np.abs(on_petals))
 
     @cached_property
     def scaled(self) -> Array:
@@ -153,14 +158,13 @@ class AsperityEquations:
     def newton_residual(self) -> Array:
         """Residual of Newton's method, with the reactions that the mismatch asks for; (n,)."""
         wall, film = self.residual
-        by_w = self.smooth.whole.curves.by_w
-        return np.concatenate([wall + by_w.T @ self.samples.nodal(self.contact.every(self.contact.left)), film])
+        return np.concatenate([wall + self.samples.on_petals(self.contact.every(self.contact.left)), film])
 
     @cached_property
     def steady(self) -> sp.csc_array:
         """The tangent."""
         by_w, n = self.smooth.whole.curves.by_w, self.n
-        contact = sp.coo_array(by_w.T @ self.contact.stiffness @ by_w)
+        contact = sp.coo_array(self.contact.on_petals @ by_w)
         among_all = sp.coo_array((contact.data, (contact.row, contact.col)), shape=(n, n))
         return sp.csc_array(self.smooth.steady + among_all.tocsc())
 
@@ -172,40 +176,37 @@ class AsperityEquations:
     def forcing(self, rate: float = 0.0) -> Array:
         """Derivative of the rows by the journal's displacement, with `rate` times that of what the film stores."""
         forcing = self.smooth.forcing(rate)
-        forcing[: self.smooth.whole.n_wall] += self._by_w_and_e
+        forcing[: self.smooth.whole.n_wall] += self.contact.on_petals @ self.smooth.whole.curves.by_e
         return forcing
 
     @cached_property
-    def _by_w_and_e(self) -> Array:
-        """Contact forces on the petals by the journal's displacement, (n_wall, d)."""
-        curves = self.smooth.whole.curves
-        return np.asarray(curves.by_w.T @ (self.contact.stiffness @ curves.by_e))
+    def _lost_force(self) -> Array:
+        """Loss of the force of the contacts on the journal by the nodal gaps, (2 n_node, d)."""
+        return np.asarray(self.contact.stiffness @ self.smooth.whole.reaction_on_journal)
 
     @property
     def force_rows(self) -> Array:
         """Derivative of the force on the journal by the unknowns, (d, n)."""
         rows = self.smooth.force_rows
-        rows[:, : self.smooth.whole.n_wall] -= self._by_w_and_e.T
+        rows[:, : self.smooth.whole.n_wall] -= (self.smooth.whole.curves.by_w.T @ self._lost_force).T
         return rows
 
     @property
     def force_direct(self) -> Array:
         """Derivative of the force on the journal by its displacement, unknowns held, (d, d)."""
-        by_e = self.smooth.whole.curves.by_e
-        return np.asarray(-by_e.T @ (self.contact.stiffness @ by_e))
+        return np.asarray(-self._lost_force.T @ self.smooth.whole.curves.by_e)
 
     @property
     def force(self) -> Array:
         """Force of film and contacts on the journal over the unit of force, (d,)."""
-        by_e = self.smooth.whole.curves.by_e
-        contact = by_e.T @ self.samples.nodal(self.samples.weight * self.pressure)
+        contact = self.smooth.whole.reaction_on_journal.T @ self.samples.nodal(self.reaction)
         return np.asarray(self.smooth.force + contact)
 
     @property
     def newton_force(self) -> Array:
         """The same with the reactions that the mismatch asks for, as in `newton_residual`."""
-        by_e = self.smooth.whole.curves.by_e
-        return np.asarray(self.force - by_e.T @ self.samples.nodal(self.contact.every(self.contact.left)))
+        lost = self.samples.nodal(self.contact.every(self.contact.left))
+        return np.asarray(self.force - self.smooth.whole.reaction_on_journal.T @ lost)
 
     @property
     def points(self) -> ContactPoints:

@@ -15,11 +15,14 @@ A journal that turns drags the inner faces that it touches along. What it does t
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.mesh import hermite
+from petalfoil.physics.asperity_contact import ContactSamples, DraggedSamples
 from petalfoil.physics.gap_curves import ContactPoints, Facing
 from petalfoil.physics.petal_sliding import (
     INNER,
@@ -29,6 +32,7 @@ from petalfoil.physics.petal_sliding import (
     face_compliance_by_place,
     face_slip,
     face_slip_by_place,
+    slide_by_integral,
 )
 from petalfoil.walls.element_pack import ElementPack
 
@@ -56,13 +60,15 @@ def touching_faces(pack: ElementPack, points: ContactPoints) -> tuple[Index, Fac
 def slip_rows(pack: ElementPack, points: ContactPoints) -> sp.csr_array:
     """`B`: slip at all contact points from the unknowns, (j, n) [1]; rows of contacts on the journal are empty."""
     contact, at = touching_faces(pack, points)
-    return from_unknowns(pack, face_slip(pack.faces, at, pack.elements.element_angle), (contact, at), points)
+    rows = face_slip(pack.faces, at, pack.elements.element_angle)
+    return from_unknowns(pack, rows, (contact, at), len(points.reaction))
 
 
 def slip_by_place(pack: ElementPack, points: ContactPoints) -> sp.csr_array:
     """Derivative of `slip_rows` by the place of each contact, counted in elements; (j, n) [1]."""
     contact, at = touching_faces(pack, points)
-    return from_unknowns(pack, face_slip_by_place(pack.faces, at, pack.elements.element_angle), (contact, at), points)
+    rows = face_slip_by_place(pack.faces, at, pack.elements.element_angle)
+    return from_unknowns(pack, rows, (contact, at), len(points.reaction))
 
 
 def dragged_faces(pack: ElementPack, points: ContactPoints) -> tuple[sp.csr_array, sp.csr_array]:
@@ -79,17 +85,36 @@ def dragged_faces(pack: ElementPack, points: ContactPoints) -> tuple[sp.csr_arra
     at = FacePlaces(curve, start + element - curves.first[curve], place, np.full(len(contact), INNER))
     faces, angle = replace(pack.faces, slides=True), pack.elements.element_angle
     own = face_slip(faces, at, angle), face_slip_by_place(faces, at, angle)
-    value, by_place = (from_unknowns(pack, rows, (contact, at), points) for rows in own)
+    value, by_place = (from_unknowns(pack, rows, (contact, at), len(points.reaction)) for rows in own)
     return value, by_place
 
 
+def dragged_samples(pack: ElementPack, samples: ContactSamples, friction: float) -> DraggedSamples:
+    """The same at the samples of contact pressures, times the coefficient of `friction` [1] (D6)."""
+    faces = replace(pack.faces, slides=True)
+    on_journal = np.flatnonzero(samples.curve < pack.mesh.count)
+    petal = samples.curve[on_journal]
+    element = pack.nodes[Facing.JOURNAL].start + samples.element[on_journal] - pack.curves.first[petal]
+    inner, angle = np.full(len(petal), INNER), pack.elements.element_angle[element]
+    start = FacePlaces(petal, element, np.zeros(len(petal)), inner)
+    along = friction * slide_by_integral(faces, petal, inner)
+    slid = sp.diags_array(along) @ hermite.integrals(element, start.place, pack.elements.element_angle)
+    before = from_unknowns(pack, sp.csr_array(slid), (on_journal, start), len(samples.element))
+    turn, slide = (basis(samples.place) for basis in (partial(hermite.basis, derivative=1), hermite.integral_basis))
+    within = np.zeros_like(samples.rows)
+    arm = friction * faces.arm[petal] / angle
+    within[on_journal] = arm[:, None, None] * turn + (along * angle)[:, None, None] * slide
+    within[on_journal, :, 1::2] *= angle[:, None, None]
+    return DraggedSamples(within, before)
+
+
 def from_unknowns(
-    pack: ElementPack, of_faces: sp.csr_array, where: tuple[Index, FacePlaces], points: ContactPoints
+    pack: ElementPack, of_faces: sp.csr_array, where: tuple[Index, FacePlaces], count: int
 ) -> sp.csr_array:
-    """Rows of faces (f, 2 n_node), each of its own petal, summed at their contacts from the unknowns, (j, n)."""
+    """Rows of faces (f, 2 n_node), each of its own petal, summed at their contacts from the unknowns, (count, n)."""
     (contact, at), own = where, of_faces.tocoo()
     columns = 2 * len(pack.elements.phi) * at.petal[own.row] + own.col
-    shape = (len(points.reaction), pack.nodal.shape[0])
+    shape = (count, pack.nodal.shape[0])
     return sp.csr_array(sp.coo_array((own.data, (contact[own.row], columns)), shape=shape).tocsr() @ pack.nodal)
 
 
