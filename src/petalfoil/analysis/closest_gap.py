@@ -1,8 +1,8 @@
 """Where petals with continuous slopes are closest to the journal, which need not be at a node of the film.
 
-The gap of a petal toward the journal is a cubic on each element (K10). Where it touches, the point load bends its
-element away (K11), so that the cubic alone is zero or less at every contact, and positive where there is none: the
-minimum film thickness is the contact film thickness and the least value of the cubic, if that is positive.
+The gap of a petal toward the journal is a cubic on each element (K10), zero at every contact and positive elsewhere but
+for rounding: the minimum film thickness is the contact film thickness and the least value of the cubic, if that is
+positive.
 """
 
 from __future__ import annotations

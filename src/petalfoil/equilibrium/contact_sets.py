@@ -152,7 +152,7 @@ def least_pull(equations: PointEquations, opening: float) -> Array:
     """Pull of each point without which the gap would open by `opening` [1], (j,)."""
     points, curves = equations.state.points, equations.whole.curves
     element, _ = curves.locate(points.every_curve, points.every_position)
-    return np.asarray(opening / (SPANS * curves.compliance[element]))
+    return np.asarray(opening / (SPANS * curves.softness[element]))
 
 
 def without_pulling(contacts: list[TravellingContact]) -> list[TravellingContact]:
@@ -306,5 +306,5 @@ def sagging(equations: PointEquations, curve: Index, position: Array) -> Array:
     for k in np.flatnonzero(points.inner):
         inside = (curve == points.curve[k]) & (position > points.position[k]) & (position < points.position[k + 1])
         own = points.reaction[points.ends[k] : points.ends[k + 1] + 1]
-        out[inside] = SAG * curves.compliance[element[inside]] * float(np.max(own[1:-1], initial=0.0))
+        out[inside] = SAG * curves.softness[element[inside]] * float(np.max(own[1:-1], initial=0.0))
     return out

@@ -9,6 +9,9 @@ A point load bends its own element further (S7), so that with reactions `lam_d` 
 
     p(t) + sum_d C b(t, t_d) lam_d ,   C the point compliance, that of both petals between petals        (K11)
 
+Toward the journal `C = 0`: the film, whose pressures bend elements too, has the thickness of the cubic alone, and no
+petal that touches the journal is nearer to it anywhere than its gap.
+
 At a contact point this gap vanishes, and so does its slope, except at the end of a curve.                (K12)
 """
 
@@ -61,7 +64,9 @@ class GapCurves:
     angle : (n_node - 1,) array
         Angle of the element behind each node, 1 between curves [rad].
     compliance : (n_node - 1,) array
-        `C` of each element, in units of gap over reaction.
+        `C` of each element in (K11), in units of gap over reaction; zero toward the journal.
+    softness : (n_node - 1,) array
+        Point compliance of the petals on each element, toward the journal too, in the same units.
     rest : (2 n_node,) array
         Nodal (value, slope) of the gaps of undeflected petals round a centred journal.
     by_e : (2 n_node, d) array
@@ -75,6 +80,7 @@ class GapCurves:
     elements: Index
     angle: Array
     compliance: Array
+    softness: Array
     rest: Array
     by_e: Array
     by_w: sp.csr_array

@@ -75,6 +75,7 @@ class PointLayout:
             rest=curves.rest / scales.length,
             by_w=SparseRows(curves.by_w),
             compliance=curves.compliance * (scales.force / scales.length),
+            softness=curves.softness * (scales.force / scales.length),
         )
 
     @property

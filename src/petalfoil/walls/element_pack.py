@@ -101,21 +101,24 @@ class ElementPack:
     def curves(self) -> GapCurves:
         """Gaps toward journal, bushing and petals below, petal by petal in each kind [m]."""
         parts = [self._curves_of(facing, kind) for kind, facing in enumerate(self.nodes)]
-        facing, rest, by_e, by_w, angle, compliance, nodes = zip(*parts, strict=True)
+        facing, rest, by_e, by_w, angle, soft, nodes = zip(*parts, strict=True)
+        toward_journal = np.repeat([kind is Facing.JOURNAL for kind in self.nodes], self.mesh.count * np.array(nodes))
+        softness = np.concatenate(soft)
         per_curve = np.repeat(nodes, self.mesh.count)
         return GapCurves(
             tuple(kind for kind in facing for _ in range(self.mesh.count)),
             np.cumsum(per_curve) - per_curve,
             per_curve - 1,
             np.concatenate(angle)[:-1],
-            np.concatenate(compliance)[:-1],
+            np.where(toward_journal, 0.0, softness)[:-1],
+            softness[:-1],
             np.concatenate(rest),
             np.concatenate(by_e),
             sp.csr_array(sp.vstack(by_w, format="csr")),
         )
 
     def _curves_of(self, facing: Facing, kind: int) -> tuple[Facing, Array, Array, sp.csr_array, Array, Array, int]:
-        """The curves of one kind: rest, derivatives, element angles and compliances with a gap behind each curve."""
+        """The curves of one kind: rest, derivatives, element angles and softnesses with a gap behind each curve."""
         nodes, n = self.nodes[facing], self.mesh.count
         phi = self.elements.phi[nodes]
         lines = self.wall.contacts.lines[kind]
