@@ -308,3 +308,12 @@ def test_a_released_rotor_on_petals_ends_where_its_load_balances() -> None:
     record = follow(loaded, course)
     end = np.asarray(record.fields["x"])[-1], np.asarray(record.fields["y"])[-1]
     assert math.hypot(end[0] - x, end[1] - y) <= 1e-9
+
+
+@pytest.mark.parametrize(("of_speed", "told"), [(1.0, True), (0.5, False)], ids=["at speed", "before it"])
+def test_a_motion_that_rubs_at_its_speed_says_so(of_speed: float, told: bool) -> None:
+    """A journal pressed on its petals: warned of at the speed of the case, not on the way there."""
+    pressed = petals(**{"operation.eccentricity": (0.0, -200e-6), "operation.speed": 300.0, "rotor": {"mass": 1.0}})
+    record = follow(pressed, OrbitRequest(revolutions=0.01, speeds=((0.0, 300.0 * of_speed),)))
+    assert np.max(record.fields["contact_fraction"]) > 0.01
+    assert any(text.startswith("contact_fraction:") for text in record.warnings) == told

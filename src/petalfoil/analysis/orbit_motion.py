@@ -37,7 +37,7 @@ from petalfoil.analysis.restart import (
 from petalfoil.analysis.session import one_thread
 from petalfoil.analysis.steps_ahead import steps_ahead
 from petalfoil.analysis.trace import Trace
-from petalfoil.case import Case
+from petalfoil.case import Case, warnings_of
 from petalfoil.dynamics.adaptive_steps import MarchOptions, march
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
@@ -57,6 +57,9 @@ Array = NDArray[np.float64]
 LOG = logging.getLogger(__name__)
 
 TURN = 2.0 * np.pi
+
+AT_SPEED = 1e-9
+"""Part by which a speed that is reached may lie below the one given: a ramp ends there but for rounding."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -272,7 +275,8 @@ class Orbit:
             fields={**over, **pictures, **end_state(last, self.system)},
             coords={"time": time, **coords, **end_coordinates(last)},
         )
-        return replace(record, warnings=(*self.foretold, *record.warnings))
+        judged = {**record.scalars, **worst_of(over, self.case.operation.speed)}
+        return replace(record, warnings=(*self.foretold, *warnings_of(self.asked, judged)))
 
     def _summary(self, time: Array, over: dict[str, Array]) -> MotionSummary:
         return MotionSummary(
@@ -322,6 +326,18 @@ class Orbit:
             rejected_steps=refused.count("error"),
             failed_steps=refused.count("no answer") + refused.count("no points"),
         )
+
+
+def worst_of(over: dict[str, Array], speed: float) -> dict[str, float]:
+    """What warnings judge of a motion: its extremes while the shaft turns at the speed of the case or faster."""
+    turning = over["shaft_speed"] >= (1.0 - AT_SPEED) * speed
+    if not turning.any():
+        return {}
+    return {
+        "min_film_thickness": float(over["min_film_thickness"][turning].min()),
+        "contact_fraction": float(over["contact_fraction"][turning].max()),
+        "peak_pressure": float(over["peak_pressure"][turning].max()),
+    }
 
 
 def follow(case: Case, request: OrbitRequest, restart: xr.Dataset | None = None) -> Record:
