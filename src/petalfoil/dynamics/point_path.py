@@ -81,16 +81,13 @@ def point_guesses(whole: PointLayout, path: list[Instant], tau: float) -> list[t
 
 def weighted(weights: list[float], values: list[Array]) -> Array:
     """Sum of arrays of one shape times their weights."""
-    total = weights[-1] * values[-1]
-    for weight, value in zip(weights[:-1], values, strict=False):
-        total += weight * value
-    return total
+    return np.asarray(np.dot(weights, values))
 
 
 def same_contacts(one: PointState, other: PointState) -> bool:
     """Whether two states have contacts on the same curves."""
-    pairs = ((one.points.curve, other.points.curve), (one.points.inner, other.points.inner))
-    return all(same(mine, its) for mine, its in pairs)
+    mine, its = one.points, other.points
+    return mine is its or (same(mine.curve, its.curve) and same(mine.inner, its.inner))
 
 
 def same(one: NDArray[Any], other: NDArray[Any]) -> bool:

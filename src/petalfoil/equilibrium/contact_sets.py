@@ -135,7 +135,7 @@ def revised(
         Gaps and pulls count from a part `CLOSELY` of the usual on.
     """
     points, part = equations.state.points, CLOSELY if closely else 1.0
-    inward = np.where(points.position > 0.0, 1.0, -1.0) * equations.gaps.slope[points.ends]
+    inward = np.where(points.position > 0.0, 1.0, -1.0) * equations.end_slopes
     leaving = inward > max(RESIDUAL_TOLERANCE, error)
     released = (equations.travels == 0.0) & leaving & (equations.idle[points.ends] == 0.0)
     fresh = overlapping(equations, max(part * OVERLAP, error), one_by_one=one_by_one)
@@ -262,6 +262,8 @@ def overlapping(
     One between two travelling points, or where `one_by_one` the lowest of each curve.
     """
     points, curves = equations.state.points, equations.whole.curves
+    if not equations.may_overlap(depth, SAMPLES):
+        return []
     curve, position, gap = sampled(curves, points, equations.nodal_gaps, SAMPLES)
     if points.inner.any():
         gap = gap + sagging(equations, curve, position)

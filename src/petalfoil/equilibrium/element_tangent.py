@@ -12,6 +12,7 @@ more for what is left (`refined`).
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,7 +94,7 @@ class ElementTangent(SeenTangent):
         """The tangent at a state, whose `J` is ready to solve with."""
         if load is None:
             return cls(equations, factor, np.zeros((equations.n, 0)), np.zeros((0, equations.n)), np.zeros((0, 0)))
-        units, rows = factor.solve(-equations.forcing()), equations.force_rows
+        units, rows = np.asfortranarray(factor.solve(-equations.forcing())), equations.force_rows
         return cls(equations, factor, units, rows, rows @ units + equations.force_direct)
 
     @property
@@ -112,11 +113,22 @@ class ElementTangent(SeenTangent):
         own = self.factor.solve(-residual)
         if not self.units.shape[1]:
             return own, np.zeros(len(force))
+        move = self._compliance @ (-force - self.rows @ own)
+        return own + self.units @ move, move
+
+    @cached_property
+    def _compliance(self) -> Array:
+        """The inverse of `gradient`: steps in time ask for it thousands of times.
+
+        Raises
+        ------
+        NoPointsError
+            The journal's position is not determined.
+        """
         try:
-            move = np.linalg.solve(self.gradient, -force - self.rows @ own)
+            return np.asarray(np.linalg.inv(self.gradient), dtype=np.float64)
         except np.linalg.LinAlgError:
             raise NoPointsError("the load does not determine the journal's position") from None
-        return own + self.units @ move, move
 
     def refined(self, residual: Array, force: Array) -> tuple[Array, Array]:
         """The same to rounding of the equations: one solve, and another where the factor has lost digits (`ROUNDED`).

@@ -286,12 +286,9 @@ def admitted(equations: PointEquations, change: tuple[Array, Array], farthest: f
         The film has closed.
     """
     refuse_closed(equations)
-    (dX, move), whole = change, equations.whole
-    growth = dX[whole.n_wall : whole.n_wall + whole.n_film] / equations.state.P
-    opening = (whole.film_by_w @ dX[: whole.n_wall] + whole.film_by_e @ move) / equations.film_thickness.ravel()
-    falls = max(-float(np.min(growth, initial=0.0)), -float(np.min(opening)))
-    most = max(1.0, falls / POSITIVE_FRACTION, float(np.max(growth, initial=0.0)) / MOST_GROWTH)
-    return min(1.0 / most, farthest / max(math.hypot(*move), farthest))
+    falls, growth = equations.relative_changes(*change)
+    most = max(1.0, falls / POSITIVE_FRACTION, growth / MOST_GROWTH)
+    return min(1.0 / most, farthest / max(math.hypot(*change[1]), farthest))
 
 
 def changed(equations: PointEquations, change: Array, farthest: float = TRUST) -> PointState:

@@ -124,8 +124,9 @@ class FilmBalance:
         total = np.zeros(self.mesh.shape)
         total[:, :-1] += along
         total[:, 1:] += sign * along
-        total[..., :-1] += across
-        total[..., 1:] += sign * across
+        if across.size:
+            total[..., :-1] += across
+            total[..., 1:] += sign * across
         return total
 
     @cached_property

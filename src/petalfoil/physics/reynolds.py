@@ -86,9 +86,10 @@ residual of rounding alone passes the tolerance. This matters where hardly any g
 def langevin(x: Array) -> Array:
     """`L(x) = coth x - 1/x` for `x >= 0`, without cancellation near zero."""
     small = x < 0.03
-    y = np.where(small, 1.0, x)
+    some = small.any()
+    y = np.where(small, 1.0, x) if some else x
     value = -2.0 / np.expm1(-2.0 * y) - 1.0 - 1.0 / y
-    if not small.any():
+    if not some:
         return np.asarray(value)
     square = np.minimum(x, 1.0) ** 2  # the series is used for x < 0.03 only; this keeps it finite elsewhere
     return np.where(small, x * (1.0 / 3.0 - square * (1.0 / 45.0 - square * (2.0 / 945.0))), value)

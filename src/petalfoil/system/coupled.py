@@ -278,9 +278,16 @@ def wall_scale(layout: BearingLayout, w: Array) -> Array:
     Ambient pressure on the node; where the rounding of `w` alone makes more than the tolerance of that, this rounding
     (`K w` loses it as `dphi^-4`). A solution is refined below the last digit of `w` and then compared with the former.
     """
-    rounding: Array = WALL_ROUNDING * np.finfo(float).eps * (layout.stiffness_size @ np.abs(w))
-    return np.maximum(1.0, rounding / RESIDUAL_TOLERANCE)
+    return rounding_scale(layout.stiffness_size @ np.abs(w))
+
+
+def rounding_scale(size: Array) -> Array:
+    """The same from sums of the magnitudes of the terms of `K w`, (n_wall,)."""
+    return np.maximum(1.0, ROUNDED * size)
 
 
 WALL_ROUNDING = 8.0
 """Roundings of `K w` add up: up to 5 were seen at 512 cells per pitch."""
+
+ROUNDED = WALL_ROUNDING * float(np.finfo(float).eps) / RESIDUAL_TOLERANCE
+"""Rounding of a row of the wall over its terms and the tolerance of a residual."""

@@ -23,9 +23,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.physics.gap_curves import ContactPoints, PointGaps
-from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 from petalfoil.sparsity import Triplets, add_up, added_blocks
-from petalfoil.system.coupled import WALL_ROUNDING, CoupledProblem
+from petalfoil.system.coupled import CoupledProblem, rounding_scale
 from petalfoil.system.film_rows import FilmState
 from petalfoil.system.point_layout import PointLayout
 from petalfoil.walls.pack_slip import dragged_faces
@@ -99,6 +98,26 @@ class PointEquations:
         H: Array = self.whole.pack.floor / layout.scales.length + self.whole.pack.film_rows @ self.nodal_gaps
         return H.reshape(layout.wall.film.shape)
 
+    @property
+    def end_slopes(self) -> Array:
+        """Slopes of the gaps at the travelling points, those at an end of their curve among them; (k,)."""
+        return np.asarray(self.gaps.slope[self.state.points.ends])
+
+    def relative_changes(self, change: Array, move: Array) -> tuple[float, float]:
+        """How far a `change` (n,) of the unknowns and a `move` (d,) of the journal lead, over what there is [1].
+
+        The most that a pressure or a film thickness falls by, and the most that a pressure grows by; 0 or more.
+        """
+        whole, P = self.whole, change[self.whole.n_wall : self.whole.n_wall + self.whole.n_film]
+        growth = P / self.state.P
+        opening = (whole.film_by_w @ change[: whole.n_wall] + whole.film_by_e @ move) / self.film_thickness.ravel()
+        falls = -min(float(growth.min(initial=0.0)), float(opening.min(initial=0.0)))
+        return falls, float(growth.max(initial=0.0))
+
+    def may_overlap(self, depth: float, per_element: int) -> bool:
+        """Whether some gap of as many samples per element may be below zero by `depth` [1]; it is then looked for."""
+        return True
+
     @cached_property
     def film(self) -> FilmState:
         """The film's rows."""
@@ -122,8 +141,8 @@ class PointEquations:
     def idle(self) -> Array:
         """1 for a point at a root, which bears on the bushing without a reaction; (j,)."""
         points, n = self.state.points, self.whole.pack.mesh.count
-        on_bushing = (points.every_curve >= n) & (points.every_curve < 2 * n)
-        return (on_bushing & (points.every_position <= 0.0)).astype(np.float64)
+        on_bushing = points.every_curve // n == 1
+        return np.asarray(on_bushing & (points.every_position <= 0.0), dtype=np.float64)
 
     @cached_property
     def _nodal_loads(self) -> Array:
@@ -188,8 +207,7 @@ class PointEquations:
     @cached_property
     def row_scales(self) -> tuple[Array, Array]:
         """What residuals of wall and film are compared with."""
-        rounding = WALL_ROUNDING * np.finfo(float).eps * (self.whole.stiffness_size @ np.abs(self.state.w))
-        return np.maximum(1.0, rounding / RESIDUAL_TOLERANCE), self.film.row_scale
+        return rounding_scale(self.whole.stiffness_size @ np.abs(self.state.w)), self.film.row_scale
 
     @cached_property
     def steady(self) -> sp.csc_array:
