@@ -62,9 +62,10 @@ test: setup ## Fast tests
 test-studio: setup ## The page of `petalfoil studio` in a browser, under attack, and its processes
 	$(BIN)/python -m pytest -n 0 -m "not long" tests/studio
 
-test-classic: setup ## Tests of the paper's own method, with the numba that compiles it
+test-classic: setup ## Tests of what numba compiles: the paper's own method, long motions
 	$(INSTALL) --editable '.[classic]'
 	$(BIN)/python -m pytest -n 0 -m "compiled and not long" tests
+	$(BIN)/python -m pytest -n 0 tests/unit/system/test_compiled_points.py tests/unit/dynamics/test_compiled_stages.py
 
 test-all: setup ## All tests
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --durations 40 --durations-min 5 -m "not long" tests

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import settings
 
 from petalfoil.case import Case
-from petalfoil.classic.kernels import numba_is_installed
+from petalfoil.compiled import numba_is_installed
 from petalfoil.equilibrium.run_context import RunContext, running
 from petalfoil.walls import register, unregister
 from tests.walls.elastic_foundation import ElasticFoundation

@@ -3,25 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any, TypeVar, cast
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.classic.columns import ContactColumns
 from petalfoil.classic.film_cells import FilmCells
 from petalfoil.classic.kernels import CHECK, REFRESH, Bands, DescentSettings, MarchSettings
+from petalfoil.compiled import compiled
 
 Array = NDArray[np.float64]
-F = TypeVar("F", bound=Callable[..., Any])
-
-
-def compiled(function: F) -> F:
-    """Compile at the first call and keep the result on disk."""
-    return cast(F, numba.njit(cache=True, error_model="numpy")(function))
-
 
 # ---------------------------------------------------------------------------------------------- film
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from enum import StrEnum
 from functools import cache
-from importlib.util import find_spec
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 
 from petalfoil.classic.columns import ContactColumns
 from petalfoil.classic.film_cells import FilmCells
+from petalfoil.compiled import numba_is_installed
 
 Array = NDArray[np.float64]
 
@@ -83,8 +83,3 @@ def kernels(engine: KernelBackend | None = None) -> Kernels:
     from petalfoil.classic import numpy_kernels as plain
 
     return Kernels(plain.march, plain.descend)
-
-
-def numba_is_installed() -> bool:
-    """Whether numba is installed (``pip install petalfoil[classic]``)."""
-    return find_spec("numba") is not None

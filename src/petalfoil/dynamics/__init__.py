@@ -18,6 +18,7 @@
 `time_state.py`            state at an instant
 `stage.py`                 one implicit stage: film, wall, contacts and rotor in one Newton
 `point_stage.py`           the same with contact points that travel
+`compiled_stages.py`       which motions evaluate it in compiled loops
 `point_path.py`            instants with contact points, at the nodes and extrapolated
 `tr_bdf2.py`               a step of second order from two stages, with an error estimate
 `adaptive_steps.py`        steps that adapt to a tolerance, from start to end

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from petalfoil.dynamics.compiled_stages import worth_compiling
 from petalfoil.dynamics.point_path import KNOTS
 from petalfoil.dynamics.stage import StageOptions
 from petalfoil.dynamics.time_state import Instant
@@ -100,6 +101,8 @@ def march(bearing: RotorBearing, start: Instant, end: float, options: MarchOptio
     ConvergenceError
         No step, however short, has a solution.
     """
+    if worth_compiling(bearing, (end - start.tau) / options.longest):
+        bearing = replace(bearing, compiled=True)
     path, ahead = [start], NextStep.first(bearing, start, min(options.first, options.longest))
     stage_options = StageOptions(accuracy=min(1e-2 * options.tolerance, LOOSEST))
     while path[-1].tau < end * (1.0 - 1e-12):

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.dynamics.compiled_stages import compiled_equations
 from petalfoil.dynamics.point_path import same, same_contacts
 from petalfoil.dynamics.stage import Stage, left_after, told
 from petalfoil.dynamics.time_state import TimeState
@@ -77,10 +78,13 @@ class PointStage:
         The petals.
     stage : Stage
         Film, speed, rotor and what the stage starts from.
+    compiled : bool
+        Whether the equations are evaluated in compiled loops.
     """
 
     whole: PointLayout
     stage: Stage
+    compiled: bool = False
 
     @property
     def load(self) -> Array:
@@ -96,7 +100,8 @@ class PointStage:
             raise TypeError("contacts of a shaft in two bearings are at nodes")
         resists, friction = self.stage.border_stiffness, self.stage.point_friction
         if friction is None:
-            return PointStepEquations(self.whole, problem, state, resists=resists)
+            kind = compiled_equations() if self.compiled else PointStepEquations
+            return kind(self.whole, problem, state, resists=resists)
         force = carried(friction.force, friction.begin.points, state.points)
         return RubbingStepEquations(self.whole, problem, state, resists=resists, friction_force=force)
 
@@ -190,7 +195,7 @@ class PointStage:
     def moving(self, equations: PointStepEquations) -> TimeState:
         """Gas, position and velocity of a state of this stage."""
         e = equations.problem.displacement
-        return TimeState(equations.film.mass, e, self.stage.rate * (e - self.stage.base.e))
+        return TimeState(equations.gas, e, self.stage.rate * (e - self.stage.base.e))
 
 
 def with_contacts(before: PointStepEquations, equations: PointStepEquations) -> PointStepEquations:
@@ -227,6 +232,4 @@ def asked_for(tangent: ElementTangent, equations: PointStepEquations) -> float:
 
 def balanced(equations: PointStepEquations) -> bool:
     """Whether gaps and slopes vanish at the contact points, and the petals are in equilibrium."""
-    wall, _, value, slope = equations.residual
-    open_by = max(np.max(np.abs(value), initial=0.0), np.max(np.abs(slope), initial=0.0))
-    return bool(open_by <= TOUCHING and np.max(np.abs(wall) / equations.row_scales[0]) <= BALANCED)
+    return equations.opening <= TOUCHING and equations.wall_imbalance <= BALANCED

@@ -60,12 +60,15 @@ class RotorBearing:
         Friction between its petals.
     points : PointLayout or None
         The same bearing with contacts between nodes; None where they are at nodes.
+    compiled : bool
+        Whether stages with contact points are evaluated in compiled loops (`compiled_stages.py`).
     """
 
     problem: StepProblem | ShaftStep
     rotor: RotorMotion
     friction: Friction | None = None
     points: PointLayout | None = None
+    compiled: bool = False
 
     @property
     def at_nodes(self) -> Self:
@@ -157,7 +160,7 @@ def advance(
 ) -> Reached | None:
     """Where a stage leads at `tau`, within a step or at its end; None if it has no solution."""
     if bearing.points is not None:
-        return advance_points(PointStage(bearing.points, stage), tau, path, tangent)
+        return advance_points(PointStage(bearing.points, stage, bearing.compiled), tau, path, tangent)
     last = path[-1]
     for x, e in guesses(path, tau):
         at_nodes = tangent if isinstance(tangent, BorderedTangent) else None

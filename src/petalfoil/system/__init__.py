@@ -15,6 +15,9 @@
 `friction.py`             residual of the friction forces between petals, and a problem with it
 `time_step.py`            an implicit step in time: the film stores gas
 `point_step.py`           the same with contact points; the journal has mass
+`compiled_step.py`        the same in compiled loops: the class that serves in its place
+`compiled_points.py`      these loops
+`point_tables.py`         what they read and return, as plain arrays
 `point_friction.py`       friction between petals at contact points that travel (M13)
 `shaft_layout.py`         what stays the same of two bearings on one shaft
 `on_shaft.py`             both side by side in a step in time

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from petalfoil.physics.gap_curves import GapCurves
 from petalfoil.physics.mass_balance import Entries
 from petalfoil.sparsity import SparseRows, SummedEntries, Triplets
+from petalfoil.system.point_tables import PointTables
 from petalfoil.walls.element_pack import ElementPack
 
 if TYPE_CHECKING:
@@ -73,10 +74,16 @@ class PointLayout:
         return replace(
             curves,
             rest=curves.rest / scales.length,
+            by_e=np.asfortranarray(curves.by_e),  # products with a vector take half as long by columns
             by_w=SparseRows(curves.by_w),
             compliance=curves.compliance * (scales.force / scales.length),
             softness=curves.softness * (scales.force / scales.length),
         )
+
+    @cached_property
+    def tables(self) -> PointTables:
+        """The same for compiled loops."""
+        return PointTables.of(self)
 
     @property
     def journal_entries(self) -> int:
@@ -129,7 +136,7 @@ class PointLayout:
     @cached_property
     def film_by_e(self) -> Array:
         """Derivative of the film thickness by the journal's displacement, (film nodes, d)."""
-        return np.asarray(self.pack.film_rows @ self.curves.by_e)
+        return np.asfortranarray(self.pack.film_rows @ self.curves.by_e)
 
     @cached_property
     def push(self) -> SparseRows:

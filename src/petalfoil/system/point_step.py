@@ -50,12 +50,27 @@ class PointStepEquations(PointEquations):
         wall, film, value, slope = super().residual
         if not self.problem.rate:
             return wall, film, value, slope
-        return wall, film + self.problem.rate * (self.film.mass - self.problem.start), value, slope
+        return wall, film + self.problem.rate * (self.gas - self.problem.start), value, slope
+
+    @property
+    def gas(self) -> Array:
+        """Gas in the cell of each pressure (F5), (n_film,) [1]."""
+        return self.film.mass
 
     @cached_property
     def film_imbalance(self) -> float:
         """Largest residual of the film's rows over the flows of their cells."""
-        return float(np.max(np.abs(self.residual[1] / self.film.row_scale), initial=0.0))
+        return float(np.max(np.abs(self.residual[1] / self.row_scales[1]), initial=0.0))
+
+    @cached_property
+    def wall_imbalance(self) -> float:
+        """Largest residual of the petals' rows over what they are compared with."""
+        return float(np.max(np.abs(self.residual[0]) / self.row_scales[0], initial=0.0))
+
+    @cached_property
+    def opening(self) -> float:
+        """Largest gap, and slope by the place in an element, at the contact points [reference films]."""
+        return float(max(np.max(np.abs(part), initial=0.0) for part in self.residual[2:]))
 
     @cached_property
     def steady(self) -> sp.csc_array:
