@@ -59,7 +59,10 @@ def test_a_motion_whose_balance_has_no_points_costs_what_contacts_at_nodes_cost(
 
 @pytest.mark.slow
 def test_a_shaft_that_tilts_with_friction_takes_the_steps_that_it_takes_without() -> None:
-    """Two bearings in 3-D for a tenth of a turn: no step is tried twice, and friction adds a factorisation or two."""
+    """Two bearings in 3-D for a tenth of a turn: no step is tried twice, and friction adds no factorisation.
+
+    It asks for three solves for each closed contact, 637 for a factorisation; where open ones have columns too, 1117.
+    """
     shaft = {"mass": 6.0, "unbalance": 2e-6, "span": 0.2, "transverse_inertia": 0.06, "polar_inertia": 0.003}
     grid = {"model.cells_per_pitch": 8, "model.axial_cells": 4, "model.axial_density": "uniform"}
     found, defects = [], []
@@ -67,14 +70,15 @@ def test_a_shaft_that_tilts_with_friction_takes_the_steps_that_it_takes_without(
         changes = {**grid, "petals.theory": "shell", "surface.petal_friction": mu}
         bearing = case("paper_n8_spatial", rotor=shaft, **changes)
         orbit = Orbit.begin(bearing, OrbitRequest(revolutions=0.1, slope=(0.0, 1e-4)))
-        before = orbit.run.film.factorizations
+        before, solved = orbit.run.film.factorizations, orbit.run.film.solves
         for _ in orbit.advance():
             pass
-        told = orbit.record().scalars
-        found.append((told["steps"], told["failed_steps"], orbit.run.film.factorizations - before))
+        told, factors = orbit.record().scalars, orbit.run.film.factorizations - before
+        found.append((told["steps"], told["failed_steps"], factors, orbit.run.film.solves - solved))
         defects.append(told["energy_balance_error"])
-    (steps, failed, factors), (steps_rubbing, failed_rubbing, factors_rubbing) = found
+    (steps, failed, factors, _), (steps_rubbing, failed_rubbing, factors_rubbing, solves_rubbing) = found
     assert failed == failed_rubbing == 0
     assert steps_rubbing <= steps + 2
-    assert factors_rubbing <= factors + 4
+    assert factors_rubbing <= factors + 1
+    assert solves_rubbing <= 650 * factors_rubbing
     assert defects[1] == pytest.approx(defects[0], rel=0.1)

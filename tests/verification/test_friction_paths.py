@@ -6,7 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+import scipy.sparse as sp
+from numpy.testing import assert_allclose, assert_array_equal
+from numpy.typing import NDArray
 
 from petalfoil.analysis.balance import balance
 from petalfoil.analysis.capacity import capacity
@@ -19,7 +21,7 @@ from petalfoil.analysis.runup import runup
 from petalfoil.analysis.sensitivity import sensitivity
 from petalfoil.analysis.stability import stability
 from petalfoil.case import Case, Rotor
-from petalfoil.equilibrium.coulomb_path import rubbing_of
+from petalfoil.equilibrium.coulomb_path import beside, rubbing_of
 from petalfoil.equilibrium.friction_history import assembled
 from petalfoil.equilibrium.friction_under_load import BALANCE, PATH, LoadedPath
 from petalfoil.equilibrium.run_context import running
@@ -28,6 +30,7 @@ from petalfoil.equilibrium.sliding_newton import Iterate, SlidingNewton, Sliding
 from petalfoil.errors import DefinitionError, UsageError
 from petalfoil.results.record import Record
 from petalfoil.system.build import build_problem
+from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.friction import friction_of, slipping
 from tests.cases import case
 
@@ -149,13 +152,14 @@ def pack_in_a_medium() -> tuple[SlidingTangent, slice]:
         assert pack is not None
         x = problem.layout.ambient(pack.x)
         equations = SinkingEquations(problem, np.array([0.0, -1.0]), x, Medium(0.5))
-        newton = SlidingNewton(equations, friction, pack.friction, problem.layout.wall.contacts.line_numbers, BALANCE)
+        newton = SlidingNewton(equations, friction, pack.friction, BALANCE)
         begin = Iterate(
             x, problem.displacement, pack.lam, pack.friction.force, pack.active, slipping(friction, pack.friction)
         )
         tangent = newton.tangent_at(begin)
-    assert tangent is not None
-    return tangent, problem.layout.wall.contacts.journal
+        assert tangent is not None
+        contacts = beside(pack.active, problem.layout.wall.contacts.line_numbers)
+        return tangent.with_contacts(contacts, newton.rubs(problem)), problem.layout.wall.contacts.journal
 
 
 @pytest.mark.slow
@@ -168,6 +172,56 @@ def test_contacts_that_close_push_each_other_alike() -> None:
     compliance = space.answer[np.ix_(is_open, np.flatnonzero(is_open))]
     assert_allclose(compliance, compliance.T, rtol=0.0, atol=1e-9 * np.max(compliance))
     assert np.linalg.eigvalsh(compliance).min() > -1e-12 * np.max(compliance)
+
+
+@pytest.mark.slow
+def test_contacts_that_come_into_question_later_have_the_columns_of_those_at_once() -> None:
+    """And both are what a solve for each gives: openings, reactions and friction forces, the journal following."""
+    tangent, _ = pack_in_a_medium()
+    problem = build_problem(rig(**{"operation.eccentricity": (0.0, 0.0), "operation.speed": 0.0}))
+    friction = friction_of(rig(), problem.layout)
+    assert friction is not None
+    rubs = (problem.G, problem.acting), rubbing_of(friction, problem.layout.n)
+    later, contacts = tangent.columns, np.sort(tangent.columns.contacts)
+    once = SlidingTangent.about(tangent, tangent.stiffness + tangent.gradient, contacts, rubs).columns
+    order = np.argsort(later.contacts)
+    assert not np.array_equal(order, np.arange(len(order)))
+    places = np.concatenate([order, np.arange(len(order), later.change.shape[1])])
+    same(later.change[:, places], once.change)
+    same(later.space.answer[np.ix_(order, places)], once.space.answer)
+    same(later.space.slip[:, places], once.space.slip)
+    assert_array_equal(later.contacts[later.space.rubs], contacts[once.space.rubs])
+    for place in (0, len(contacts) // 2, len(contacts), once.change.shape[1] - 1):
+        change, reactions = alone(tangent, problem, (contacts, once.rubbing), place, rubs[1].slip)
+        same(once.change[:, place], change)
+        same(once.units.reactions[:, place], reactions[tangent.constraints.held])
+
+
+def same(found: NDArray[np.float64], expected: NDArray[np.float64]) -> None:
+    """Both agree to rounding of a solve."""
+    assert_allclose(found, expected, rtol=0.0, atol=1e-10 * np.max(np.abs(expected)))
+
+
+def alone(
+    tangent: SlidingTangent,
+    problem: CoupledProblem,
+    numbers: tuple[NDArray[np.intp], NDArray[np.intp]],
+    place: int,
+    slip: sp.csr_array,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Changes of unknowns and of reactions by one unit, found by itself."""
+    (contacts, rubbing), held = numbers, tangent.constraints.held
+    openings, force, own = np.zeros(len(held)), np.zeros(problem.layout.n), np.zeros(len(held))
+    if place >= len(contacts):
+        force = slip[[rubbing[place - len(contacts)]]].toarray()[0]
+    elif held[contacts[place]]:
+        openings[contacts[place]] = -1.0
+    else:
+        force, own[contacts[place]] = -problem.acting[[contacts[place]]].toarray()[0], 1.0
+    change, reactions = tangent.respond(force, openings)
+    moved = np.linalg.solve(tangent.stiffness, tangent.border.rows(change, reactions + own))
+    follows, pushed = tangent.respond(tangent.forcing @ moved, tangent.border.gap_derivative @ moved)
+    return change + follows, reactions + pushed
 
 
 def test_what_has_no_path_is_refused() -> None:
@@ -187,14 +241,14 @@ def test_what_has_no_path_is_refused() -> None:
 @pytest.mark.slow
 def test_where_nothing_touches_the_tangent_has_no_columns_of_contacts() -> None:
     """A run-up ended there in an internal error. The bordered unknowns answer as beside contacts."""
-    beside, _ = pack_in_a_medium()
+    known, _ = pack_in_a_medium()
     problem = build_problem(rig(**{"operation.eccentricity": (0.0, 0.0), "operation.speed": 0.0}))
     friction = friction_of(rig(), problem.layout)
     assert friction is not None
     rubs = (problem.G, problem.acting), rubbing_of(friction, problem.layout.n)
-    none = SlidingTangent.about(beside, beside.stiffness + beside.gradient, np.zeros(0, dtype=np.intp), rubs)
-    assert none.moved.shape == (2, 0)
+    none = SlidingTangent.about(known, known.stiffness + known.gradient, np.zeros(0, dtype=np.intp), rubs)
+    assert none.columns.units.moved.shape == (2, 0)
     assert none.columns.change.shape == (problem.layout.n, 0)
-    assert_allclose(none.stiffness, beside.stiffness)
-    assert_allclose(none.pushed, beside.pushed)
-    assert none.has(np.zeros(len(problem.weight), dtype=bool))
+    assert_allclose(none.stiffness, known.stiffness)
+    assert_allclose(none.follower.pushed, known.follower.pushed)
+    assert none.with_contacts(np.zeros(len(problem.weight), dtype=bool), rubs) is none

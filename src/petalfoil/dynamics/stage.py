@@ -237,15 +237,21 @@ def solve_stage(
 
 
 def solve_sliding_stage(
-    stage: Stage, start: tuple[Array, Array, Mask], lam: Array, tangent: BorderedTangent | None
+    stage: Stage,
+    start: tuple[Array, Array, Mask],
+    forces: tuple[Array, Array],
+    tangent: BorderedTangent | None,
 ) -> StageSolution | None:
-    """The same of petals that slide along themselves, from reactions `lam` (m,): contacts and friction as one."""
+    """The same of petals that slide along themselves: contacts and friction as one.
+
+    `forces` are reactions (m,) and friction forces (k,) near by.
+    """
     if stage.friction is None:
         raise ValueError("a stage without friction")
     options = SlidingOptions(stage.options.accuracy, stage.options.slow, stage.options.slow_sliding, TANGENTS_EXACT)
     friction, smooth = stage.friction, replace(stage, friction=None)
-    newton = SlidingNewton(smooth, friction.friction, friction.before, stage.problem.contact_lines, options)
-    found = newton.solved((*start, lam), tangent)
+    newton = SlidingNewton(smooth, friction.friction, friction.before, options)
+    found = newton.solved((*start, *forces), tangent)
     if found is None:
         return None
     state, after = newton.state(*found)

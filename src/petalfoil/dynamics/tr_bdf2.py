@@ -164,7 +164,7 @@ def advance(
     last = path[-1]
     for x, e in guesses(path, tau):
         at_nodes = tangent if isinstance(tangent, BorderedTangent) else None
-        found = solved(stage, (x, e, last.active), last.lam, at_nodes)
+        found = solved(stage, (x, e, last.active), last, at_nodes)
         if found is not None:
             state, moving = found.state, found.moving
             change = moving.minus(stage.base, stage.rate)
@@ -190,11 +190,16 @@ def advance_points(stage: PointStage, tau: float, path: list[Instant], tangent: 
 
 
 def solved(
-    stage: Stage, start: tuple[Array, Array, Mask], lam: Array, tangent: BorderedTangent | None
+    stage: Stage, start: tuple[Array, Array, Mask], last: Instant, tangent: BorderedTangent | None
 ) -> StageSolution | None:
-    """The stage's state from `start`; of petals that slide along themselves with contacts and friction as one."""
-    exact = stage.friction is not None and stage.friction.friction.exact
-    return solve_sliding_stage(stage, start, lam, tangent) if exact else solve_stage(stage, start, tangent)
+    """The stage's state from `start`; of petals that slide along themselves with contacts and friction as one.
+
+    `last` is the instant before, whose forces are near by.
+    """
+    if stage.friction is None or not stage.friction.friction.exact:
+        return solve_stage(stage, start, tangent)
+    known = last.friction if last.friction is not None and last.points is None else stage.friction.before
+    return solve_sliding_stage(stage, start, (last.lam, known.force), tangent)
 
 
 def guesses(path: list[Instant], tau: float) -> list[tuple[Array, Array]]:

@@ -79,8 +79,8 @@ def slide_exactly(
     slides, still = slipping(friction, before.friction), np.zeros_like(slip)
     known = KnownState(before.active, slides, gaps, before.lam, before.friction.force, still)
     doubt = beside(before.active, lines) | (base[2] < CLOSED)
+    columns = UnitResponses.of(tangent, (pack.G, pack.acting), np.flatnonzero(doubt), rubbing)
     for _ in range(ROUNDS):
-        columns = UnitResponses.of(tangent, (pack.G, pack.acting), np.flatnonzero(doubt), rubbing)
         found = columns.solved(base, slip, known)
         if found is None:
             return None
@@ -89,6 +89,7 @@ def slide_exactly(
         if not closing.any():
             return reached(pack, friction, before, columns, (x, found))
         doubt |= closing
+        columns = columns.with_more(tangent, (pack.G, pack.acting), np.flatnonzero(closing), rubbing)
     return None
 
 

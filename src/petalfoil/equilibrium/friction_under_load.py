@@ -128,10 +128,9 @@ class LoadedPath:
         self, problem: CoupledProblem, before: FrictionResult, medium: Medium
     ) -> tuple[CoupledProblem, FrictionResult] | None:
         """The state after a step in a `medium`; None if it is not found."""
-        lines = problem.layout.wall.contacts.line_numbers
         equations = SinkingEquations(problem, self.load, before.x, medium)
-        newton = SlidingNewton(equations, self.friction, before.friction, lines, BALANCE)
-        found = newton.solved((before.x, problem.displacement, before.active, before.lam))
+        newton = SlidingNewton(equations, self.friction, before.friction, BALANCE)
+        found = newton.solved((before.x, problem.displacement, before.active, before.lam, before.friction.force))
         current_run().note("friction", outcome="not found" if found is None else "found")
         if found is None:
             return None

@@ -8,18 +8,20 @@ under a load alike.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.coulomb_path import CLOSED, Lines, beside, rubbing_of
+from petalfoil.equilibrium.coulomb_path import CLOSED, rubbing_of
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.contact_equations import ContactEquations, ContactState, Correction
-from petalfoil.solvers.contact_space import KnownState, RubbingContacts, Unit, UnitResponses
+from petalfoil.solvers.contact_space import Follower, KnownState, RubbingContacts, UnitResponses
 from petalfoil.solvers.coulomb import ContactForces
+from petalfoil.solvers.problem import ContactProblem
 from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.solvers.tangent import BorderedTangent, GapRows, Tangent
 from petalfoil.system.friction import FrictionState, against_slip, slipping, slips
@@ -32,6 +34,12 @@ Rubs = tuple[GapRows, RubbingContacts]
 
 CORRECTIONS = 24
 """Most corrections; two or three are typical."""
+
+MOST_OPEN = 40
+"""Open contacts whose columns a tangent keeps: dense problems grow with them, and a factorisation leaves them out."""
+
+ROUNDS = 4
+"""Times that contacts which a correction would close come into question in it."""
 
 GROWING = 2.0
 """Growth of the correction past which a tangent no longer serves."""
@@ -59,42 +67,39 @@ class SlidingTangent(BorderedTangent):
     ----------
     columns : UnitResponses
         Of openings, reactions and friction forces.
-    moved : (d, m + f) array
-        Change of the bordered unknowns by each.
-    pushed : (m_all, d) array
-        Change of all reactions by the bordered unknowns.
-    stiffness : (d, d) array
-        What resists the bordered unknowns.
+    follower : Follower
+        What the bordered unknowns do in answer to forces.
     """
 
     columns: UnitResponses
-    moved: Array
-    pushed: Array
-    stiffness: Array
+    follower: Follower
 
     @classmethod
     def about(cls, plain: BorderedTangent, resists: Array, contacts: Index, rubs: Rubs) -> SlidingTangent:
         """A solve for each contact and friction force; `resists` (d, d) are the border's own terms."""
         border = plain.border
         both = [plain.respond(plain.forcing[:, k], border.gap_derivative[:, k]) for k in range(border.size)]
-        pushed, stiffness = np.column_stack([reactions for _, reactions in both]), resists - plain.gradient
-        moves: list[Array] = []
-
-        def answered(unit: Unit) -> Unit:
-            moves.append(np.linalg.solve(stiffness, border.rows(unit.change, unit.reactions)))
-            change, reactions = unit.change + plain.units @ moves[-1], unit.reactions + pushed @ moves[-1]
-            return Unit(change, reactions, border.gap_derivative @ moves[-1])
-
-        columns = UnitResponses.of(plain, rubs[0], contacts, rubs[1], answered)
+        pushed = np.column_stack([reactions for _, reactions in both])
+        follower = Follower(border, plain.units, pushed, resists - plain.gradient)
         own = {field.name: getattr(plain, field.name) for field in fields(BorderedTangent)}
-        moved = np.reshape(moves, (len(moves), border.size)).T  # no columns where nothing touches
-        return cls(**own, columns=columns, moved=moved, pushed=pushed, stiffness=stiffness)
+        return cls(**own, columns=UnitResponses.of(plain, rubs[0], contacts, rubs[1], follower), follower=follower)
 
-    def has(self, contacts: Mask) -> bool:
-        """Whether `contacts` (m,) are among those in question."""
-        inside = np.zeros_like(contacts)
-        inside[self.columns.contacts] = True
-        return bool(np.all(inside | ~contacts))
+    @property
+    def stiffness(self) -> Array:
+        """What resists the bordered unknowns, (d, d)."""
+        return self.follower.stiffness
+
+    def crowded(self, closed: Mask) -> bool:
+        """Whether many contacts in question are no longer closed (m,)."""
+        return len(self.columns.contacts) > MOST_OPEN + int(np.count_nonzero(closed))
+
+    def with_contacts(self, contacts: Mask, rubs: Rubs) -> SlidingTangent:
+        """The same with all `contacts` (m,) among those in question: a solve for each that is new."""
+        new = contacts.copy()
+        new[self.columns.contacts] = False
+        if not new.any():
+            return self
+        return replace(self, columns=self.columns.with_more(self, rubs[0], np.flatnonzero(new), rubs[1], self.follower))
 
 
 @dataclass(frozen=True)
@@ -121,8 +126,6 @@ class SlidingNewton:
         The gaps that rub.
     before : FrictionState
         Slips at the start of the step.
-    lines : sequence of int arrays
-        Numbers of the gaps along lines.
     options : SlidingOptions
         Numbers of the method.
     """
@@ -130,21 +133,24 @@ class SlidingNewton:
     equations: ContactEquations
     friction: Friction
     before: FrictionState
-    lines: Lines
     options: SlidingOptions
 
     def solved(
-        self, start: tuple[Array, Array, Mask, Array], tangent: BorderedTangent | None = None
+        self, start: tuple[Array, Array, Mask, Array, Array], tangent: BorderedTangent | None = None
     ) -> tuple[Iterate, SlidingTangent] | None:
-        """The state near `start`, unknowns, bordered unknowns, active contacts, reactions; None if there is none.
+        """The state near `start`; None if there is none.
 
-        `tangent` of a neighbour serves as long as corrections contract.
+        `start` has unknowns, bordered unknowns, active contacts, reactions and friction forces. `tangent` of a
+        neighbour serves as long as corrections contract.
         """
-        x, b, active, lam = start
-        at = Iterate(x, b, lam, self.before.force, active, slipping(self.friction, self.before))
+        x, b, active, lam, force = start
+        known = FrictionState(self.before.slip, force, self.friction.coefficient * self.friction.normal(lam))
+        at = Iterate(x, b, lam, force, active, slipping(self.friction, known))
         sliding, last, made = tangent if isinstance(tangent, SlidingTangent) else None, np.inf, 0
+        if sliding is not None and sliding.crowded(active):
+            sliding = None
         for _ in range(CORRECTIONS):
-            if sliding is None or not sliding.has(self.in_question(at)):
+            if sliding is None:
                 if made == self.options.tangents or not self.equations.at(at.b).admits(at.x):
                     return None
                 sliding, last, made = self.tangent_at(at), np.inf, made + 1
@@ -156,13 +162,14 @@ class SlidingNewton:
                     return None  # another tangent at this very state would be the same
                 sliding = None
                 continue
-            at, size, full = found
+            at, size, full, sliding = found
             contraction = size / last if np.isfinite(last) else self.options.first
             error = size * min(1.0, contraction / max(1.0 - contraction, 0.1))
             if full and error <= self.options.accuracy and not np.any(self.gaps(at) < CLOSED):
                 return at, sliding
-            sliding = sliding if contraction <= self.options.slow and full else None
             last = size
+            if contraction > self.options.slow or not full:
+                sliding = None
         return None
 
     def gaps(self, at: Iterate) -> Array:
@@ -170,8 +177,17 @@ class SlidingNewton:
         return self.equations.at(at.b).gaps(at.x)
 
     def in_question(self, at: Iterate) -> Mask:
-        """Contacts that may open or close, (m,): those closed, their neighbours, gaps below zero."""
-        return beside(at.closed, self.lines) | (self.gaps(at) < CLOSED)
+        """Contacts that may open or close, (m,): those closed, and gaps below zero."""
+        return at.closed | (self.gaps(at) < CLOSED)
+
+    @cached_property
+    def rubbing(self) -> RubbingContacts:
+        """The gaps that rub."""
+        return rubbing_of(self.friction, int(self.equations.problem.G.shape[1]))
+
+    def rubs(self, problem: ContactProblem) -> Rubs:
+        """Derivative of all gaps, forces of unit reactions, and the gaps that rub."""
+        return (problem.G, problem.acting), self.rubbing
 
     def tangent_at(self, at: Iterate) -> SlidingTangent | None:
         """The factorised equations with the contacts of an iterate; None if they have no inverse."""
@@ -186,28 +202,44 @@ class SlidingNewton:
         except SingularMatrixError:
             return None
         plain = BorderedTangent.at(Tangent(matrix, constraints, factor), self.equations.border, linearized)
-        rubs = (problem.G, problem.acting), rubbing_of(self.friction, len(at.x))
         contacts = np.flatnonzero(self.in_question(at))
         try:
-            return SlidingTangent.about(plain, self.equations.border_stiffness, contacts, rubs)
+            return SlidingTangent.about(plain, self.equations.border_stiffness, contacts, self.rubs(problem))
         except np.linalg.LinAlgError:  # nothing holds the journal
             return None
 
-    def corrected(self, at: Iterate, sliding: SlidingTangent) -> tuple[Iterate, float, bool] | None:
-        """The next iterate, size of the correction, and whether all of it was taken; None without contact forces."""
-        problem, columns = self.equations.at(at.b), sliding.columns
-        settled, reactions = sliding.respond(problem.linearize(at.x).residual, problem.gaps(at.x))
-        db = np.linalg.solve(sliding.stiffness, self.equations.imbalance(at.x + settled, reactions, at.b))
-        change, reactions = settled + sliding.units @ db, reactions + sliding.pushed @ db
-        gaps = problem.gaps(at.x) + problem.G @ change + sliding.border.gap_derivative @ db
+    def corrected(self, at: Iterate, sliding: SlidingTangent) -> tuple[Iterate, float, bool, SlidingTangent] | None:
+        """The next iterate, size of the correction, whether all of it was taken, and the tangent with its contacts.
+
+        Contacts that the correction would close come into question then; None without contact forces.
+        """
+        problem, known = self.equations.at(at.b), self.known(at)
+        change, db, base = self.without_units(at, sliding)
         slip = slips(self.friction, at.x + change) - self.before.slip
-        found = columns.solved((change, reactions, gaps), slip, self.known(at))
-        if found is None:
-            return None
-        amounts = np.concatenate([found.unknown, found.friction])
-        whole = Correction(change + columns.change @ amounts, db + sliding.moved @ amounts, np.zeros(0))
-        length = self.equations.longest_step((at.x, at.b), whole)
-        return self.stepped(at, whole, length, (columns, found)), whole.size, length == 1.0
+        sliding = sliding.with_contacts(self.in_question(at), self.rubs(problem))
+        for _ in range(ROUNDS):
+            columns = sliding.columns
+            found = columns.solved(base, slip, known)
+            if found is None:
+                return None
+            amounts = np.concatenate([found.unknown, found.friction])
+            whole = Correction(change + columns.change @ amounts, db + columns.units.moved @ amounts, np.zeros(0))
+            length = self.equations.longest_step((at.x, at.b), whole)
+            reached = self.stepped(at, whole, length, (columns, found))
+            sliding = sliding.with_contacts(self.in_question(reached), self.rubs(problem))
+            if sliding.columns is columns:
+                break
+        return reached, whole.size, length == 1.0, sliding
+
+    def without_units(self, at: Iterate, sliding: SlidingTangent) -> tuple[Array, Array, tuple[Array, Array, Array]]:
+        """What the factor gives alone: changes of unknowns and border; of the former again, all reactions and gaps."""
+        problem, follower, border = self.equations.at(at.b), sliding.follower, sliding.border
+        gaps = problem.gaps(at.x)
+        settled, reactions = sliding.respond(problem.linearize(at.x).residual, gaps)
+        db = np.linalg.solve(follower.stiffness, self.equations.imbalance(at.x + settled, reactions, at.b))
+        change, reactions = settled + follower.units @ db, reactions + follower.pushed @ db
+        moved: Array = problem.G @ change + border.gap_derivative @ db
+        return change, np.asarray(db, dtype=np.float64), (change, reactions, gaps + moved)
 
     def known(self, at: Iterate) -> KnownState:
         """Contacts and friction of an iterate."""

@@ -69,9 +69,10 @@ class ContactConstraints:
         return spla.splu(sp.csc_array(self.G @ self.G.T))
 
     def close(self, gaps: Array) -> Array:
-        """Smallest change of the unknowns that closes gaps of `gaps` (k,) (T1); shape (n,)."""
-        out: Array = -(self.G.T @ self._normal.solve(gaps)) if len(gaps) else np.zeros(len(self.group))
-        return out
+        """Smallest change of the unknowns that closes gaps of `gaps` (k,) or (k, j) (T1); shape (n,) or (n, j)."""
+        if not len(gaps):
+            return np.zeros((len(self.group), *gaps.shape[1:]))
+        return np.asarray(-(self.G.T @ self._normal.solve(gaps)))
 
     @cached_property
     def _across(self) -> spla.SuperLU:
@@ -113,9 +114,9 @@ class ContactConstraints:
         return sp.csr_array((sp.csr_array(self.motions.T) @ sp.csr_array(more[rubbing].T)) @ reactions)
 
     def reactions(self, residual: NDArray[Any]) -> NDArray[Any]:
-        """Reactions `lam` (k,) with `H^T lam = residual` on the eliminated equations (T2)."""
+        """Reactions `lam` (k,) or (k, j) with `H^T lam = residual` on the eliminated equations (T2)."""
         if not self.G.shape[0]:
-            return np.zeros(0)
+            return np.zeros((0, *residual.shape[1:]))
         return apply_to_parts(self._across.solve, self.G @ residual)
 
     def reactions_adjoint(self, by_reactions: Array) -> Array:
@@ -141,6 +142,15 @@ class ContactConstraints:
         """What all equations (n,) leave of those of the free unknowns without their reactions (T4), (n_free,)."""
         gathered = self.gather(full)
         return gathered if self._dragged is None else gathered - self._dragged @ full
+
+    def balanced_each(self, full: Array) -> Array:
+        """`balanced` of each of `j` columns (n, j), (n_free, j)."""
+        gathered = self.motions.T @ full
+        return np.asarray(gathered if self._dragged is None else gathered - self._dragged @ full)
+
+    def spread_each(self, free: Array) -> Array:
+        """`spread` of each of `j` columns (n_free, j), (n, j)."""
+        return np.asarray(np.concatenate([free, np.zeros((1, free.shape[1]))])[self.group])
 
     def balanced_adjoint(self, free: NDArray[Any]) -> NDArray[Any]:
         """Derivative by all equations (n,) of what has the derivative `free` (n_free,) by `balanced`."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from petalfoil.solvers.coulomb import ContactForces, ContactSpace, KnownForces, States, contact_forces
 from petalfoil.solvers.coulomb_disk import disk_forces
+from petalfoil.solvers.problem import Border
 from petalfoil.solvers.tangent import BorderedTangent, GapRows
 
 Array = NDArray[np.float64]
@@ -51,12 +52,93 @@ class RubbingContacts:
 
 
 @dataclass(frozen=True)
-class Unit:
-    """Change of the unknowns (n,) and of all reactions (m,), and of all gaps (m,) by bordered unknowns."""
+class Follower:
+    """What bordered unknowns do in answer to forces.
+
+    Attributes
+    ----------
+    border : Border
+        How they enter.
+    units : (n, d) array
+        Change of the unknowns by a unit of each.
+    pushed : (m, d) array
+        Change of all reactions by the same.
+    stiffness : (d, d) array
+        What resists them.
+    """
+
+    border: Border
+    units: Array
+    pushed: Array
+    stiffness: Array
+
+    def moved(self, change: Array, reactions: Array) -> Array:
+        """Their change, (d, k), by changes of the unknowns (n, k) and of all reactions (m, k)."""
+        return np.linalg.solve(self.stiffness, self.border.rows(change, reactions))
+
+
+@dataclass(frozen=True)
+class Units:
+    """Changes by a unit of each of `k` openings, reactions and friction forces.
+
+    Attributes
+    ----------
+    change : (n, k) array
+        Of the unknowns.
+    reactions : (h, k) array
+        Of the reactions that the factor holds.
+    moved : (d, k) array
+        Of the bordered unknowns.
+    """
 
     change: Array
     reactions: Array
-    gaps: Array | float
+    moved: Array
+
+    @classmethod
+    def of(
+        cls, tangent: BorderedTangent, forces: sp.csr_array, openings: Index, own: Index, follower: Follower | None
+    ) -> Units:
+        """Of `k` rows of forces (k, n), in each of which a held gap opens, or an open one has a unit reaction.
+
+        `openings` are their places among the held gaps and `own` their numbers among all, -1 for none, (k,).
+        """
+        held, none = tangent.constraints.held, Units.none(tangent, follower)
+        parts = [none]
+        for start in range(0, forces.shape[0], TOGETHER):
+            some = slice(start, start + TOGETHER)
+            pushes = forces[some].toarray().T
+            change, reactions = tangent.tangent.respond_each(pushes, openings[some])
+            moved = np.zeros((len(none.moved), change.shape[1]))
+            if follower is not None:
+                every = np.zeros((len(held), change.shape[1]))
+                every[held] = reactions
+                pushed = np.flatnonzero(own[some] >= 0)
+                every[own[some][pushed], pushed] = 1.0  # the unit itself, which bordered unknowns feel too
+                moved = follower.moved(change, every)
+                change, reactions = change + follower.units @ moved, reactions + follower.pushed[held] @ moved
+            parts.append(cls(change, reactions, moved))
+        return cls.joined(parts)
+
+    @classmethod
+    def none(cls, tangent: BorderedTangent, follower: Follower | None) -> Units:
+        """Of nothing."""
+        rows = tangent.tangent.matrix.shape[0], np.count_nonzero(tangent.constraints.held)
+        return cls(*(np.zeros((count, 0)) for count in (*rows, 0 if follower is None else follower.border.size)))
+
+    @classmethod
+    def joined(cls, parts: Sequence[Units]) -> Units:
+        """Those of several sets, one after another."""
+        names = ("change", "reactions", "moved")
+        return cls(*(np.concatenate([getattr(part, name) for part in parts], axis=1) for name in names))
+
+    def at(self, places: Index) -> Units:
+        """Some of them."""
+        return Units(self.change[:, places], self.reactions[:, places], self.moved[:, places])
+
+
+TOGETHER = 64
+"""Units found at once: their reactions are of all gaps."""
 
 
 @dataclass(frozen=True)
@@ -83,14 +165,9 @@ class KnownState:
     slip: Array
 
 
-def columns(vectors: Sequence[Array], length: int) -> Array:
-    """The matrix with these columns, (length, number of vectors): also of none, where no contact is near."""
-    return np.column_stack(vectors) if vectors else np.zeros((length, 0))
-
-
 @dataclass(frozen=True)
 class UnitResponses:
-    """Changes of the unknowns by a unit of each opening, reaction and friction force.
+    """What units of openings, reactions and friction forces do to linearised equations, for some of the contacts.
 
     Attributes
     ----------
@@ -98,16 +175,21 @@ class UnitResponses:
         Gaps that may open or close.
     rubbing : (f,) int array
         Places among the slips of those that rub; in a plane those across follow, (2 f,).
-    change : (n, m + f) array
-        Changes of the unknowns.
+    units : Units
+        Of the contacts, then of the friction forces, (m + f,).
     space : ContactSpace
         The same as seen by the contacts.
     """
 
     contacts: Index
     rubbing: Index
-    change: Array
+    units: Units
     space: ContactSpace
+
+    @property
+    def change(self) -> Array:
+        """Changes of the unknowns, (n, m + f)."""
+        return self.units.change
 
     @classmethod
     def of(
@@ -116,36 +198,56 @@ class UnitResponses:
         gap_rows: GapRows,
         contacts: Index,
         rubbing: RubbingContacts,
-        answered: Callable[[Unit], Unit] = lambda unit: unit,
+        follower: Follower | None = None,
     ) -> UnitResponses:
-        """A solve for each; `answered` adds what bordered unknowns do in answer to a unit."""
-        (G, acting), held, at = gap_rows, tangent.constraints.held, rubbing.at(contacts)
-        sliding = rubbing.every_slip(at)
-        rows, slips, none = sp.csr_array(G[contacts]), sp.csr_array(rubbing.slip[sliding]), np.zeros(G.shape[1])
-        pushes = sp.csr_array(acting[contacts])
-        units = []
-        for place, gap in enumerate(contacts):
-            if held[gap]:
-                opening = np.zeros(len(held))
-                opening[gap] = -1.0
-                units.append(tangent.respond(none, opening))
-            else:
-                change, reactions = tangent.respond(-pushes[[place]].toarray()[0])
-                reactions[gap] = 1.0  # the unit itself, which bordered unknowns feel too
-                units.append((change, reactions))
-        units += [tangent.respond(slips[[place]].toarray()[0]) for place in range(len(sliding))]
-        moved = [answered(Unit(change, reactions, 0.0)) for change, reactions in units]
-        change = columns([unit.change for unit in moved], G.shape[1])
-        reactions = columns([unit.reactions[contacts] for unit in moved], len(contacts))
-        own = columns([np.broadcast_to(unit.gaps, len(held))[contacts] for unit in moved], len(contacts))
-        gaps = rows @ change + own
+        """A solve for each; `follower` adds what bordered unknowns do in answer to a unit."""
+        sliding = rubbing.every_slip(rubbing.at(contacts))
+        units = unit_responses(tangent, gap_rows, (contacts, sliding), rubbing, follower)
+        return cls.seen((tangent, gap_rows, follower), (contacts, sliding), units, rubbing)
+
+    def with_more(
+        self,
+        tangent: BorderedTangent,
+        gap_rows: GapRows,
+        more: Index,
+        rubbing: RubbingContacts,
+        follower: Follower | None = None,
+    ) -> UnitResponses:
+        """The same with more contacts, at a solve for each of them."""
+        own = rubbing.every_slip(rubbing.at(more))
+        added = unit_responses(tangent, gap_rows, (more, own), rubbing, follower)
+        contacts = np.concatenate([self.contacts, more])
+        sliding, both = rubbing.every_slip(rubbing.at(contacts)), Units.joined([self.units, added])
+        behind = len(tangent.constraints.held)  # slips are numbered behind all gaps
+        found = np.concatenate([self.contacts, behind + self.rubbing, more, behind + own])
+        order = np.argsort(found)
+        wanted = np.concatenate([contacts, behind + sliding])
+        units = both.at(order[np.searchsorted(found, wanted, sorter=order)])
+        return self.seen((tangent, gap_rows, follower), (contacts, sliding), units, rubbing)
+
+    @classmethod
+    def seen(
+        cls,
+        at: tuple[BorderedTangent, GapRows, Follower | None],
+        numbers: tuple[Index, Index],
+        units: Units,
+        rubbing: RubbingContacts,
+    ) -> UnitResponses:
+        """Units of contacts and slips of given `numbers` as seen by the contacts."""
+        (tangent, (G, _), follower), (contacts, sliding) = at, numbers
+        held, along = tangent.constraints.held, rubbing.at(contacts)
+        gaps = sp.csr_array(G[contacts]) @ units.change
+        if follower is not None:
+            gaps = gaps + follower.border.gap_derivative[contacts] @ units.moved
         place_of = np.full(len(held), -1)
+        place_of[np.flatnonzero(held)] = np.arange(np.count_nonzero(held))
+        closed = held[contacts]
+        gaps[closed] = units.reactions[place_of[contacts[closed]]]
         place_of[contacts] = np.arange(len(contacts))
-        answer = np.where(held[contacts][:, None], reactions, gaps)
-        stuck = np.ones(len(sliding) - len(at)), np.zeros(len(sliding) - len(at))
-        rubs = place_of[rubbing.gap[at]]
-        space = ContactSpace(held[contacts], answer, slips @ change, rubs, rubbing.coefficient, stuck)
-        return cls(contacts, sliding, change, space)
+        stuck = np.ones(len(sliding) - len(along)), np.zeros(len(sliding) - len(along))
+        slips = sp.csr_array(rubbing.slip[sliding]) @ units.change
+        space = ContactSpace(closed, gaps, slips, place_of[rubbing.gap[along]], rubbing.coefficient, stuck)
+        return cls(contacts, sliding, units, space)
 
     def solved(self, base: tuple[Array, Array, Array], slip: Array, known: KnownState) -> ContactForces | None:
         """Forces from what the factor gives alone: unknowns' change (n,), reactions and gaps (m,), slips (k,)."""
@@ -161,3 +263,23 @@ class UnitResponses:
             return disk_forces(self.space, (answer, slip[rubbing]), KnownForces(states, *normal, *tangential))
         forces = KnownForces.of(self.space, states, normal, tangential)
         return contact_forces(self.space, (answer, slip[rubbing]), forces)
+
+
+def unit_responses(
+    tangent: BorderedTangent,
+    gap_rows: GapRows,
+    numbers: tuple[Index, Index],
+    rubbing: RubbingContacts,
+    follower: Follower | None,
+) -> Units:
+    """Units of the contacts and slips of given `numbers`: openings of those held, reactions of the others, forces."""
+    (contacts, sliding), held = numbers, tangent.constraints.held
+    opens = held[contacts]
+    place_of = np.full(len(held), -1)
+    place_of[np.flatnonzero(held)] = np.arange(np.count_nonzero(held))
+    pushes = sp.diags_array(np.where(opens, 0.0, -1.0)) @ sp.csr_array(gap_rows[1][contacts])
+    forces = sp.csr_array(sp.vstack([pushes, rubbing.slip[sliding]]))
+    none = np.full(len(sliding), -1)
+    openings = np.concatenate([np.where(opens, place_of[contacts], -1), none])
+    own = np.concatenate([np.where(opens, -1, contacts), none])
+    return Units.of(tangent, forces, openings, own, follower)

@@ -264,25 +264,29 @@ def of_each(space: ContactSpace, constants: list[tuple[Array, Array]], states: S
     m, f = len(space.held), len(space.rubs)
     moves = space.held != states.closed  # an opening of what was held, or a reaction of what was open
     touching, n = states.closed[space.rubs], space.answer.shape[1]
-    sticks, slides = touching & (states.slips == 0), touching & (states.slips != 0)
-    at = space.rubs[slides]
-    # reactions in terms of all unknowns: an answer of a held contact, an unknown of an open one
-    by_unknowns = np.where(space.held[at, None], space.answer[at], np.eye(m, n)[at])
-    grip = space.coefficient * states.slips[slides]
-    across, slips_by, over = law_across(space, touching)
-    rows = np.vstack(
-        [space.answer[moves], space.slip[:f][sticks], np.eye(f, n, m)[slides] - grip[:, None] * by_unknowns, across]
-    )
+    sticks, slides = (np.flatnonzero(touching & part) for part in (states.slips == 0, states.slips != 0))
+    at, grip = space.rubs[slides], space.coefficient * states.slips[slides]
+    over = np.flatnonzero(touching) if space.planar else np.zeros(0, dtype=np.intp)
+    a, b = (part[over] for part in space.across) if space.planar else (over, over)
+    free = np.flatnonzero(np.concatenate([moves, touching, *([touching] if space.planar else [])]))
+    place = np.zeros(n, dtype=np.intp)
+    place[free] = np.arange(len(free))
+    by_reaction, held = space.answer[np.ix_(at, free)], space.held[at]
+    by_reaction[~held] = 0.0  # reactions are answers of held contacts, unknowns of open ones
+    by_reaction[np.flatnonzero(~held), place[at[~held]]] = 1.0
+    slid, crossed = -grip[:, None] * by_reaction, a[:, None] * space.slip[np.ix_(f + over, free)]
+    slid[np.arange(len(slides)), place[m + slides]] += 1.0
+    crossed[np.arange(len(over)), place[m + f + over]] -= b
+    rows = np.concatenate([space.answer[np.ix_(moves, free)], space.slip[np.ix_(sticks, free)], slid, crossed])
     right = [
         -np.concatenate(
-            [answer[moves], slip[:f][sticks], -grip * np.where(space.held, answer, 0.0)[at], slips_by * slip[f:][over]]
+            [answer[moves], slip[sticks], -grip * np.where(space.held, answer, 0.0)[at], a * slip[f + over]]
         )
         for answer, slip in constants
     ]
-    free = np.concatenate([moves, touching, over])
     z = np.zeros((n, len(constants)))
     try:
-        z[free] = np.linalg.solve(rows[:, free], np.column_stack(right))
+        z[free] = np.linalg.solve(rows, np.column_stack(right))
     except np.linalg.LinAlgError:
         return None
     answers, slips = space.answer @ z, space.slip @ z
@@ -290,14 +294,6 @@ def of_each(space: ContactSpace, constants: list[tuple[Array, Array]], states: S
         ContactForces(z[:m, k], answers[:, k] + answer, z[m:, k], slips[:, k] + slip, states)
         for k, (answer, slip) in enumerate(constants)
     ]
-
-
-def law_across(space: ContactSpace, touching: Mask) -> tuple[Array, Array, Mask]:
-    """Rows of `a sigma - b T = 0` by all unknowns, `a` of each, and which contacts have them: none but in a plane."""
-    m, f, n = len(space.held), len(space.rubs), space.answer.shape[1]
-    over = touching if space.planar else np.zeros(0, dtype=bool)
-    a, b = (part[over] for part in space.across)
-    return a[:, None] * space.slip[f:][over] - b[:, None] * np.eye(n - m - f, n, m + f)[over], a, over
 
 
 def wrong(space: ContactSpace, found: ContactForces) -> tuple[Mask, Index]:

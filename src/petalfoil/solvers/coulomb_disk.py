@@ -41,6 +41,10 @@ GIVE, TIMES = 1e-9, 2
 forces that move nothing, which would otherwise be rounding. Times that the forces found are taken as known: a contact
 that sticks has then slipped by 1e-18 of what it would slip without friction."""
 
+SETTLED = 1e-3
+"""Change of friction forces, over the largest, that does not ask for a second time: contacts that stick have slipped by
+1e-12 of what they would slip without friction."""
+
 
 @dataclass(frozen=True)
 class SlipLines:
@@ -75,24 +79,25 @@ class SlipLines:
         return replace(self, across=(np.where(touching, a, 0.0), np.where(touching, b, 1.0 / rho)))
 
     def turned(self, vectors: Array) -> Array:
-        """Components along and across, (2 f, ...), of vectors (2 f, ...) in the axes of the petals."""
-        (x, z), (first, second) = self._shaped(vectors), np.split(vectors, 2)
+        """Components along and across, (..., 2 f), of vectors (..., 2 f) in the axes of the petals."""
+        (x, z), (first, second) = self.way, np.split(vectors, 2, axis=-1)
+        return np.concatenate([x * first + z * second, x * second - z * first], axis=-1)
+
+    def turned_rows(self, vectors: Array) -> Array:
+        """The same of columns of vectors, (2 f, j)."""
+        (x, z), (first, second) = self.way[:, :, None], np.split(vectors, 2)
         return np.concatenate([x * first + z * second, x * second - z * first])
 
     def back(self, vectors: Array) -> Array:
-        """Vectors in the axes of the petals from their components."""
-        (x, z), (along, across) = self._shaped(vectors), np.split(vectors, 2)
+        """Vectors in the axes of the petals from their components, (2 f,)."""
+        (x, z), (along, across) = self.way, np.split(vectors, 2)
         return np.concatenate([x * along - z * across, z * along + x * across])
-
-    def _shaped(self, vectors: Array) -> Array:
-        return self.way.reshape(2, -1, *[1] * (vectors.ndim - 1))
 
     def seen(self, space: ContactSpace) -> ContactSpace:
         """The contacts with friction along and across these directions."""
         m, f = len(space.held), len(space.rubs)
-        forces = np.concatenate([self.turned(space.answer[:, m:].T).T, self.turned(space.slip[:, m:].T).T])
-        answer = np.hstack([space.answer[:, :m], forces[:m]])
-        slip = self.turned(np.hstack([space.slip[:, :m], forces[m:]]))
+        answer, slip = space.answer.copy(), self.turned_rows(space.slip)
+        answer[:, m:], slip[:, m:] = self.turned(answer[:, m:]), self.turned(slip[:, m:])
         a, b = self.across
         still = np.all(slip[f:] == 0.0, axis=1)
         return replace(space, answer=answer, slip=slip, across=(np.where(still, 0.0, a), np.where(still, 1.0, b)))
@@ -108,7 +113,9 @@ def disk_forces(space: ContactSpace, constant: tuple[Array, Array], known: Known
         found = turned_from(*giving(space, constant, known.friction), known)
         if found is None:
             return None
-        known = known_from(space, found)
+        changed, known = np.max(np.abs(found.friction - known.friction), initial=0.0), known_from(space, found)
+        if changed <= SETTLED * np.max(np.abs(found.friction), initial=0.0):
+            break
     return found
 
 

@@ -70,6 +70,21 @@ class Tangent:
             change = follow + self.step(self.matrix @ follow + residual)
         return change, self.constraints.reactions(self.matrix @ change + residual)
 
+    def respond_each(self, residuals: Array, openings: Index) -> tuple[Array, Array]:
+        """The same against each of `j` residuals (n, j), where `openings` (j,) name a held gap that opens by 1, or -1.
+
+        Shapes (n, j) and (k, j).
+        """
+        constraints, opens = self.constraints, np.flatnonzero(openings >= 0)
+        change, left = np.zeros_like(residuals), residuals
+        if len(opens):
+            unit_openings = np.zeros((constraints.G.shape[0], len(opens)))
+            unit_openings[openings[opens], np.arange(len(opens))] = -1.0
+            change[:, opens] = constraints.close(unit_openings)
+            left = residuals + self.matrix @ change
+        change = change + constraints.spread_each(self.factor.solve(-constraints.balanced_each(left)))
+        return change, constraints.reactions(self.matrix @ change + residuals)
+
     def adjoint(self, by_change: Array, by_reactions: Array) -> tuple[Array, Array]:
         """Derivatives by `residual` (n,) and `gap_change` (k,) of what has these by the outcome of `respond`.
 

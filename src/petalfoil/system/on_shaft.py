@@ -124,12 +124,6 @@ class ShaftStep:
         return self.layout.journal
 
     @property
-    def contact_lines(self) -> list[Index]:
-        """Gaps of one kind in lines around the shaft, (line, node) each."""
-        pairs = zip(self.parts, self.layout.gap_numbers, strict=True)
-        return [gaps[lines] for part, gaps in pairs for lines in part.contact_lines]
-
-    @property
     def elimination_key(self) -> Hashable | None:
         """One for all speeds and positions; films alone gain nothing by remembered orders."""
         return self.layout if self.layout.unknowns.sizes[DEFLECTION] else None

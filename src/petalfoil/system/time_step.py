@@ -88,11 +88,6 @@ class StepProblem(CoupledProblem):
         """Gaps on the journal."""
         return self.layout.wall.contacts.journal
 
-    @property
-    def contact_lines(self) -> list[Index]:
-        """Gaps of one kind in lines around the shaft, (line, node) each."""
-        return self.layout.wall.contacts.line_numbers
-
     def rows_of(self, stored: Array) -> Array:
         """What is stored, or its rate, at the rows that it belongs to; (n,) [1]."""
         return at_rows(self.layout, stored)
