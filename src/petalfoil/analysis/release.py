@@ -24,7 +24,7 @@ from petalfoil.equilibrium.element_contacts import near_nodes, with_elements
 from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import UsageError
-from petalfoil.system.build import build_pair, build_problem
+from petalfoil.system.build import build_pair, build_problem, on_the_same_wall
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.friction import FrictionState, friction_of
 from petalfoil.system.heat_network import HeatNetwork
@@ -275,7 +275,9 @@ def at_rest(case: Case, system: RotorBearing, request: OrbitRequest, *, at_point
         place = place + rotor.lever / scales.length * np.array([0.0, 0.0, *request.slope])
         state = held_on_shaft(system.problem.at(bearing_number=system.rotor.bearing_number(0.0), displacement=place))
     else:
-        answer = at_position(at(case, speed)).answer
+        there = at(case, speed)
+        alone = system.problem if isinstance(system.problem, StepProblem) else None
+        answer = at_position(there, None if alone is None else on_the_same_wall(alone, there)).answer
         state = answer.x, answer.lam, answer.active
         found = None if system.points is None or not at_points else near_nodes(answer)
         if isinstance(found, PointContacts):
