@@ -13,13 +13,12 @@ from scipy.integrate import cumulative_trapezoid
 
 from petalfoil.analysis.film_figures import BearingState, FilmFigures, dragging_work, film_work, growth_work
 from petalfoil.case import Case
-from petalfoil.dynamics.point_path import nodal_friction
+from petalfoil.dynamics.point_path import nodal_friction, point_friction
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.physics.forces import contact_fraction
 from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.friction import energy_lost
-from petalfoil.system.point_friction import PointFriction
 from petalfoil.system.unknowns import DEFLECTION
 from petalfoil.walls import wall_kind
 
@@ -258,11 +257,10 @@ class Trace:
         friction, whole = self.system.friction, self.system.points
         if friction is None or before.friction is None or instant.friction is None:
             return 0.0
-        if whole is None or instant.points is None or before.points is None:
+        if whole is None or instant.points is None:
             then = nodal_friction(friction, before)
             return energy_lost(friction.in_step(before.lam), then, instant.friction)
-        law = PointFriction(whole, friction.coefficient, before.points, before.friction.force)
-        return law.lost(instant.friction, instant.points.points)
+        return point_friction(whole, friction, before).lost(instant.friction, instant.points.points)
 
     @cached_property
     def _loses(self) -> bool:

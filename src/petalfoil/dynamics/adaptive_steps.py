@@ -109,7 +109,7 @@ def march(bearing: RotorBearing, start: Instant, end: float, options: MarchOptio
         left = end - path[-1].tau
         step = ahead.step if ahead.step < left * (1.0 - 1e-9) else left
         tangent = ahead.tangent if abs(step / ahead.step - 1.0) < SAME_STEP else None
-        held = ahead.at_nodes > 0 or not returns(bearing, path[-1])
+        held = ahead.at_nodes > 0
         stepped = take_step(bearing.at_nodes if held else bearing, path, step, tangent, stage_options)
         if stepped is None or (stepped.error > 1.5 * options.tolerance and judged(path[-1], stepped, options)):
             why = "error" if stepped is not None else "no answer" if held or bearing.points is None else "no points"
@@ -122,11 +122,6 @@ def march(bearing: RotorBearing, start: Instant, end: float, options: MarchOptio
         path = [*path, stepped.inner, stepped.end][-KNOTS:]
         yield stepped
         ahead = accepted(ahead, step, stepped, options, turned=turned)
-
-
-def returns(bearing: RotorBearing, begin: Instant) -> bool:
-    """Whether points may be looked for from an instant: friction at nodes stays there, for it sticks to nodes."""
-    return bearing.friction is None or begin.points is not None
 
 
 def judged(begin: Instant, stepped: AcceptedStep, options: MarchOptions) -> bool:

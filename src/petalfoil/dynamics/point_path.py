@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.dynamics.time_state import AtNodes, Instant, TimeState
-from petalfoil.equilibrium.contact_runs import from_active_nodes
+from petalfoil.equilibrium.contact_runs import at_nearest_points, from_active_nodes
 from petalfoil.equilibrium.contact_sets import merged
 from petalfoil.equilibrium.nodal_state import sampled_deflection, shared_reactions, with_motion_along
 from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.system.friction import FrictionState
 from petalfoil.system.point_equations import PointEquations, PointState
-from petalfoil.system.point_friction import RubbingStepEquations
+from petalfoil.system.point_friction import PointFriction, RubbingStepEquations
 from petalfoil.system.point_layout import PointLayout
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE
 from petalfoil.walls.pack_slip import stretched_along
@@ -52,6 +52,22 @@ def nodal_friction(friction: Friction, instant: Instant) -> FrictionState:
     if instant.friction is not None and instant.points is None:
         return instant.friction
     return FrictionState.fresh(friction, instant.x, instant.lam)
+
+
+def point_friction(whole: PointLayout, friction: Friction, begin: Instant) -> PointFriction:
+    """Friction at contact points of a step from an instant on: of nodes their material and forces, at the points there.
+
+    A force at a node passes to the nearest point of its curve, as far as the limit of friction permits.
+    """
+    if begin.friction is None:
+        raise ValueError("an instant without friction forces")
+    state, force = state_at(whole, begin), begin.friction.force
+    if begin.points is None:
+        gaps = friction.reaction_share.T @ force
+        free = PointFriction(whole, friction.coefficient, state, np.zeros(len(state.points.reaction)))
+        limit = free.limit(state.points)
+        force = np.clip(at_nearest_points(whole, state.points, gaps), -limit, limit)
+    return PointFriction(whole, friction.coefficient, state, force)
 
 
 def point_guesses(whole: PointLayout, path: list[Instant], tau: float) -> list[tuple[PointState, Array]]:

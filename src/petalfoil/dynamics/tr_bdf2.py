@@ -14,7 +14,15 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.dynamics.point_path import KNOTS, at_points_instant, foretelling, nodal_friction, point_guesses, weighted
+from petalfoil.dynamics.point_path import (
+    KNOTS,
+    at_points_instant,
+    foretelling,
+    nodal_friction,
+    point_friction,
+    point_guesses,
+    weighted,
+)
 from petalfoil.dynamics.point_stage import PointStage
 from petalfoil.dynamics.rotor_motion import RotorMotion
 from petalfoil.dynamics.stage import Stage, StageOptions, StageSolution, solve_sliding_stage, solve_stage
@@ -25,7 +33,7 @@ from petalfoil.solvers.contact_newton import border_change
 from petalfoil.solvers.tangent import BorderedTangent
 from petalfoil.system.friction import FrictionStep
 from petalfoil.system.on_shaft import ShaftStep
-from petalfoil.system.point_friction import PointFriction, RubbingStepEquations
+from petalfoil.system.point_friction import RubbingStepEquations
 from petalfoil.system.point_layout import PointLayout
 from petalfoil.system.time_step import StepProblem
 from petalfoil.system.unknowns import PRESSURE
@@ -79,8 +87,8 @@ class RotorBearing:
         """The implicit stage at `tau` from `base` in a step from `begin`; friction goes on from there."""
         rotor, friction, at_points = self.rotor, None, None
         if self.friction is not None and begin.friction is not None:
-            if self.points is not None and begin.points is not None:
-                at_points = PointFriction(self.points, self.friction.coefficient, begin.points, begin.friction.force)
+            if self.points is not None:
+                at_points = point_friction(self.points, self.friction, begin)
             else:
                 friction = FrictionStep.beginning(self.friction, nodal_friction(self.friction, begin), begin.lam)
         problem = replace(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,15 +25,31 @@ SPACING = 1.0
 def from_active_nodes(whole: PointLayout, lam: Array, active: Mask) -> ContactPoints:
     """Contact points from the reactions (m,) of active nodes (m,)."""
     contacts: list[TravellingContact] = []
+    for curve, number, place in nodes_of_curves(whole):
+        for run in runs(active[number]):
+            contacts += of_run(curve, place[run], lam[number[run]], place[-1])
+    return packed(contacts)
+
+
+def nodes_of_curves(whole: PointLayout) -> Iterator[tuple[int, Index, Array]]:
+    """Curve by curve: its number, numbers of the gaps at its nodes (k,), and their places in elements (k,)."""
     phi, n = whole.pack.elements.phi, whole.pack.mesh.count
     for kind, nodes in enumerate(whole.pack.nodes.values()):
         lines = whole.layout.wall.contacts.lines[kind]
         place = np.interp(lines.phi, phi, np.arange(len(phi), dtype=np.float64)) - nodes.start
         for line in range(n):
-            number = lines.number[line]
-            for run in runs(active[number]):
-                contacts += of_run(kind * n + line, place[run], lam[number[run]], place[-1])
-    return packed(contacts)
+            yield kind * n + line, lines.number[line], place
+
+
+def at_nearest_points(whole: PointLayout, points: ContactPoints, forces: Array) -> Array:
+    """Forces (m,) at the nodes on the contact points nearest to them on their curves, (j,)."""
+    out = np.zeros(len(points.reaction))
+    for curve, number, place in nodes_of_curves(whole):
+        at, pulls = np.flatnonzero(points.every_curve == curve), np.flatnonzero(forces[number])
+        if len(at) and len(pulls):
+            apart = np.abs(place[pulls, None] - points.every_position[at])
+            np.add.at(out, at[np.argmin(apart, axis=1)], forces[number[pulls]])
+    return out
 
 
 def runs(active: Mask) -> list[Index]:
