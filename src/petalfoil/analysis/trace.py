@@ -338,9 +338,8 @@ class Trace:
             "frame_x": np.array([part.problem.displacement[0] * length for part in shown]),
             "frame_y": np.array([part.problem.displacement[1] * length for part in shown]),
         }
-        bent = [part.deflection * length for part in shown]
-        sections = [kind.cross_section(layout.case, W) for W in bent]
-        if any(sections):
+        sections = kind.cross_section(layout.case, np.array([part.deflection * length for part in shown]))
+        if sections:
             coords |= kind.coordinates(layout.case, layout.wall)
-            fields["frame_radius"] = np.array([section["radius"] for section in sections])
+            fields["frame_radius"] = sections["radius"]
         return coords, fields

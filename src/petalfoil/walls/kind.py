@@ -107,7 +107,10 @@ class WallKind(ABC):
         return {"phi": wall.film.phi} if wall.n_unknown else {}
 
     def cross_section(self, case: Case, deflection: Array) -> Fields:
-        """Free and deformed radius of a wall that is drawn, from its deflections [m]; nothing for a simple wall."""
+        """Free and deformed radius of a wall that is drawn; nothing for a simple wall.
+
+        From its deflections (n,) [m], or those of many states (..., n).
+        """
         return {}
 
     def scalars(self, fields: Fields) -> Scalars:

@@ -266,7 +266,7 @@ class PetalWall(WallKind):
         return {"phi": build_mesh(case).phi}
 
     def cross_section(self, case: Case, deflection: Array) -> Fields:
-        """Radius of the mid-surface, free of the mean petal (node,) and deformed of all (petal, node, axial) [m].
+        """Radius of the mid-surface, free of the mean petal (node,) and deformed of all (..., petal, node, axial) [m].
 
         With backing springs also their deflection behind the petals, likewise.
         """
@@ -319,9 +319,10 @@ class PetalWall(WallKind):
 
 
 def nodal(mesh: PackMesh, deflection: Array) -> Array:
-    """Deflections (n,) at all nodes of the petals, zero at the roots; (petal, node, axial) [m]."""
-    W = np.zeros(mesh.shape)
-    W[:, 1:] = deflection[: W[:, 1:].size].reshape(mesh.count, -1, mesh.n_z)  # what else petals do is behind
+    """Deflections (..., n) at all nodes of the petals, zero at the roots; (..., petal, node, axial) [m]."""
+    W = np.zeros((*deflection.shape[:-1], *mesh.shape))
+    inner = W[..., 1:, :]
+    inner[:] = deflection[..., : mesh.count * (mesh.n_node - 1) * mesh.n_z].reshape(inner.shape)  # others are behind
     return W
 
 
@@ -331,8 +332,12 @@ def springs_from(case: Case) -> float:
 
 
 def crowns(mesh: PackMesh, deflection: Array, start: float) -> Array:
-    """Deflections (n,) of backing springs from the angle `start` on, elsewhere zero; (petal, node, axial) [m]."""
-    V = np.zeros(mesh.shape)
+    """Deflections (..., n) of backing springs from the angle `start` on, elsewhere zero.
+
+    Shape (..., petal, node, axial) [m].
+    """
+    V = np.zeros((*deflection.shape[:-1], *mesh.shape))
     behind = np.arange(mesh.n_node)[mesh.on_bushing][covered(mesh, start) > 0.0]
-    V[:, behind] = deflection[-mesh.count * len(behind) * mesh.n_z :].reshape(mesh.count, -1, mesh.n_z)
+    shape = (*V.shape[:-2], len(behind), mesh.n_z)
+    V[..., behind, :] = deflection[..., -mesh.count * len(behind) * mesh.n_z :].reshape(shape)
     return V
