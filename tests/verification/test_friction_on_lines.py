@@ -98,6 +98,21 @@ def test_hardly_any_friction_is_none() -> None:
         assert_allclose(found, entries, rtol=0.0, atol=1e-6 * np.max(np.abs(entries)))
 
 
+@pytest.mark.slow
+def test_contacts_near_a_root_are_no_clamps() -> None:
+    """The rig's petals lie on roots 1.2 cells from them, where two nodes that stick nearly doubled the damping."""
+    rig = case("rig", **{"model.kind": "3d", "surface.petal_friction": 0.3, "operation.load": (0.0, -55.6)})
+    of = rig.replace(**{"model.cells_per_pitch": 32, "model.axial_cells": 12})
+    lines, _, _, _ = about(of)
+    between = lines.points.lines[2]
+    clamped = lines.held[between.number[:, 1:3]].all(axis=1) & ~lines.held[between.number[:, 0]]
+    assert not clamped.any()
+    near = (lines.points.kind == 2) & (lines.points.phi < between.phi[2])
+    assert np.count_nonzero(near) > 50
+    found = coefficients(of, load=(0.0, -55.6), amplitude="1 um")
+    assert_allclose(np.diag(found.damping.values[0]), [274.3, 282.8], rtol=0.12)  # on 64 x 24 cells
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("amplitude", ["1 um", "10 um", "50 um"])
 def test_damping_of_the_rig_converges(amplitude: str) -> None:

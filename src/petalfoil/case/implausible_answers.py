@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from petalfoil.case import gas_properties
 from petalfoil.case.definitions import Case
+from petalfoil.case.sections import ModelKind
 from petalfoil.units.writing import format_percent, format_quantity
 
 Scalars = Mapping[str, float | int | bool | str]
@@ -17,6 +18,11 @@ MAX_STRESS = 2e9
 NODES_APART = 0.1
 """Difference of the force from that with contacts at nodes past which a finer grid is to tell that both belong to one
 equilibrium: in most packs it is below 1 %, in stiff clamped ones some per cent."""
+
+FEWEST_CELLS = 7.0
+"""Cells along which neighbours overlap from which contacts near a root are points (`line_signs.freed_near_ends`). The
+rig's damping at 1 um is 41 % too large on 16 cells per pitch (4), 20 % too small on 24 (6), 1 and 10 % too large on 32
+(8)."""
 
 MAX_KNUDSEN = 0.1
 """Mean free path over film thickness above which first-order slip no longer holds (Burgdorfer 1959)."""
@@ -84,12 +90,28 @@ def of_answer(case: Case, scalars: Scalars) -> Iterator[str]:
             "and in modes that are lost with more harmonics: where contacts stick and slip in turn damping is off by "
             'up to a quarter; compare `coefficients --amplitude` with model.kind = "2d"'
         )
+    yield from _short_lines(case, scalars)
     apart = number(scalars, "nodal_force_difference")
     if apart > NODES_APART:
         yield (
             f"nodal_force_difference: the force is {format_percent(apart)} from that with contacts at nodes of the "
             "same grid, which in stiff packs miss it; that the equilibrium is the same one is known to so much only: "
             "refine model.cells_per_pitch until it falls"
+        )
+
+
+def _short_lines(case: Case, scalars: Scalars) -> Iterator[str]:
+    """Yield where contacts of petals that rub, 3-D, are nodes for want of cells along which neighbours overlap."""
+    pack = case.pack
+    if "friction_harmonics" not in scalars or case.model.kind is not ModelKind.THREE_D or pack is None:
+        return
+    cells = (pack.overlap - 1.0) * case.cells_per_pitch
+    if cells < FEWEST_CELLS:
+        needed = math.ceil(FEWEST_CELLS / (pack.overlap - 1.0))
+        yield (
+            f"model.cells_per_pitch: {case.cells_per_pitch} leave {cells:.2g} cells where neighbouring petals overlap, "
+            "too few for contacts near a root to lie between nodes: damping of petals that rub may be off by half at "
+            f"small amplitudes; give at least {needed}"
         )
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from petalfoil.equilibrium.element_contacts import over_normal_forces
 from petalfoil.equilibrium.heated import stiffness
 from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError, stepped
-from petalfoil.equilibrium.line_signs import parted, revised
+from petalfoil.equilibrium.line_signs import freed_near_ends, parted, revised
 from petalfoil.equilibrium.linear_response import LinearResponse
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
@@ -81,13 +81,17 @@ def between_nodes(solution: Solution) -> LineContacts | None:
         return None
     if not constrain(problem.G, solution.active).determinate:
         return None
-    try:
-        found = settled(start_at(solution))
-    except NoLinesError as failure:
-        run.note("contact lines", outcome=str(failure))
-        return None
-    run.note("contact lines", residual=found.residual, points=len(found.reaction), nodes=int(found.held.sum()))
-    return found
+    start = start_at(solution)
+    freer = freed_near_ends(start)
+    for begin in [start] if freer is start else [freer, start]:
+        try:
+            found = settled(begin)
+        except NoLinesError as failure:
+            run.note("contact lines", outcome=str(failure))
+            continue
+        run.note("contact lines", residual=found.residual, points=len(found.reaction), nodes=int(found.held.sum()))
+        return found
+    return None
 
 
 def start_at(solution: Solution) -> LineContacts:

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.line_contacts import LineContacts
-from petalfoil.physics.contact_points import MARGIN
+from petalfoil.physics.contact_points import MARGIN, POINT_NODES
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 
+Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
@@ -112,13 +113,43 @@ def freed(state: LineContacts) -> LineContacts:
         single = held[:, 1:-1] & ~held[:, :-2] & ~held[:, 2:] & ~near[lines.number]
         single[:, :MARGIN] = single[:, len(lines.phi) - MARGIN :] = False
         alone[lines.number[single]] = True
-    if not alone.any():
+    return with_points_at(state, alone, reactions_at_nodes(state), alone)
+
+
+def freed_near_ends(state: LineContacts) -> LineContacts:
+    """With points in place of short runs of nodes beside the ends of their lines, where a petal lies near a root.
+
+    Curvatures of the nodal gap cannot be read there on both sides, so that (K8) does not place these points: they begin
+    at the node with the larger reaction, and Newton's method moves them.
+    """
+    carried = reactions_at_nodes(state)
+    runs, begins, pushes = np.zeros_like(state.held), np.zeros_like(state.held), carried.copy()
+    for lines in state.points.lines:
+        last = len(lines.phi) - 1
+        for end, ahead in ((0, 1), (last, -1)) if last + 1 >= 2 * (MARGIN + POINT_NODES) else ():
+            at = lines.number[:, [end + k * ahead for k in range(MARGIN + POINT_NODES)]]
+            held = state.held[at]
+            pairs = at[held[:, 1] & ~held[:, 0] & ~(held[:, 2] & held[:, 3]), 1:3]
+            runs[pairs[state.held[pairs]]] = True
+            heavier = pairs[np.arange(len(pairs)), np.argmax(carried[pairs], axis=1)]
+            begins[heavier], pushes[heavier] = True, carried[pairs].sum(axis=1)
+    return with_points_at(state, begins, pushes, runs)
+
+
+def reactions_at_nodes(state: LineContacts) -> Array:
+    """Reactions of the contacts at nodes, (m,)."""
+    out = np.zeros(len(state.held))
+    out[state.held] = state.held_reaction
+    return out
+
+
+def with_points_at(state: LineContacts, begins: Mask, reaction: Array, runs: Mask) -> LineContacts:
+    """The state with points at the nodes `begins` in place of contacts at the nodes `runs`; reactions at all (m,)."""
+    if not begins.any():
         return state
-    carried = np.zeros(len(alone))
-    carried[state.held] = state.held_reaction
-    left = without(state, alone[state.held], np.zeros(len(state.reaction), dtype=np.bool_))
-    points = left.points.with_nodes(np.flatnonzero(alone))
-    fresh = carried[points.nearest[len(left.reaction) :]]
+    left = without(state, runs[state.held], np.zeros(len(state.reaction), dtype=np.bool_))
+    points = left.points.with_nodes(np.flatnonzero(begins))
+    fresh = reaction[points.nearest[len(left.reaction) :]]
     return replace(left, points=points, reaction=np.concatenate([left.reaction, fresh]))
 
 

@@ -175,6 +175,11 @@ EVERY: dict[str, tuple[str, Callable[[], Told], Callable[[], Told]]] = {
         lambda: of(scalars={"friction_harmonics": 1}),
         lambda: of(scalars={"friction_harmonics": 4}),
     ),
+    "_short_lines model.cells_per_pitch": (
+        "model.cells_per_pitch",
+        lambda: of("rig", {"friction_harmonics": 4}, **{"model.kind": "3d", "model.cells_per_pitch": 26}),
+        lambda: of("rig", {"friction_harmonics": 4}, **{"model.kind": "3d", "model.cells_per_pitch": 29}),
+    ),
     "of_answer nodal_force_difference": (
         "nodal_force_difference",
         lambda: of(scalars={"nodal_force_difference": 0.11}),
