@@ -26,7 +26,7 @@ from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import ON_LINES
 from petalfoil.equilibrium.travelling_contacts import TravellingContacts, travelling_contacts
 from petalfoil.physics.line_points import LinePoints
-from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, positive_step, scaled_residual
+from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, positive_step
 from petalfoil.system.coupled import CoupledProblem, Linearization
 from petalfoil.system.loaded import load_scale
 
@@ -87,31 +87,34 @@ class LineContacts:
         return self.problem.gaps(self.x)
 
     @cached_property
+    def along(self) -> Array:
+        """`p`, `p'` and `p''` at the points, (3, k)."""
+        return self.points.along(self.gaps)
+
+    @cached_property
     def curvature(self) -> Array:
         """`p''` at the points, (k,)."""
-        out: Array = self.points.curvature @ self.gaps
-        return out
+        return np.asarray(self.along[2])
 
     @property
     def doubled(self) -> Mask:
         """Points at which the gap does not curve upward, (k,)."""
         return np.asarray(self.curvature <= 0.0)
 
-    @cached_property
+    @property
     def slopes(self) -> Array:
         """`p'` at the points, (k,)."""
-        out: Array = self.points.slope @ self.gaps
-        return out
+        return np.asarray(self.along[1])
 
     @cached_property
     def closed(self) -> Array:
         """Gaps that are to vanish: at held nodes, then at points, (j + k,)."""
-        return np.concatenate([self.gaps[self.held], self.points.value @ self.gaps])
+        return np.concatenate([self.gaps[self.held], self.along[0]])
 
     @cached_property
     def lam(self) -> Array:
         """Reactions at the nodes that do the same work, (m,)."""
-        lam: Array = self.points.value.T @ self.reaction
+        lam = self.points.pushes(self.reaction)
         lam[self.held] += self.held_reaction
         return lam
 
@@ -148,7 +151,7 @@ class LineContacts:
     @cached_property
     def residual(self) -> float:
         """Largest scaled residual of (C11), (C12) and the held gaps; a slope counts over a cell."""
-        rows = scaled_residual(self.linearized, self.problem.G.T @ self.lam)
+        rows = float(np.max(np.abs(self.rows) / self.linearized.row_scale, initial=0.0))
         lengths = np.concatenate([self.closed, self.slopes * self.points.cell_length])
         return max(rows, float(np.max(np.abs(lengths), initial=0.0)))
 

@@ -16,7 +16,7 @@ The reaction of a point is shared by the nodes with the weights that (K15) gives
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 
 from petalfoil.mesh import hermite
 from petalfoil.physics.contact import GapLines
+from petalfoil.sparsity import add_up
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -55,6 +56,34 @@ class LinePoints:
     phi: Array
 
     @cached_property
+    def stencil(self) -> tuple[Index, Array]:
+        """Gaps that each point reads, (k, 8), and their weights in (K15) and its two derivatives by the angle, (3, k, 8).
+
+        They are those at the two nodes beside the point, then those that the slopes there read; some of them twice.
+        """
+        gaps, weights = np.zeros((len(self.phi), 8), dtype=np.intp), np.zeros((3, len(self.phi), 8))
+        for (points, cell, t), lines in zip(self._cells, self.lines, strict=True):
+            length, ahead, (node, weight) = np.diff(lines.phi)[cell][:, None], cell + 1, lines.slope_weights
+            read = np.concatenate([np.stack([cell, ahead], axis=1), node[cell], node[ahead]], axis=1)
+            gaps[points] = lines.number[self.line[points][:, None], read]
+            for order in range(3):
+                basis = hermite.basis(t, order) * length ** -float(order)
+                basis[:, 1::2] *= length
+                slopes = basis[:, [1]] * weight[cell], basis[:, [3]] * weight[ahead]
+                weights[order, points] = np.concatenate([basis[:, ::2], *slopes], axis=1)
+        return gaps, weights
+
+    def along(self, gaps: Array) -> Array:
+        """Gap [1], slope [1/rad] and second derivative [1/rad^2] at the points, from the gaps at all nodes; (3, k)."""
+        read, weights = self.stencil
+        return np.asarray(np.einsum("dki,ki->dk", weights, gaps[read]))
+
+    def pushes(self, reaction: Array) -> Array:
+        """Reactions at the nodes that do the same work as those of the points (k,), (m,)."""
+        read, weights = self.stencil
+        return add_up(read.ravel(), (weights[0] * reaction[:, None]).ravel(), self.gaps)
+
+    @cached_property
     def value(self) -> sp.csr_array:
         """Weights of the gaps at the nodes in the gap at the points, (k, m) [1]."""
         return self._derivative(0)
@@ -72,11 +101,10 @@ class LinePoints:
     @cached_property
     def shares(self) -> sp.csr_array:
         """Shares of the two nodes beside each point that keep a reaction's place, (k, m): none is negative."""
-
-        def of(lines: GapLines, cell: Index, t: Array) -> tuple[Index, Array]:
-            return np.stack([cell, cell + 1], axis=1), np.stack([1.0 - t, t], axis=1)
-
-        return self._over_gaps(of)
+        t = np.zeros(len(self.phi))
+        for points, _, place in self._cells:
+            t[points] = place
+        return self._over_gaps(self.beside, np.stack([1.0 - t, t], axis=1))
 
     @cached_property
     def cell_length(self) -> Array:
@@ -144,27 +172,11 @@ class LinePoints:
         return tuple(out)
 
     def _derivative(self, order: int) -> sp.csr_array:
-        """Weights of the gaps in a derivative of (K15) by the angle."""
+        """Weights of the gaps in a derivative of (K15) by the angle, (k, m)."""
+        read, weights = self.stencil
+        return self._over_gaps(read, weights[order])
 
-        def of(lines: GapLines, cell: Index, t: Array) -> tuple[Index, Array]:
-            length = np.diff(lines.phi)[cell]
-            basis = hermite.basis(t, order) * length[:, None] ** -float(order)
-            basis[:, 1::2] *= length[:, None]
-            node, weight = lines.slope_weights
-            ahead = cell + 1
-            columns = [np.stack([cell, ahead], axis=1), node[cell], node[ahead]]
-            values = [basis[:, ::2], basis[:, [1]] * weight[cell], basis[:, [3]] * weight[ahead]]
-            return np.concatenate(columns, axis=1), np.concatenate(values, axis=1)
-
-        return self._over_gaps(of)
-
-    def _over_gaps(self, of: Callable[[GapLines, Index, Array], tuple[Index, Array]]) -> sp.csr_array:
-        """Rows over all gaps from nodes of a line and their weights, (k, m)."""
-        rows, columns, values = [np.zeros(0, dtype=np.intp)], [np.zeros(0, dtype=np.intp)], [np.zeros(0)]
-        for (points, cell, t), lines in zip(self._cells, self.lines, strict=True):
-            node, weight = of(lines, cell, t)
-            rows.append(np.repeat(points, node.shape[1]))
-            columns.append(lines.number[self.line[points][:, None], node].ravel())
-            values.append(weight.ravel())
-        where = np.concatenate(rows), np.concatenate(columns)
-        return sp.csr_array((np.concatenate(values), where), shape=(len(self.phi), self.gaps))
+    def _over_gaps(self, read: Index, weights: Array) -> sp.csr_array:
+        """Rows over all gaps from those that each point reads and their weights, (k, m)."""
+        rows = np.repeat(np.arange(len(self.phi)), read.shape[1])
+        return sp.csr_array((weights.ravel(), (rows, read.ravel())), shape=(len(self.phi), self.gaps))
