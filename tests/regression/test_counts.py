@@ -155,21 +155,21 @@ def test_a_threshold_speed_is_followed() -> None:
 
 @pytest.mark.slow
 def test_contact_lines_lead_along_a_curve_in_3d() -> None:
-    """Median 2 and at most 4 when this was written; with contacts at nodes found first 6 and 16."""
+    """Median 1 and at most 2 when this was written; 2 and 4 with a tangent a set, 6 and 16 from contacts at nodes."""
     bearing = case("paper_n8_spatial", **{"model.cells_per_pitch": 24, "model.axial_cells": 16})
     records = list(curve.records(bearing, np.linspace(0.0, 280e-6, 15)))
     assert all(record.converged for record in records)
     counts = [int(record.scalars["factorizations"]) for record in records[1:]]
-    assert np.median(counts) <= 3
-    assert max(counts) <= 8
+    assert np.median(counts) <= 1.5
+    assert max(counts) <= 5
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("down", [0.0, 200e-6])
 def test_a_position_in_3d_from_nothing(down: float) -> None:
-    """On the default grid 3 and 6 when this was written, 22 of its own before it began on a coarse one."""
+    """On the default grid 2 and 3 when this was written; 3 and 6 with a tangent for each set, 22 before that."""
     told = solve.record(case("paper_n8_spatial", **{"operation.eccentricity": (0.0, -down)})).scalars
     assert told["converged"]
     assert told["pack_iterations"] == 0
-    assert int(told["factorizations"]) <= 10  # type: ignore[call-overload]
+    assert int(told["factorizations"]) <= 5  # type: ignore[call-overload]
     assert 0 < int(told["coarse_factorizations"]) <= 40  # type: ignore[call-overload]

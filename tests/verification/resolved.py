@@ -12,6 +12,7 @@ from petalfoil.case import Case
 from petalfoil.case.parameters import parameters_of
 from petalfoil.equilibrium.element_rates import under
 from petalfoil.equilibrium.line_contacts import LineContacts, stepped
+from petalfoil.equilibrium.line_tangent import LineTangent
 from petalfoil.equilibrium.parameter_response import Equations
 from petalfoil.equilibrium.small_motion import ElementEquilibrium
 from petalfoil.equilibrium.solution import Solution
@@ -74,8 +75,9 @@ def on_lines(derivatives: DerivativesOf, first: LineContacts, there: Equations) 
     """The same in 3-D with contact lines, whose points follow."""
     response, state = derivatives.smooth.held_lines, first.under(there.problem, there.load)
     assert response is not None
+    tangent = LineTangent.of(first, response)
     for count in range(STEPS):
-        before, state = state, stepped(state, response)
+        before, state = state, stepped(state, tangent)
         if np.max(np.abs(state.x - before.x)) < SMALL * np.max(np.abs(state.x)) and count + 1 >= AT_LEAST:
             return state
     raise AssertionError("the second equilibrium was not reached")

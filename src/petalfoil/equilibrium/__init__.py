@@ -38,6 +38,9 @@
 `element_contacts.py`      which of the two is near an equilibrium with contacts at nodes
 `element_rates.py`         how such an equilibrium follows a parameter of its case
 `line_contacts.py`         3-D equilibria whose contact lines cross stations between nodes: equations, Newton's step
+`line_tangent.py`          the factorised tangent of these, as it serves later states
+`line_exchange.py`         what has changed in their contacts since it was factorised
+`line_chords.py`           steps with one factor
 `line_sets.py`             these found from active nodes
 `line_signs.py`            which contacts they have: corrected by signs
 `followed_lines.py`        these followed to a neighbouring position, speed or load

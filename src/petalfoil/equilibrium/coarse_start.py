@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from petalfoil.case import Case
 from petalfoil.equilibrium.branches import STRETCH, longest_contact, off_path
+from petalfoil.equilibrium.line_chords import by_chords, by_tangent
 from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
-from petalfoil.equilibrium.line_sets import by_tangent, with_lines
+from petalfoil.equilibrium.line_sets import with_lines
 from petalfoil.equilibrium.line_signs import corrected_early, freed, revised
 from petalfoil.equilibrium.nodal_state import sampled_lines
 from petalfoil.equilibrium.prolonged_lines import prolonged
@@ -41,6 +42,9 @@ WORTH = 3.0
 TANGENTS = 10
 """Most tangents on the fine grid: two to seven serve."""
 
+SETS = 4
+"""Most sets of contacts that one factor serves."""
+
 FREES = 3
 """Tangents after which points at which the gap does not curve upward become contacts at nodes, and no other way."""
 
@@ -59,7 +63,8 @@ def by_coarse_grid(problem: CoupledProblem, load: Array | None) -> Solution | No
         return None
     here = problem if load is None else problem.at(displacement=known.lines.problem.displacement)
     try:
-        found = settled_early(freed(prolonged(known.lines, here, load)))
+        start = freed(prolonged(known.lines, here, load))
+        found = settled_early(replace(start, points=start.points.lowest(start.gaps)))
     except NoLinesError as failure:
         current_run().note("contact lines", outcome=str(failure))
         return None
@@ -132,11 +137,13 @@ def settled_early(state: LineContacts) -> LineContacts:
         raise NoLinesError("the film closes")
     for count in range(TANGENTS):
         state = by_tangent(state)
-        if not state.balanced:
-            state = corrected_early(state, frees=count < FREES)
-            continue
-        other = revised(state)
-        if other is None:
-            return state
-        state = other
+        for _ in range(SETS):
+            other = revised(state) if state.balanced else corrected_early(state, frees=count < FREES)
+            if other is None:
+                return state
+            if other is state:
+                break
+            state = by_chords(other)
+            if state is other:
+                break
     raise NoLinesError(f"the residual is {state.residual:.1e} after {TANGENTS} tangents")

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from petalfoil.equilibrium.continuation import FAR_FOLLOWED, on_the_way
 from petalfoil.equilibrium.followed_points import NEAR
-from petalfoil.equilibrium.line_contacts import LineContacts, LineResiduals, NoLinesError, changed, correction
+from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError, changed
 from petalfoil.equilibrium.line_sets import settled
 from petalfoil.equilibrium.line_signs import bearing_alone, freed
+from petalfoil.equilibrium.line_tangent import LineResiduals, LineTangent
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.system.coupled import CoupledProblem
@@ -84,13 +85,14 @@ def foretold(near: LineContacts, problem: CoupledProblem, load: Array | None) ->
     NoLinesError
         The film closes on the way, or the contacts do not determine the petals.
     """
+    tangent = near.tangent and near.tangent.on(near)
     try:
-        tangent = near.tangent or near.motion.growing(0.0, current_run().film_solver)
+        tangent = tangent or LineTangent.of(near, near.motion.growing(0.0, current_run().film_solver))
     except SingularMatrixError:
         raise NoLinesError("the contacts do not determine the petals") from None
     start = near.under(problem.at(displacement=near.problem.displacement), load)
     way = None if load is not None else problem.displacement - start.problem.displacement
-    change = correction(tangent, LineResiduals.of(start), start.bending, way)
+    change = tangent.correction(start, LineResiduals.of(start), way)
     ahead = changed(start, tangent, change, FARTHEST_TRAVEL)
     return ahead if load is not None else replace(ahead, problem=problem)
 

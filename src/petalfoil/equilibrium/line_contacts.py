@@ -21,7 +21,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.linear_response import LinearResponse, SmallMotion
+from petalfoil.equilibrium.line_tangent import LineChange, LineResiduals, LineTangent
+from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import ON_LINES
 from petalfoil.equilibrium.travelling_contacts import TravellingContacts, travelling_contacts
@@ -63,8 +64,8 @@ class LineContacts:
         Their reactions.
     load : (n_position,) array or None
         Load over the unit of force; None at a fixed position.
-    tangent : LinearResponse or None
-        The last tangent that led here, with the same contacts; None of others.
+    tangent : LineTangent or None
+        The last tangent that led here; it may be of other contacts. None of states that none has led to.
     """
 
     problem: CoupledProblem
@@ -74,7 +75,7 @@ class LineContacts:
     held: Mask
     held_reaction: Array
     load: Array | None
-    tangent: LinearResponse | None = field(default=None, repr=False, compare=False)
+    tangent: LineTangent | None = field(default=None, repr=False, compare=False)
 
     @cached_property
     def linearized(self) -> Linearization:
@@ -182,7 +183,8 @@ class LineContacts:
     def bending(self) -> Array:
         """What divides slopes in a step: `p''`, its size where the gap curves downward, no less than a floor; (k,)."""
         size = np.abs(self.curvature)
-        return np.maximum(size, LEAST_CURVATURE * float(np.median(size)) if len(size) else 0.0)
+        middle = np.partition(size, len(size) // 2)[len(size) // 2] if len(size) else 0.0
+        return np.maximum(size, LEAST_CURVATURE * middle)
 
     @cached_property
     def travel_stiffness(self) -> Array:
@@ -229,78 +231,31 @@ class LineContacts:
             raise ValueError("a state at a fixed position carries no load")
         problem = self.problem.at(bearing_number=self.problem.bearing_number * (1.0 + faster))
         there = replace(self, problem=problem, load=self.load + more)
-        return stepped(there, self.motion.growing(0.0, current_run().probe_solver))
+        return stepped(there, LineTangent.of(self, self.motion.growing(0.0, current_run().probe_solver)))
 
 
 class NoLinesError(ArithmeticError):
     """No equilibrium with contact points between nodes was found; it says why."""
 
 
-@dataclass(frozen=True)
-class LineResiduals:
-    """What is left of the equations at a state, or the rates of it by a parameter.
-
-    Attributes
-    ----------
-    rows : (n,) array
-        Of (C11).
-    closed, slopes : (j + k,) array, (k,) array
-        Of (C12): gaps at held nodes and points, slopes at points.
-    force : (n_position,) array
-        Of the journal; zeros at a fixed position.
-    """
-
-    rows: Array
-    closed: Array
-    slopes: Array
-    force: Array
-
-    @classmethod
-    def of(cls, state: LineContacts) -> LineResiduals:
-        """Those of a state."""
-        return cls(state.rows, state.closed, state.slopes, state.unbalanced)
-
-
-@dataclass(frozen=True)
-class LineChange:
-    """Changes of the unknowns (n,), reactions at nodes and points (j + k,), position (n_position,), angles (k,)."""
-
-    x: Array
-    reaction: Array
-    displacement: Array
-    phi: Array
-
-
-def correction(response: LinearResponse, left: LineResiduals, bending: Array, way: Array | None) -> LineChange:
-    """The change that takes away what is `left`, by a tangent (E12); `bending` (k,) divides slopes.
-
-    The journal goes a given `way` (n_position,), as in (C14); where that is None, its position follows under the load.
-    """
-    tangent, contacts = response.tangent, response.motion.contacts
-    travel = contacts.travel_stiffness * left.slopes
-    rows, move = left.rows + contacts.slope_by_x.T @ travel, way
-    if move is None:
-        dx, dlam = tangent.respond(rows, left.closed)
-        force = left.force + tangent.border.rows(dx, dlam) - contacts.slope_by_e.T @ travel
-        move = np.linalg.solve(-response.force_gradient, force)
-    dx, dlam = tangent.respond(rows + tangent.forcing @ move, left.closed + contacts.gap_by_e @ move)
-    turned = left.slopes + contacts.slope_by_x @ dx + contacts.slope_by_e @ move
-    return LineChange(dx, dlam, move, -turned / bending)
-
-
-def stepped(state: LineContacts, response: LinearResponse) -> LineContacts:
-    """The state after a Newton step with a tangent of its own or of a state nearby.
+def stepped(state: LineContacts, tangent: LineTangent) -> LineContacts:
+    """The state after a Newton step with a tangent that serves its contacts.
 
     Raises
     ------
     NoLinesError
         The film has closed, or the step is no number.
     """
+    return changed(state, tangent, step_of(state, tangent), TRUST)
+
+
+def step_of(state: LineContacts, tangent: LineTangent) -> LineChange:
+    """The Newton step from a state, (C11) and (C12)."""
     way = np.zeros_like(state.force) if state.load is None else None
-    return changed(state, response, correction(response, LineResiduals.of(state), state.bending, way), TRUST)
+    return tangent.correction(state, LineResiduals.of(state), way)
 
 
-def changed(state: LineContacts, response: LinearResponse, change: LineChange, trust: float) -> LineContacts:
+def changed(state: LineContacts, tangent: LineTangent, change: LineChange, trust: float) -> LineContacts:
     """The state after a change by a tangent, shortened where pressures would vanish.
 
     Points travel `trust` cells at most.
@@ -313,7 +268,8 @@ def changed(state: LineContacts, response: LinearResponse, change: LineChange, t
     farthest = trust * state.points.cell_length
     length = positive_step(state.problem, state.x, change.x)
     there = replace(change, phi=np.clip(length * change.phi, -farthest, farthest) / length)
-    ahead = replace(state.moved(there, length, state.problem), tangent=response)
+    moved = state.moved(there, length, state.problem)
+    ahead = replace(moved, points=replace(moved.points, before=tangent.numbers), tangent=tangent)
     if not np.all(np.isfinite(ahead.x)) or not ahead.problem.admits(ahead.x):
         raise NoLinesError("the film closes in a Newton step")
     return ahead

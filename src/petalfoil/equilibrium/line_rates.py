@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.element_rates import falling
-from petalfoil.equilibrium.line_contacts import LineChange, LineContacts, LineResiduals, correction
+from petalfoil.equilibrium.line_contacts import LineContacts
+from petalfoil.equilibrium.line_tangent import LineChange, LineResiduals, LineTangent
 from petalfoil.equilibrium.linear_response import LinearResponse
 from petalfoil.equilibrium.parameter_response import Equations
 from petalfoil.equilibrium.run_context import current_run
@@ -105,7 +106,8 @@ def line_response(found: LineContacts) -> LinearResponse | None:
 def line_rate(found: LineContacts, response: LinearResponse, rates: LineRates) -> LineRate:
     """The derivative from the rates of the equations at a fixed state; one solve, two under a load."""
     under_load = found.load is not None
-    change = correction(response, rates.left, found.bending, None if under_load else np.zeros_like(rates.displacement))
+    way = None if under_load else np.zeros_like(rates.displacement)
+    change = LineTangent.of(found, response).correction(found, rates.left, way)
     if not under_load:
         change = replace(change, displacement=rates.displacement)
     problem = found.problem

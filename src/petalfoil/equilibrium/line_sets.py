@@ -13,15 +13,14 @@ from numpy.typing import NDArray
 
 from petalfoil.equilibrium.element_contacts import over_normal_forces
 from petalfoil.equilibrium.heated import stiffness
-from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError, stepped
+from petalfoil.equilibrium.line_chords import by_chords, by_tangent
+from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
 from petalfoil.equilibrium.line_signs import freed_near_ends, parted, revised
-from petalfoil.equilibrium.linear_response import LinearResponse
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.travelling_contacts import placed_points
 from petalfoil.physics.line_points import LinePoints
 from petalfoil.solvers.constraints import constrain
-from petalfoil.solvers.sparse_lu import SingularMatrixError
 
 Array = NDArray[np.float64]
 
@@ -30,12 +29,6 @@ STEPS = 10
 
 PATIENCE = 2
 """Tangents after which a point at which the gap still does not curve upward is two contacts."""
-
-CHORDS = 6
-"""Most steps with one tangent: a step costs a solve, a fiftieth of another factorisation."""
-
-GAIN = 0.3
-"""Factor that a further step with one tangent must take off the residual."""
 
 REVISIONS = 16
 """Most sets of contacts: one or two serve in most packs, seven in ten petals at 280 µm, where ends of stretches recede
@@ -84,13 +77,14 @@ def between_nodes(solution: Solution) -> LineContacts | None:
     start = start_at(solution)
     freer = freed_near_ends(start)
     for begin in [start] if freer is start else [freer, start]:
-        try:
-            found = settled(begin)
-        except NoLinesError as failure:
-            run.note("contact lines", outcome=str(failure))
-            continue
-        run.note("contact lines", residual=found.residual, points=len(found.reaction), nodes=int(found.held.sum()))
-        return found
+        for plain in (False, True):
+            try:
+                found = settled(begin, plain=plain)
+            except NoLinesError as failure:
+                run.note("contact lines", outcome=str(failure))
+                continue
+            run.note("contact lines", residual=found.residual, points=len(found.reaction), nodes=int(found.held.sum()))
+            return found
     return None
 
 
@@ -113,8 +107,10 @@ def start_at(solution: Solution) -> LineContacts:
     return LineContacts(problem, solution.x, points, reaction, held, solution.lam[held], solution.load)
 
 
-def settled(state: LineContacts, steps: int = STEPS) -> LineContacts:
+def settled(state: LineContacts, steps: int = STEPS, *, plain: bool = False) -> LineContacts:
     """Newton's method of as many `steps` at most, and other contacts as long as signs ask for them.
+
+    With `plain` steps each set of contacts has tangents of its own: where points creep, that leads elsewhere.
 
     Raises
     ------
@@ -122,7 +118,7 @@ def settled(state: LineContacts, steps: int = STEPS) -> LineContacts:
         Newton's method does not converge, or contacts keep changing.
     """
     for _ in range(REVISIONS):
-        state = newton(state, steps)
+        state = newton(state, steps, plain=plain)
         other = revised(state) if state.balanced else parted(state)
         if other is None:
             return state
@@ -130,7 +126,7 @@ def settled(state: LineContacts, steps: int = STEPS) -> LineContacts:
     raise NoLinesError(f"contacts still change after {REVISIONS} sets of them")
 
 
-def newton(state: LineContacts, steps: int) -> LineContacts:
+def newton(state: LineContacts, steps: int, *, plain: bool = False) -> LineContacts:
     """Newton's method with the contacts as they are; it stops early where a point is two contacts (`doubled`).
 
     Raises
@@ -140,41 +136,11 @@ def newton(state: LineContacts, steps: int) -> LineContacts:
     """
     if not state.problem.admits(state.x):
         raise NoLinesError("the film closes")
+    state = state if plain else by_chords(state)
     for count in range(steps):
         if state.balanced or (count >= PATIENCE and np.any(state.doubled)):
             return state
-        state = by_tangent(state)
+        state = by_tangent(state, plain=plain)
         if state.balanced:
             return state
     raise NoLinesError(f"the residual is {state.residual:.1e} after {steps} tangents")
-
-
-def by_tangent(state: LineContacts) -> LineContacts:
-    """The state after a step with its own tangent, and further ones as long as they gain; one factorisation.
-
-    Raises
-    ------
-    NoLinesError
-        The film has closed, or the contacts do not determine the petals.
-    """
-    if not state.contacts.constraints.determinate:
-        raise NoLinesError("contacts repeat each other")
-    try:
-        response = state.motion.growing(0.0, current_run().film_solver)
-    except SingularMatrixError:
-        raise NoLinesError("the contacts do not determine the petals") from None
-    after = chords(stepped(state, response), response)
-    current_run().note("contact lines", left=after.residual)
-    return after
-
-
-def chords(state: LineContacts, response: LinearResponse) -> LineContacts:
-    """The state after further steps with a tangent, as long as each takes `GAIN` off the residual."""
-    for _ in range(CHORDS):
-        if state.balanced:
-            break
-        further = stepped(state, response)
-        if not further.residual <= GAIN * state.residual:
-            break
-        state = further
-    return state

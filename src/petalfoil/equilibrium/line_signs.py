@@ -36,7 +36,7 @@ def parted(state: LineContacts) -> LineContacts:
     shared = state.points.shares.T @ np.where(state.doubled, state.reaction, 0.0)
     shared[state.held] += state.held_reaction
     points, reaction = state.points.kept(~state.doubled), state.reaction[~state.doubled]
-    return replace(state, points=points, reaction=reaction, held=held, held_reaction=shared[held], tangent=None)
+    return replace(state, points=points, reaction=reaction, held=held, held_reaction=shared[held])
 
 
 def revised(state: LineContacts) -> LineContacts | None:
@@ -81,7 +81,7 @@ def gaining(state: LineContacts, fresh: Index) -> LineContacts:
     held[fresh[at_ends]] = True
     reaction = np.concatenate([state.reaction, np.zeros(np.count_nonzero(~at_ends))])
     points = state.points.with_nodes(fresh[~at_ends])
-    return replace(state, points=points, reaction=reaction, held=held, held_reaction=carried[held], tangent=None)
+    return replace(state, points=points, reaction=reaction, held=held, held_reaction=carried[held])
 
 
 def bearing_alone(state: LineContacts) -> LineContacts:
@@ -100,7 +100,6 @@ def without(state: LineContacts, nodes: Mask, points: Mask) -> LineContacts:
         reaction=state.reaction[~points],
         held=held,
         held_reaction=state.held_reaction[~nodes],
-        tangent=None,
     )
 
 

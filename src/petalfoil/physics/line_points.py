@@ -33,6 +33,18 @@ Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
 
+EVERY_DERIVATIVE = np.concatenate(
+    [np.pad(powers, ((0, 0), (0, 4 - powers.shape[1]))) for powers in hermite.DERIVATIVES]
+).T
+"""Columns hold the powers of `t` in `H_k`, then those in their first and second derivatives."""
+
+ORDERS = np.arange(3.0)[:, None]
+"""Orders of these derivatives."""
+
+DESCENTS, FARTHEST_DESCENT = 3, 0.5
+"""Steps toward the minimum of a gap, and the farthest of each in cells."""
+
+
 @dataclass(frozen=True)
 class LinePoints:
     """Contact points on gap lines.
@@ -47,6 +59,8 @@ class LinePoints:
         Kind of each point and its line among those of the kind.
     phi : (k,) array
         Local angle of each point [rad].
+    before : (k,) int array or None
+        Number of each among the points of an earlier state, -1 of those added since; None where there is no such state.
     """
 
     lines: tuple[GapLines, ...]
@@ -54,23 +68,26 @@ class LinePoints:
     kind: Index
     line: Index
     phi: Array
+    before: Index | None = None
 
     @cached_property
     def stencil(self) -> tuple[Index, Array]:
-        """Gaps that each point reads, (k, 8), and their weights in (K15) and its two derivatives by the angle, (3, k, 8).
+        """Gaps that each point reads, (k, 8), and their weights in (K15) and two derivatives by the angle, (3, k, 8).
 
         They are those at the two nodes beside the point, then those that the slopes there read; some of them twice.
         """
         gaps, weights = np.zeros((len(self.phi), 8), dtype=np.intp), np.zeros((3, len(self.phi), 8))
         for (points, cell, t), lines in zip(self._cells, self.lines, strict=True):
-            length, ahead, (node, weight) = np.diff(lines.phi)[cell][:, None], cell + 1, lines.slope_weights
-            read = np.concatenate([np.stack([cell, ahead], axis=1), node[cell], node[ahead]], axis=1)
+            if not len(points):
+                continue
+            length, (node, weight) = np.diff(lines.phi)[cell], lines.slope_weights
+            ends = cell[:, None] + np.arange(2)
+            read = np.concatenate([ends, node[cell], node[ends[:, 1]]], axis=1)
             gaps[points] = lines.number[self.line[points][:, None], read]
-            for order in range(3):
-                basis = hermite.basis(t, order) * length ** -float(order)
-                basis[:, 1::2] *= length
-                slopes = basis[:, [1]] * weight[cell], basis[:, [3]] * weight[ahead]
-                weights[order, points] = np.concatenate([basis[:, ::2], *slopes], axis=1)
+            basis = (hermite.powers(t) @ EVERY_DERIVATIVE).reshape(-1, 3, 4) / length[:, None, None] ** ORDERS
+            slopes = weight[ends] * length[:, None, None]
+            weights[:, points, :2] = basis[:, :, ::2].transpose(1, 0, 2)
+            weights[:, points, 2:] = np.einsum("kds,ksi->dksi", basis[:, :, 1::2], slopes).reshape(3, -1, 6)
         return gaps, weights
 
     def along(self, gaps: Array) -> Array:
@@ -114,6 +131,11 @@ class LinePoints:
             out[points] = np.diff(lines.phi)[cell]
         return out
 
+    @property
+    def mean_cell(self) -> float:
+        """Mean length of the cells of all lines [rad]: the same wherever the points are."""
+        return float(np.mean([(lines.phi[-1] - lines.phi[0]) / (len(lines.phi) - 1) for lines in self.lines]))
+
     @cached_property
     def beside(self) -> Index:
         """Numbers of the gaps at the two nodes beside each point, (k, 2)."""
@@ -144,9 +166,21 @@ class LinePoints:
             phi[mine] = np.clip(phi[mine], lines.phi[0], lines.phi[-1])
         return replace(self, phi=phi)
 
+    def lowest(self, gaps: Array) -> LinePoints:
+        """The points where the gap near them is least, by a few steps of Newton's method from the gaps at all nodes."""
+        points = self
+        for _ in range(DESCENTS):
+            _, slope, curvature = points.along(gaps)
+            upward = curvature > 0.0
+            farthest = FARTHEST_DESCENT * points.cell_length
+            step = np.where(upward, -slope / np.where(upward, curvature, 1.0), -np.sign(slope) * farthest)
+            points = points.moved(np.clip(step, -farthest, farthest))
+        return points
+
     def kept(self, which: Mask) -> LinePoints:
         """Some of them."""
-        return replace(self, kind=self.kind[which], line=self.line[which], phi=self.phi[which])
+        before = None if self.before is None else self.before[which]
+        return replace(self, kind=self.kind[which], line=self.line[which], phi=self.phi[which], before=before)
 
     def with_nodes(self, gaps: Index) -> LinePoints:
         """With points at the nodes of some gaps."""
@@ -156,7 +190,11 @@ class LinePoints:
             kind.append(np.full(len(on), number))
             line.append(on)
             phi.append(lines.phi[node])
-        return replace(self, kind=np.concatenate(kind), line=np.concatenate(line), phi=np.concatenate(phi))
+        together = replace(self, kind=np.concatenate(kind), line=np.concatenate(line), phi=np.concatenate(phi))
+        if self.before is None:
+            return together
+        fresh = np.full(len(together.phi) - len(self.phi), -1)
+        return replace(together, before=np.concatenate([self.before, fresh]))
 
     def _kinds(self) -> Iterable[tuple[Mask, GapLines]]:
         for number, lines in enumerate(self.lines):

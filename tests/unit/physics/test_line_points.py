@@ -1,5 +1,7 @@
 """Contact points between the nodes of gap lines: the curve through the gaps, its derivatives, shares of reactions."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -79,3 +81,30 @@ def test_slopes_at_the_ends_are_those_of_chords() -> None:
     slopes = np.sum(weight * (PHI**2)[node], axis=1)
     assert_allclose(slopes[[0, -1]], [0.1, 1.05])
     assert_allclose(slopes[1:-1], 2.0 * PHI[1:-1])
+
+
+def test_sums_over_gaps_are_those_of_the_matrices(some: LinePoints) -> None:
+    gaps, reaction = np.random.default_rng(5).standard_normal(17), np.arange(1.0, 1.0 + len(some.phi))
+    expected = [matrix @ gaps for matrix in (some.value, some.slope, some.curvature)]
+    assert_allclose(some.along(gaps), expected, rtol=1e-12, atol=1e-12)
+    assert_allclose(some.pushes(reaction), some.value.T @ reaction, rtol=1e-12, atol=1e-12)
+
+
+def test_points_descend_to_where_the_gap_is_least(some: LinePoints) -> None:
+    gaps = np.zeros(17)
+    for lines in LINES:
+        gaps[lines.number] = (lines.phi - lines.phi.mean()) ** 2
+    near = some
+    for _ in range(8):
+        near = near.lowest(gaps)
+    _, slope, curvature = near.along(gaps)
+    assert_allclose(slope, 0.0, atol=1e-9)
+    assert np.all(curvature > 0.0)
+
+
+def test_numbers_of_an_earlier_state_are_kept(some: LinePoints) -> None:
+    numbered = replace(some, before=np.arange(len(some.phi)))
+    left = numbered.kept(np.arange(len(some.phi)) != 0)
+    fresh = left.with_nodes(np.array([LINES[0].number[0, 3]]))
+    assert fresh.before is not None
+    assert fresh.before.tolist() == [*range(1, len(some.phi)), -1]
