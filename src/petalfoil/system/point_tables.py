@@ -16,7 +16,10 @@ Index = NDArray[np.integer[Any]]
 
 
 class EntriesByRow(NamedTuple):
-    """A sparse matrix by rows: first entry of each row, columns and values of the entries."""
+    """A sparse matrix by rows: first entry of each row, columns and values of the entries.
+
+    Numbers are unsigned: of signed ones numba asks whether they count from the end, at twice the cost of a product.
+    """
 
     start: Index
     column: Index
@@ -25,7 +28,7 @@ class EntriesByRow(NamedTuple):
     @classmethod
     def of(cls, matrix: sp.csr_array) -> EntriesByRow:
         """Those of a matrix."""
-        return cls(matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64), matrix.data)
+        return cls(matrix.indptr.astype(np.uint32), matrix.indices.astype(np.uint32), matrix.data)
 
 
 class CurveTables(NamedTuple):
