@@ -54,7 +54,7 @@ class HalfArch:
         W = hermite.rows(at.element, at.place, angle) @ nodal
         V = -(face_slip(mid_surface(self.membrane), at, angle) @ nodal)
         area = hermite.integrals(at.element, at.place, angle) @ nodal
-        return W.toarray()[0], V.toarray()[0], area.toarray()[0]
+        return W.toarray()[0], V[0], area[0]
 
     @property
     def membrane(self) -> float:

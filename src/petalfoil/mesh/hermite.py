@@ -78,7 +78,7 @@ def integral_basis(t: Array) -> Array:
     return np.asarray(t[:, None] ** powers @ (COEFFICIENTS / powers).T)
 
 
-def integrals(element: Index, t: Array, length: Array) -> sp.csr_array:
+def integrals(element: Index, t: Array, length: Array) -> Array:
     """Weights of nodal (value, slope) pairs in the integral of a curve from its first node; (k, 2 nodes).
 
     Places and `length` as in `rows`; the integral is by the same angle as `length`.
@@ -94,7 +94,7 @@ def integrals(element: Index, t: Array, length: Array) -> sp.csr_array:
     shape = (len(element), 2 * len(length))
     out[:, :-2] += each[:, :, :2].reshape(shape)
     out[:, 2:] += each[:, :, 2:].reshape(shape)
-    return sp.csr_array(out)
+    return out
 
 
 def located(angle: Array, nodes: Array) -> tuple[Index, Array]:

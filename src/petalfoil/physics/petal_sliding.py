@@ -23,7 +23,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.mesh import hermite
@@ -94,24 +93,26 @@ def slide_by_integral(faces: Faces, petal: Index, side: Array) -> Array:
     return np.asarray(-(faces.metric_radius / faces.bend_radius)[petal] * faces.share(petal, side))
 
 
-def face_slip(faces: Faces, at: FacePlaces, angle: Array) -> sp.csr_array:
+def face_slip(faces: Faces, at: FacePlaces, angle: Array) -> Array:
     """Slip `-side u` without membrane force, from nodal (value, slope) pairs of each face's own petal.
 
     `angle` (n_element,) is that of the elements [rad]; shape (f, 2 n_node).
     """
-    turned = hermite.rows(at.element, at.place, angle, 1)
-    integral = hermite.integrals(at.element, at.place, angle)
+    columns, turned = hermite.entries(at.element, at.place, angle, 1)
     arm = faces.arm[at.petal] / angle[at.element]
-    along = slide_by_integral(faces, at.petal, at.side)
-    return sp.csr_array(sp.diags_array(arm) @ turned + sp.diags_array(along) @ integral)
+    out = slide_by_integral(faces, at.petal, at.side)[:, None] * hermite.integrals(at.element, at.place, angle)
+    out[np.arange(len(arm))[:, None], columns] += arm[:, None] * turned
+    return np.asarray(out)
 
 
-def face_slip_by_place(faces: Faces, at: FacePlaces, angle: Array) -> sp.csr_array:
+def face_slip_by_place(faces: Faces, at: FacePlaces, angle: Array) -> Array:
     """Derivative of `face_slip` by the place in the element, (f, 2 n_node)."""
-    value, bend = (hermite.rows(at.element, at.place, angle, derivative) for derivative in (0, 2))
-    own = angle[at.element]
-    along = slide_by_integral(faces, at.petal, at.side) * own
-    return sp.csr_array(sp.diags_array(faces.arm[at.petal] / own) @ bend + sp.diags_array(along) @ value)
+    columns, value = hermite.entries(at.element, at.place, angle)
+    bend, own = hermite.entries(at.element, at.place, angle, 2)[1], angle[at.element]
+    along, out = slide_by_integral(faces, at.petal, at.side) * own, np.zeros((len(own), 2 * len(angle) + 2))
+    bent = (faces.arm[at.petal] / own)[:, None] * bend + along[:, None] * value
+    out[np.arange(len(own))[:, None], columns] = bent
+    return out
 
 
 def face_compliance(faces: Faces, at: FacePlaces, angle: Array, length: float) -> Array:

@@ -61,14 +61,14 @@ def slip_rows(pack: ElementPack, points: ContactPoints) -> sp.csr_array:
     """`B`: slip at all contact points from the unknowns, (j, n) [1]; rows of contacts on the journal are empty."""
     contact, at = touching_faces(pack, points)
     rows = face_slip(pack.faces, at, pack.elements.element_angle)
-    return from_unknowns(pack, rows, (contact, at), len(points.reaction))
+    return of_contacts(pack, rows, (contact, at), len(points.reaction))
 
 
 def slip_by_place(pack: ElementPack, points: ContactPoints) -> sp.csr_array:
     """Derivative of `slip_rows` by the place of each contact, counted in elements; (j, n) [1]."""
     contact, at = touching_faces(pack, points)
     rows = face_slip_by_place(pack.faces, at, pack.elements.element_angle)
-    return from_unknowns(pack, rows, (contact, at), len(points.reaction))
+    return of_contacts(pack, rows, (contact, at), len(points.reaction))
 
 
 def dragged_faces(pack: ElementPack, points: ContactPoints) -> tuple[sp.csr_array, sp.csr_array]:
@@ -85,7 +85,7 @@ def dragged_faces(pack: ElementPack, points: ContactPoints) -> tuple[sp.csr_arra
     at = FacePlaces(curve, start + element - curves.first[curve], place, np.full(len(contact), INNER))
     faces, angle = replace(pack.faces, slides=True), pack.elements.element_angle
     own = face_slip(faces, at, angle), face_slip_by_place(faces, at, angle)
-    value, by_place = (from_unknowns(pack, rows, (contact, at), len(points.reaction)) for rows in own)
+    value, by_place = (of_contacts(pack, rows, (contact, at), len(points.reaction)) for rows in own)
     return value, by_place
 
 
@@ -98,7 +98,7 @@ def dragged_samples(pack: ElementPack, samples: ContactSamples, friction: float)
     inner, angle = np.full(len(petal), INNER), pack.elements.element_angle[element]
     start = FacePlaces(petal, element, np.zeros(len(petal)), inner)
     along = friction * slide_by_integral(faces, petal, inner)
-    slid = sp.diags_array(along) @ hermite.integrals(element, start.place, pack.elements.element_angle)
+    slid = along[:, None] * hermite.integrals(element, start.place, pack.elements.element_angle)
     before = from_unknowns(pack, sp.csr_array(slid), (on_journal, start), len(samples.element))
     turn, slide = (basis(samples.place) for basis in (partial(hermite.basis, derivative=1), hermite.integral_basis))
     within = np.zeros_like(samples.rows)
@@ -106,6 +106,17 @@ def dragged_samples(pack: ElementPack, samples: ContactSamples, friction: float)
     within[on_journal] = arm[:, None, None] * turn + (along * angle)[:, None, None] * slide
     within[on_journal, :, 1::2] *= angle[:, None, None]
     return DraggedSamples(within, before)
+
+
+def of_contacts(pack: ElementPack, of_faces: Array, where: tuple[Index, FacePlaces], count: int) -> sp.csr_array:
+    """Rows of faces (f, 2 n_node), each of its own petal, summed at their few contacts from the unknowns, (count, n).
+
+    Dense until the end: SciPy's checks of small matrices took longer than all sums.
+    """
+    (contact, at), petals = where, pack.mesh.count
+    rows = np.zeros((count, petals, of_faces.shape[1]))
+    np.add.at(rows, (contact, at.petal), of_faces)
+    return sp.csr_array((pack.nodal.T @ rows.reshape(count, -1).T).T)
 
 
 def from_unknowns(
