@@ -116,7 +116,7 @@ def of_contacts(pack: ElementPack, of_faces: Array, where: tuple[Index, FacePlac
     (contact, at), petals = where, pack.mesh.count
     rows = np.zeros((count, petals, of_faces.shape[1]))
     np.add.at(rows, (contact, at.petal), of_faces)
-    return sp.csr_array((pack.nodal.T @ rows.reshape(count, -1).T).T)
+    return sp.csr_array((pack.nodal.T @ rows.reshape(count, petals * of_faces.shape[1]).T).T)
 
 
 def from_unknowns(
