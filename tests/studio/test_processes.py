@@ -23,7 +23,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.skipif(os.name != "posix", reason="s
 
 ORPHANS_END = 5.0
 """Time in which workers end after their server was killed [s]."""
-LONG = Design.starting().with_value("model.kind", "3d").with_value("model.cells_per_pitch", 96).to_toml()
+LONG = Design.starting().with_value("model.kind", "3d").with_value("model.cells_per_pitch", 192).to_toml()
 LITTLE = 300e6
 """Memory in which a worker answers the short case and not the long one [bytes]: it takes 200 MB before it begins."""
 SHORT = Design.starting().with_value("model.cells_per_pitch", 24).to_toml()
