@@ -136,7 +136,11 @@ class ContactSamples:
 
     def nodal(self, reaction: Array) -> Array:
         """Generalised forces on the nodal gaps by reactions (E, S) of the samples; (2 n_node,)."""
-        forces = np.einsum("esk,es->ek", self.rows, reaction)
+        return self._on_nodes(self.rows, reaction)
+
+    def _on_nodes(self, rows: Array, reaction: Array) -> Array:
+        """Forces along `rows` (E, S, 4) by reactions (E, S), summed at the nodal gaps; (2 n_node,)."""
+        forces = np.einsum("esk,es->ek", rows, reaction)
         return add_up(self.columns.ravel(), forces.ravel(), len(self.curves.rest))
 
     @cached_property
@@ -146,8 +150,7 @@ class ContactSamples:
 
     def on_petals(self, reaction: Array) -> Array:
         """Generalised forces on the petals by reactions (E, S) and the friction of a journal (D6); (n,)."""
-        forces = np.einsum("esk,es->ek", self.acting, reaction)
-        loads = self.curves.by_w.T @ add_up(self.columns.ravel(), forces.ravel(), len(self.curves.rest))
+        loads = self.curves.by_w.T @ self._on_nodes(self.acting, reaction)
         if self.dragged is not None:
             loads = loads + self.dragged.before.T @ reaction.sum(axis=1)
         return np.asarray(loads)
