@@ -26,9 +26,8 @@ from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.system.asperity_equations import AsperityEquations
 from petalfoil.system.build import build_problem
 from petalfoil.walls.pack_slip import dragged_faces
-from tests.contract.taylor import assert_tangent
 from tests.random_packs import random_case
-from tests.verification.test_contact_points import moved_by
+from tests.verification.test_contact_points import assert_tangents
 from tests.verification.test_contact_slopes import apart
 from tests.verification.test_journal_rubbing import MU, rubbed, turned
 
@@ -73,14 +72,7 @@ def test_samples_are_dragged_as_contact_points_at_their_places() -> None:
 def test_tangent_with_asperities_under_a_journal_that_drags() -> None:
     """Remainder of second order in deflections, film pressures and the journal's position; of the force on it too."""
     found = both_of(24)[1].equations
-    rng, de = np.random.default_rng(2), np.array([3e-3, -2e-3])
-    direction = np.concatenate([
-        rng.uniform(-1e-3, 1e-3, found.smooth.whole.n_wall), rng.uniform(-0.1, 0.1, found.smooth.whole.n_film)
-    ])  # fmt: skip
-    change = found.steady @ direction + found.forcing() @ de
-    assert_tangent(lambda t: np.concatenate(moved_by(found, t * direction, t * de).residual), change, 2.0**-5)
-    force = found.force_rows @ direction + found.force_direct @ de
-    assert_tangent(lambda t: moved_by(found, t * direction, t * de).force, force, 2.0**-6)
+    assert_tangents(found)
     skew = found.contact.on_petals @ found.whole.curves.by_w
     assert abs(skew - skew.T).max() > 1e-3 * abs(skew).max()
 
