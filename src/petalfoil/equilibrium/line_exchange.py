@@ -61,20 +61,10 @@ class LineExchange:
         cls, tangent: Tangent, opened: Index, added: CurveRows, turning: CurveRows, stiffer: Array
     ) -> LineExchange | None:
         """The exchange, all its solves together; None where the contacts do not determine the petals."""
-        constraints, matrix = tangent.constraints, tangent.matrix
-        openings = np.zeros((constraints.G.shape[0], len(opened)))
-        openings[opened, np.arange(len(opened))] = -1.0
-        follow = [constraints.close(column) for column in openings.T]
-        forces = [matrix @ column for column in follow]
-        forces += [-row for row in added.by_x.toarray()]
-        forces += [stiffness * row for stiffness, row in zip(stiffer, turning.by_x.toarray(), strict=True)]
-        pushed = np.column_stack([constraints.balanced(force) for force in forces])
-        moved = [constraints.spread(column) for column in tangent.factor.solve(-pushed).T]
-        reactions = np.column_stack(
-            [constraints.reactions(matrix @ one + force) for one, force in zip(moved, forces, strict=True)]
-        )
-        changes = np.column_stack(moved)
-        changes[:, : len(opened)] += np.column_stack([np.zeros((len(changes), 0)), *follow])
+        no_force = np.zeros((len(opened), tangent.matrix.shape[0]))
+        forces = np.vstack([no_force, -added.by_x.toarray(), stiffer[:, None] * turning.by_x.toarray()])
+        openings = np.append(opened, np.full(len(forces) - len(opened), -1))
+        changes, reactions = tangent.respond_each(forces.T, openings)
         conditions = np.vstack([reactions[opened], added.by_x @ changes, turning.by_x @ changes])
         at = len(opened) + added.by_x.shape[0] + np.arange(len(stiffer))
         conditions[at, at] -= 1.0

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from petalfoil.equilibrium.line_exchange import CurveRows, LineExchange
 from petalfoil.equilibrium.linear_response import LinearResponse
+from petalfoil.solvers.constraints import places_among
 from petalfoil.sparsity import SparseRows
 
 if TYPE_CHECKING:
@@ -151,7 +152,7 @@ class LineTangent:
         before = state.points.before
         if before is None:
             return None
-        nodes = np.where(self.nodes, np.cumsum(self.nodes) - 1, -1)[state.held]
+        nodes = places_among(self.nodes)[state.held]
         return np.concatenate([nodes, np.where(before >= 0, self._first_point + before, -1)])
 
     @property

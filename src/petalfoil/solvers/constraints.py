@@ -130,27 +130,20 @@ class ContactConstraints:
         return np.asarray(-self._normal.solve(self.G @ by_change)) if self.G.shape[0] else np.zeros(0)
 
     def gather(self, full: NDArray[Any]) -> NDArray[Any]:
-        """Add up the equations of unknowns that move together; shape (n_free,)."""
+        """Add up the equations (n,) or (n, j) of unknowns that move together; shape (n_free,) or (n_free, j)."""
+        if full.ndim > 1:
+            return np.asarray(self.motions.T @ full)
         inside = self.group >= 0
         return apply_to_parts(lambda part: add_up(self.group[inside], part, self.n_free), full[inside])
 
     def spread(self, free: NDArray[Any]) -> NDArray[Any]:
-        """Move every unknown with its group; shape (n,)."""
-        return np.append(free, 0.0)[self.group]
+        """Move every unknown with its group, from (n_free,) or (n_free, j); shape (n,) or (n, j)."""
+        return np.concatenate([free, np.zeros((1, *free.shape[1:]))])[self.group]
 
     def balanced(self, full: NDArray[Any]) -> NDArray[Any]:
-        """What all equations (n,) leave of those of the free unknowns without their reactions (T4), (n_free,)."""
+        """What equations leave of those of the free unknowns without their reactions (T4); shapes as in `gather`."""
         gathered = self.gather(full)
         return gathered if self._dragged is None else gathered - self._dragged @ full
-
-    def balanced_each(self, full: Array) -> Array:
-        """`balanced` of each of `j` columns (n, j), (n_free, j)."""
-        gathered = self.motions.T @ full
-        return np.asarray(gathered if self._dragged is None else gathered - self._dragged @ full)
-
-    def spread_each(self, free: Array) -> Array:
-        """`spread` of each of `j` columns (n_free, j), (n, j)."""
-        return np.asarray(np.concatenate([free, np.zeros((1, free.shape[1]))])[self.group])
 
     def balanced_adjoint(self, free: NDArray[Any]) -> NDArray[Any]:
         """Derivative by all equations (n,) of what has the derivative `free` (n_free,) by `balanced`."""
@@ -247,3 +240,8 @@ def determining(G: sp.csr_array, active: Mask, last: slice) -> Mask:
     for a, b in zip(forest.row, forest.col, strict=True):
         mask[rows[place[min(int(a), int(b)), max(int(a), int(b))]]] = True
     return mask
+
+
+def places_among(members: Mask) -> Index:
+    """Place of each among those that are `members` (m,), -1 of the others; (m,)."""
+    return np.where(members, np.cumsum(members) - 1, -1)

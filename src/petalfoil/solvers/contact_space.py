@@ -9,6 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.solvers.constraints import places_among
 from petalfoil.solvers.coulomb import ContactForces, ContactSpace, KnownForces, States, contact_forces
 from petalfoil.solvers.coulomb_disk import disk_forces
 from petalfoil.solvers.problem import Border
@@ -239,10 +240,9 @@ class UnitResponses:
         gaps = sp.csr_array(G[contacts]) @ units.change
         if follower is not None:
             gaps = gaps + follower.border.gap_derivative[contacts] @ units.moved
-        place_of = np.full(len(held), -1)
-        place_of[np.flatnonzero(held)] = np.arange(np.count_nonzero(held))
         closed = held[contacts]
-        gaps[closed] = units.reactions[place_of[contacts[closed]]]
+        gaps[closed] = units.reactions[places_among(held)[contacts[closed]]]
+        place_of = np.full(len(held), -1)
         place_of[contacts] = np.arange(len(contacts))
         stuck = np.ones(len(sliding) - len(along)), np.zeros(len(sliding) - len(along))
         slips = sp.csr_array(rubbing.slip[sliding]) @ units.change
@@ -275,11 +275,9 @@ def unit_responses(
     """Units of the contacts and slips of given `numbers`: openings of those held, reactions of the others, forces."""
     (contacts, sliding), held = numbers, tangent.constraints.held
     opens = held[contacts]
-    place_of = np.full(len(held), -1)
-    place_of[np.flatnonzero(held)] = np.arange(np.count_nonzero(held))
     pushes = sp.diags_array(np.where(opens, 0.0, -1.0)) @ sp.csr_array(gap_rows[1][contacts])
     forces = sp.csr_array(sp.vstack([pushes, rubbing.slip[sliding]]))
     none = np.full(len(sliding), -1)
-    openings = np.concatenate([np.where(opens, place_of[contacts], -1), none])
+    openings = np.concatenate([places_among(held)[contacts], none])
     own = np.concatenate([np.where(opens, -1, contacts), none])
     return Units.of(tangent, forces, openings, own, follower)

@@ -43,11 +43,11 @@ class PointConstraints(ContactConstraints):
         return self.basis
 
     def gather(self, full: NDArray[Any]) -> NDArray[Any]:
-        """Equations of the free unknowns; shape (n_free,)."""
+        """Equations of the free unknowns from all of them, (n,) or (n, j); shape (n_free,) or (n_free, j)."""
         return np.asarray(self.basis.T @ full)
 
     def spread(self, free: NDArray[Any]) -> NDArray[Any]:
-        """All unknowns from the free ones; shape (n,)."""
+        """All unknowns from the free ones, (n_free,) or (n_free, j); shape (n,) or (n, j)."""
         return np.asarray(self.basis @ free)
 
     def reduce(self, matrix: sp.csc_array) -> sp.csc_array:

@@ -55,7 +55,7 @@ class Tangent:
     factor: Factor
 
     def step(self, residual: Values) -> Values:
-        """Change of the unknowns (n,) against `residual` (n,), active gaps held (T1)."""
+        """Change of the unknowns against `residual`, (n,) or (n, j), active gaps held (T1)."""
         return self.constraints.spread(self.factor.solve(-self.constraints.balanced(residual)))
 
     def respond(self, residual: Values, gap_change: Array | None = None) -> tuple[Values, Values]:
@@ -82,7 +82,7 @@ class Tangent:
             unit_openings[openings[opens], np.arange(len(opens))] = -1.0
             change[:, opens] = constraints.close(unit_openings)
             left = residuals + self.matrix @ change
-        change = change + constraints.spread_each(self.factor.solve(-constraints.balanced_each(left)))
+        change = change + self.step(left)
         return change, constraints.reactions(self.matrix @ change + residuals)
 
     def adjoint(self, by_change: Array, by_reactions: Array) -> tuple[Array, Array]:

@@ -40,6 +40,8 @@ def test_against_the_dense_null_space(seed: int) -> None:
     assert_allclose(constraints.reduce(sp.csc_array(matrix)).toarray(), Z.T @ matrix @ Z, atol=1e-12)
     assert_allclose(constraints.spread(free), Z @ free, atol=1e-13)
     assert_allclose(constraints.gather(matrix[0]), Z.T @ matrix[0], atol=1e-13)
+    assert_allclose(constraints.spread(Z.T), Z @ Z.T, atol=1e-12)
+    assert_allclose(constraints.gather(matrix), Z.T @ matrix, atol=1e-12)
     gaps, lam = rng.normal(size=len(rows)), rng.normal(size=len(rows))
     assert_allclose(constraints.close(gaps), np.linalg.lstsq(rows, -gaps, rcond=None)[0], atol=1e-10)
     assert_allclose(constraints.reactions(rows.T @ lam), lam, atol=1e-10)

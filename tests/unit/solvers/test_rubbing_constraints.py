@@ -41,6 +41,12 @@ def test_response_and_its_adjoint_are_those_of_the_full_system(rng: np.random.Ge
     change, reactions = tangent.respond(residual, moved[held])
     assert_allclose(change, expected[:N], atol=1e-11)
     assert_allclose(reactions, expected[N:], atol=1e-11)
+    both = tangent.respond(np.stack([residual, 2.0 * residual], axis=1), np.stack([moved[held], moved[held]], axis=1))
+    assert_allclose(both[0][:, 0], expected[:N], atol=1e-11)
+    assert_allclose(both[1][:, 0], expected[N:], atol=1e-11)
+    opened = tangent.respond(residual, -np.eye(k)[1])
+    for each, one in zip(tangent.respond_each(residual[:, None], np.array([1])), opened, strict=True):
+        assert_allclose(each[:, 0], one, atol=1e-11)
 
     by_change, by_reactions = rng.normal(size=N), rng.normal(size=k)
     by_all = np.linalg.solve(full.T, np.concatenate([by_change, by_reactions]))
