@@ -108,6 +108,14 @@ def test_a_contact_that_has_ended_is_solved_for_without_a_factorisation(lines: L
     assert_allclose(by_factor.force, by_own.force, atol=1e-8 * np.abs(by_own.force).max())
 
 
+def test_the_position_of_the_journal_costs_solves_only_where_it_is_asked_for(lines: LineContacts) -> None:
+    with running() as run:
+        response = lines.motion.growing(0.0, run.film_solver)
+        assert run.film.solves == 0
+        assert response.force_gradient.shape == (2, 2)
+        assert run.film.solves == 2
+
+
 @pytest.mark.slow
 def test_where_steps_with_one_factor_creep_each_set_has_its_own() -> None:
     """The thirteenth of these random packs: sets of contacts that one factor serves end in a residual of 2e-3."""

@@ -126,7 +126,7 @@ class LineTangent:
         by_e[known], by_e[added] = contacts.gap_by_e[place[known]], gaps.by_e
         exchange = None
         if count:
-            exchange = LineExchange.of(self.response.tangent.tangent, np.flatnonzero(opened), gaps, turning, stiffer)
+            exchange = LineExchange.of(self.response.factorised, np.flatnonzero(opened), gaps, turning, stiffer)
             if exchange is None:
                 return None
         return LineTangent(self.response, self.nodes, place, len(state.held_reaction), by_e, exchange, number)
@@ -195,7 +195,7 @@ class LineTangent:
 
         Against `rows` (n,), gaps `closed` (j + k,), and slopes `turned` (c,) of these points.
         """
-        tangent, known = self.response.tangent.tangent, self.place >= 0
+        tangent, known = self.response.factorised, self.place >= 0
         own = np.zeros(tangent.constraints.G.shape[0])
         own[self.place[known]] = closed[known]
         return self._amended(*tangent.respond(rows, own), closed, turned)

@@ -174,7 +174,7 @@ class SmallMotion:
         forcing = self.steady_forcing + s * self.stored_forcing if s else self.steady_forcing
         constraints = self.contacts.constraints
         tangent = Tangent(matrix, constraints, constraints.factor(matrix, solver, self.elimination_key))
-        return LinearResponse(self, BorderedTangent.of(tangent, self.border, forcing))
+        return LinearResponse(self, tangent, forcing)
 
 
 @dataclass(frozen=True)
@@ -185,12 +185,20 @@ class LinearResponse:
     ----------
     motion : SmallMotion
         The state.
-    tangent : BorderedTangent
-        The factorised system at the frequency, complex where this is not zero, the journal's position bordered.
+    factorised : Tangent
+        The factorised system at the frequency, complex where this is not zero.
+    forcing : (n, n_position) array
+        Derivative of its rows by the journal's position.
     """
 
     motion: SmallMotion
-    tangent: BorderedTangent
+    factorised: Tangent
+    forcing: Values
+
+    @cached_property
+    def tangent(self) -> BorderedTangent:
+        """The same with the journal's position bordered: a solve for each of its coordinates."""
+        return BorderedTangent.of(self.factorised, self.motion.border, self.forcing)
 
     @property
     def force_gradient(self) -> Values:
@@ -204,7 +212,7 @@ class LinearResponse:
 
     def moved(self, forces: Values) -> Values:
         """Change of the unknowns by forces on them, the journal held in place; (n, k) each."""
-        constraints, factor = self.tangent.tangent.constraints, self.tangent.tangent.factor
+        constraints, factor = self.factorised.constraints, self.factorised.factor
         pushes = np.column_stack([constraints.balanced(force) for force in forces.T])
         moved = factor.solve(pushes.astype(self.units.dtype))
         return np.column_stack([constraints.spread(column) for column in moved.T])
