@@ -4,6 +4,7 @@ Inside the package every number is a float in SI units; text is read here and no
 
 - `reading`: text or number → float in SI units; pairs and ranges of the command line.
 - `grammar`: the text of a unit → a pint unit; the only file that knows pint, imported when the first unit is read.
+- `mistyped`: what is meant by a unit that is none, or that measures something else.
 - `ramp`: the text of a speed that changes → instants and speeds.
 - `writing`: float → text for a reader.
 """

@@ -11,11 +11,12 @@ rounded once: 25 µm is exactly the float 2.5e-05.
 
 from __future__ import annotations
 
-import difflib
 import re
 from fractions import Fraction
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
+
+from petalfoil.units.mistyped import meant, nearest
 
 if TYPE_CHECKING:
     import pint
@@ -45,22 +46,25 @@ _ALSO_WRITTEN = {
 }
 """Units as engineers write them, and the names under which pint knows them."""
 
+_DIFFERENCES = {"degree_Celsius": "delta_degree_Celsius", "degree_Fahrenheit": "delta_degree_Fahrenheit"}
+
 _GAUGE = {"barg", "psig"}
 """Pressures above the ambient one: another zero, which no factor converts."""
 
 _ABSOLUTE = {"abs", "absolute"}
 """Words behind a pressure that say what it is anyway."""
 
-_COMMON = (
-    *("m", "mm", "um", "nm", "in", "thou", "microinch", "deg", "rad", "s", "ms", "rpm", "krpm", "rps", "Hz", "kHz"),
-    *("Pa", "kPa", "MPa", "GPa", "bar", "mbar", "atm", "psi", "ksi", "Msi", "N", "kN", "lbf", "kgf", "kg", "g", "lb"),
-    *("K", "degC", "degF", "cP", "J", "W", "min"),
-)
-"""Units that a mistyped one is compared with."""
-
 
 class UnitTextError(ValueError):
     """A unit that cannot be read or converted; the message completes "… <value> …"."""
+
+
+class _UnknownUnitError(UnitTextError):
+    """A name that is no unit."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(f"has the unknown unit {name!r}")
+        self.name = name
 
 
 @lru_cache(maxsize=4096)
@@ -71,16 +75,41 @@ def convert(number: Fraction, text: str, unit: str, *, whirl: bool = False) -> f
     """
     import pint
 
-    given = _Reader(text).read()
+    given = _read(text, unit)
     if whirl and "hertz" in _base_names(given):
         given = given * _registry().Unit("turn")
     _refuse_lookalikes(number, given, unit)
     try:
         return float(_registry().Quantity(number, given).to("" if unit == "1" else unit).magnitude)
     except pint.DimensionalityError:
-        raise UnitTextError(f"measures something else ({_dimension(given)}){_meant(given, unit)}") from None
+        raise UnitTextError(f"measures something else ({_dimension(given)}){_meant(given, text, unit)}") from None
     except (pint.PintError, ArithmeticError, ValueError):
         raise UnitTextError("cannot be converted") from None
+
+
+def _read(text: str, unit: str) -> Any:
+    """The unit written in `text`; where it is none, what may be meant."""
+    try:
+        given = _Reader(text).read()
+    except _UnknownUnitError as error:
+        asked = unit if error.name == text.strip() else ""
+        name = meant(text, unit) or nearest(error.name, asked)
+        raise UnitTextError(f"{error} (did you mean {name!r}?)" if name else str(error)) from None
+    except UnitTextError as error:
+        name = meant(text, unit)
+        raise UnitTextError(f"{error} (did you mean {name!r}?)" if name else str(error)) from None
+    return _differences(given)
+
+
+def _differences(given: Any) -> Any:
+    """Degrees of a scale within a larger unit are differences: 1/degC is 1/K."""
+    items = list(_registry().Quantity(1, given).unit_items())
+    if len(items) == 1 and items[0][1] == 1:
+        return given
+    out = _registry().Unit("")
+    for name, power in items:
+        out = out * _registry().Unit(_DIFFERENCES.get(name, name)) ** power
+    return out
 
 
 def _refuse_lookalikes(number: Fraction, given: Any, unit: str) -> None:
@@ -98,10 +127,12 @@ def _refuse_lookalikes(number: Fraction, given: Any, unit: str) -> None:
         raise UnitTextError("is an angle")
 
 
-def _meant(given: Any, unit: str) -> str:
+def _meant(given: Any, text: str, unit: str) -> str:
     """What may be meant by a unit that measures something else: balancing machines tell mass times length."""
-    is_unbalance = unit == "m" and given.dimensionality == {"[mass]": 1, "[length]": 1}
-    return "; an unbalance is divided by the mass of the rotor, such as 5 g mm / 2 kg = 2.5 um" if is_unbalance else ""
+    if unit == "m" and given.dimensionality == {"[mass]": 1, "[length]": 1}:
+        return "; an unbalance is divided by the mass of the rotor, such as 5 g mm / 2 kg = 2.5 um"
+    name = meant(text, unit)
+    return f"; did you mean {name!r}?" if name else ""
 
 
 def _base_names(given: Any) -> set[str]:
@@ -137,7 +168,8 @@ class _Reader:
         unit = self._product()
         kind, token = self._peek()
         if kind != "end":
-            raise UnitTextError(f"has {token!r} where its unit should end")
+            power = f"; a power is written '^{token}'" if kind == "int" else ""
+            raise UnitTextError(f"has {token!r} where its unit should end{power}")
         return unit
 
     def _peek(self) -> tuple[str, str]:
@@ -211,11 +243,4 @@ def _named(name: str) -> Any:
     try:
         return _registry().Unit(_ALSO_WRITTEN.get(name, name))
     except (pint.PintError, ValueError):
-        raise UnitTextError(f"has the unknown unit {name!r}{_nearest(name)}") from None
-
-
-def _nearest(name: str) -> str:
-    """Return " (did you mean 'GPa'?)" for the common unit closest to `name`, upper and lower case alike, or nothing."""
-    lower = {unit.lower(): unit for unit in _COMMON}
-    matches = difflib.get_close_matches(name.lower(), lower, n=1)
-    return f" (did you mean {lower[matches[0]]!r}?)" if matches else ""
+        raise _UnknownUnitError(name) from None

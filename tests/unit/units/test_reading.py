@@ -1,4 +1,5 @@
 import math
+import re
 
 import numpy as np
 import pytest
@@ -151,6 +152,7 @@ def test_no_quantity_at_all(value: object) -> None:
         ("1 (m", "m", "a bracket that is not closed"),
         ("1 m)", "m", "')'"),
         ("1 m**m", "m", "the power 'm'"),
+        ("1 N/mm2", "Pa", "has '2' where its unit should end; a power is written '^2'"),
         ("1 m^99", "m", "the power '99'"),
         ("9**9**9**9 m", "m", "'**'"),
         ("25 um + 3 um", "m", "'+'"),
@@ -196,6 +198,71 @@ def test_numbers_survive_as_text(value: float) -> None:
 def test_a_pair() -> None:
     assert parse_pair("0 um, -100 um", "m") == (0.0, -1e-4)
     assert parse_pair("1e-6,2e-6", "m") == (1e-6, 2e-6)
+
+
+@pytest.mark.parametrize(
+    ("unit", "typed"),
+    [
+        (
+            "K",
+            {
+                "degC": "C c °_C ºC oC ℃ deg_C degrees_C deg ° Celsius",
+                "degF": "F f ℉ deg_f Fahrenheit",
+                "K": "k Kelvin",
+            },
+        ),
+        ("m", {"um": "u uM UM mic", "mm": "mM MM", "nm": "n NM", "m": "M", "in": 'IN "'}),
+        ("kg", {"g": "G", "kg": "k K KG Kg kgs kilo", "t": "T", "lb": "LB"}),
+        ("s", {"s": "S", "ms": "mS MS", "us": "uS", "min": "m Min", "h": "H"}),
+        (
+            "Pa",
+            {
+                "bar": "B b Bar",
+                "Pa": "P PA pa",
+                "kPa": "k KPA kpa",
+                "MPa": "M mpa",
+                "GPa": "G gpa",
+                "kgf/cm^2": "kg/cm^2",
+            },
+        ),
+        ("Pa*s", {"cP": "cp CP", "uPa s": "uPas", "mPa s": "mPas", "Pa s": "Pas"}),
+        ("N", {"N": "n", "kN": "kn KN", "kgf": "kg", "lbf": "lb LBF", "gf": "g"}),
+        ("rad/s", {"rpm": "Rpm r/min U/min", "rad/s": "rad RAD/S"}),
+        ("rad", {"deg": "d Deg", "rad": "r"}),
+        ("J/(kg*K)", {"J/(kg K)": "J/kgK J/kg_K"}),
+        ("W/K", {"W/K": "W/C"}),
+        ("1/K", {"1/K": "1/C"}),
+    ],
+)
+def test_units_that_people_type(unit: str, typed: dict[str, str]) -> None:
+    """Each is refused, and the unit that is meant is told and can be read."""
+    for meant, texts in typed.items():
+        assert parse_quantity(f"1 {meant}", unit) > 0.0
+        for text in texts.split():
+            with pytest.raises(UnitError, match=rf"did you mean '{re.escape(meant)}'\?"):
+                parse_quantity(f"1 {text.replace('_', ' ')}", unit)
+
+
+def test_what_measures_something_else_has_no_near_unit() -> None:
+    """A near name that measures something else is none."""
+    for text, unit in (("5 kg", "m"), ("2 m", "kg"), ("2 mic", "kg"), ("80 furlongs", "K")):
+        with pytest.raises(UnitError) as caught:
+            parse_quantity(text, unit)
+        assert "did you mean" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("12e-6 1/degC", "1/K", 12e-6),
+        ("9e-6 1/degF", "1/K", 16.2e-6),
+        ("2 W/°C", "W/K", 2.0),
+        ("287 J/(kg*degC)", "J/(kg*K)", 287.0),
+        ("20 degC", "K", 293.15),
+    ],
+)
+def test_degrees_within_a_unit_are_differences(text: str, unit: str, value: float) -> None:
+    assert parse_quantity(text, unit) == pytest.approx(value, rel=1e-15)
 
 
 @pytest.mark.parametrize("text", ["0,1 mm", "-0,1mm", "1 um,5,2 um"])
