@@ -21,6 +21,7 @@ from petalfoil.analysis.grid_study import (
     grid_of,
     grid_text,
     grids,
+    of_one_size,
     unknowns,
 )
 from petalfoil.analysis.rotor_verdict import neutral_by_error
@@ -156,13 +157,14 @@ def field_bars(record: Record, number: int, answers: Answers) -> dict[str, Array
         place = 0 if grid == grid_of(case) else number
         others.append(None if isinstance(answer, ConvergenceError) else answer[place])
     alike = contacts_alike(others)
-    return {
-        f"{name}_error": array_error_bars(
-            own.astype(np.float64), [values_of(other, name, record) for other in others], alike=alike
-        )
-        for name, own in record.fields.items()
-        if f"{name}_error" in FIELDS
-    }
+    bars: dict[str, Array] = {}
+    for name, own in record.fields.items():
+        if f"{name}_error" not in FIELDS:
+            continue
+        on_grids = [values_of(other, name, record) for other in others]
+        own_bars = array_error_bars(own.astype(np.float64), on_grids, alike=alike)
+        bars[f"{name}_error"] = of_one_size(own_bars) if FIELDS[name].dims[-2:] == ("row", "column") else own_bars
+    return bars
 
 
 def values_of(record: Record | None, name: str, own: Record) -> Array | None:

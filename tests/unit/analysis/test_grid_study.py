@@ -6,12 +6,13 @@ import math
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 import petalfoil
 from petalfoil.analysis.converge import converge
-from petalfoil.analysis.grid_study import error_bars, grid_of, grid_records, grids, resolution, table
+from petalfoil.analysis.grid_study import error_bars, grid_of, grid_records, grids, of_one_size, resolution, table
 from petalfoil.analysis.solve import point as solved
 from petalfoil.case import Case
 from petalfoil.errors import ConvergenceError, PackError, UsageError
@@ -229,3 +230,10 @@ def test_only_a_3d_film_has_an_axial_place_and_leaks(bearing: str, has: bool) ->
     journal = case("plain_journal", **(changes | ({"model.axial_cells": 4} if has else {})))
     record = solved(journal)
     assert [name in record.scalars for name in ("side_leakage", "min_film_thickness_z")] == [has, has]
+
+
+def test_no_entry_of_a_matrix_is_better_known_than_the_matrix() -> None:
+    bars = np.array([[[3.0, 0.0], [0.0, 5.0]], [[1.0, 1.0], [1.0, 1.0]]])
+    least = math.sqrt(34.0 / 4.0)
+    assert_allclose(of_one_size(bars), [[[3.0, least], [least, 5.0]], [[1.0, 1.0], [1.0, 1.0]]])
+    assert_allclose(of_one_size(np.array([[math.nan, 1.0], [2.0, 3.0]])), [[math.nan, 1.0], [2.0, 3.0]])
