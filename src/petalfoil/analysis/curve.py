@@ -67,11 +67,13 @@ def curve(
 def _points(cases: list[Case], progress: Progress | None, done: Sequence[Record] = ()) -> Iterator[Record]:
     base = build_problem(cases[0])
     before, past = _regained(cases, base, done), PastJump() if _has_jumped(done) else None
+    growth = 0.0
     for number, case in enumerate(cases[len(done) :], len(done)):
         problem = displaced_problem(base, case)
         with running(part(progress, number, len(cases)), "curve", typical_steps(case)) as run:
             try:
-                found = point_after(case, problem, before)
+                found = point_after(case, problem, before, growth=growth)
+                growth = found.branch.growth_rate or 0.0
                 if found.branch.jump or before is None:
                     past = PastJump() if found.branch.jump else None
                 elif past is not None:
@@ -123,10 +125,13 @@ def _along(cases: Sequence[Case], base: CoupledProblem) -> Solution | None:
     return found
 
 
-def point_after(case: Case, problem: CoupledProblem, before: Solution | None, *, leads: bool = True) -> OperatingPoint:
+def point_after(
+    case: Case, problem: CoupledProblem, before: Solution | None, *, leads: bool = True, growth: float = 0.0
+) -> OperatingPoint:
     """A point of the curve, followed from the one `before`; from nothing where there is none.
 
-    Contact points lead there, without a solution with contacts at nodes beside it, unless `leads` is false.
+    Contact points lead there, without a solution with contacts at nodes beside it, unless `leads` is false. `growth` is
+    the growth rate of that one [1/s], if it is known.
 
     Raises
     ------
@@ -143,5 +148,5 @@ def point_after(case: Case, problem: CoupledProblem, before: Solution | None, *,
         before = with_nodal_contacts(before)
         answer, jump = advance(before, here)
         answer = reported(case, with_heat(case, answer), before)
-    rate = leading_eigenvalue(answer)
+    rate = leading_eigenvalue(answer, growth / case.operation.speed if growth < 0.0 else 0.0)
     return OperatingPoint(answer, branch(rate, case, 2 if jump else None, answer.solution_path, jump))

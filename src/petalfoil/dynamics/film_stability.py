@@ -16,13 +16,16 @@ from petalfoil.solvers.eigenvalues import Pencil, rightmost
 from petalfoil.system.unknowns import DEFLECTION
 
 
-def leading_eigenvalue(solution: Solution) -> complex:
-    """Leading eigenvalue in radians of rotation; nan at zero speed, where the film does not move."""
+def leading_eigenvalue(solution: Solution, near: float = 0.0) -> complex:
+    """Leading eigenvalue in radians of rotation; nan at zero speed, where the film does not move.
+
+    `near` is the real part of that of a neighbour, if it is known.
+    """
     problem = solution.problem
     if problem.bearing_number == 0.0:
         return complex(np.nan, np.nan)
     if solution.elements is not None:
-        return rightmost(pencil_of(solution.elements.equations), current_run().probe_solver)
+        return rightmost(pencil_of(solution.elements.equations), current_run().probe_solver, near)
     linearized = problem.linearize(solution.x)
     steady = linearized.matrix(np.zeros(len(problem.weight)))
     contacts = solution.contacts
@@ -31,9 +34,8 @@ def leading_eigenvalue(solution: Solution) -> complex:
     first = int(wall.max(initial=-1)) + 1
     solver = current_run().probe_solver
     order = constraints.elimination_order(solver, problem.elimination_key)
-    return rightmost(
-        Pencil(constraints.reduce(steady), constraints.reduce(linearized.stored), slice(first, None), order), solver
-    )
+    pencil = Pencil(constraints.reduce(steady), constraints.reduce(linearized.stored), slice(first, None), order)
+    return rightmost(pencil, solver, near)
 
 
 def held_contacts(solution: Solution) -> ContactConstraints:

@@ -6,7 +6,7 @@ import scipy.linalg as la
 import scipy.sparse as sp
 from numpy.testing import assert_allclose
 
-from petalfoil.solvers.eigenvalues import SETTLED, UNSEEN, Pencil, arnoldi, rightmost
+from petalfoil.solvers.eigenvalues import CLOSER, SETTLED, UNSEEN, Pencil, arnoldi, rightmost
 from petalfoil.solvers.sparse_lu import LinearSolver
 
 
@@ -29,10 +29,8 @@ def test_a_map_to_nothing_decays_at_once() -> None:
     assert of(np.zeros(7)).real == pytest.approx(-1.0 / UNSEEN)
 
 
-@pytest.mark.parametrize("shift", [-0.5, 0.3], ids=["stable", "unstable"])
-@pytest.mark.parametrize("seed", range(4))
-def test_random_pencils_with_algebraic_rows(seed: int, shift: float) -> None:
-    """Against the QZ algorithm, within twice what the method promises of `theta`; growth and decay are told apart."""
+def random_pencil(seed: int, growth: float) -> tuple[Pencil, complex]:
+    """A pencil with algebraic rows, and its rightmost eigenvalue by the QZ algorithm, of a real part as wanted."""
     rng, n, first = np.random.default_rng(seed), 90, 25
     J = rng.standard_normal((n, n)) / np.sqrt(n) + 2.0 * np.eye(n)
     M = np.zeros((n, n))
@@ -40,11 +38,44 @@ def test_random_pencils_with_algebraic_rows(seed: int, shift: float) -> None:
     s = la.eigvals(-J, M)
     s = s[np.isfinite(s) & (np.abs(s) < 1e6)]
     exact = s[np.argmax(s.real)]
-    J, exact = J + (exact.real - shift) * M, exact + (shift - exact.real)  # where its real part is wanted
-    found = rightmost(Pencil(sp.csc_array(J), sp.csc_array(M), slice(first, None)), LinearSolver())
-    theta = [-1.0 / value for value in (complex(found.real, abs(found.imag)), complex(exact.real, abs(exact.imag)))]
-    assert abs(theta[0] - theta[1]) <= 2.0 * SETTLED * abs(theta[1])
-    assert (found.real > 0.0) == (exact.real > 0.0) == (shift > 0.0)
+    J, exact = J + (exact.real - growth) * M, exact + (growth - exact.real)
+    return Pencil(sp.csc_array(J), sp.csc_array(M), slice(first, None)), complex(exact.real, abs(exact.imag))
+
+
+def apart(found: complex, exact: complex) -> float:
+    """Difference in `theta`, over it."""
+    return abs(exact / complex(found.real, abs(found.imag)) - 1.0)
+
+
+@pytest.mark.parametrize("growth", [-0.5, 0.3], ids=["stable", "unstable"])
+@pytest.mark.parametrize("seed", range(4))
+def test_random_pencils_with_algebraic_rows(seed: int, growth: float) -> None:
+    """Against the QZ algorithm, within twice what the method promises of `theta`; growth and decay are told apart."""
+    pencil, exact = random_pencil(seed, growth)
+    found = rightmost(pencil, LinearSolver())
+    assert apart(found, exact) <= 2.0 * SETTLED
+    assert (found.real > 0.0) == (exact.real > 0.0) == (growth > 0.0)
+
+
+@pytest.mark.parametrize("growth", [-0.5, 0.3], ids=["stable", "unstable"])
+@pytest.mark.parametrize("near", [-0.3, -0.5, -0.9, -3.0])
+@pytest.mark.parametrize("seed", range(4))
+def test_a_neighbour_changes_no_eigenvalue(seed: int, near: float, growth: float) -> None:
+    """Where the rightmost lies on the other side of the place from which the pencil is seen, all is seen from zero."""
+    pencil, exact = random_pencil(seed, growth)
+    solver = LinearSolver()
+    found = rightmost(pencil, solver, near)
+    assert apart(found, exact) <= 2.0 * SETTLED
+    assert solver.counter.factorizations == (1 if growth <= CLOSER * near else 2)
+
+
+def test_a_neighbour_saves_solves() -> None:
+    """Thirty eigenvalues that are equal within a few per cent, as those of equal petals are."""
+    s = -8.0 * np.concatenate([np.linspace(1.0, 1.3, 30), np.linspace(1.4, 40.0, 200)])
+    pencil = Pencil(sp.diags_array(-s, format="csc"), sp.eye_array(len(s), format="csc"), slice(0, None))
+    far, close = LinearSolver(), LinearSolver()
+    assert_allclose([rightmost(pencil, far).real, rightmost(pencil, close, -8.1).real], -8.0, rtol=1e-9)
+    assert close.counter.solves <= 0.6 * far.counter.solves
 
 
 def test_the_growth_of_a_single_row() -> None:
