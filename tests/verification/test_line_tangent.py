@@ -80,6 +80,26 @@ def test_the_same_contacts_need_no_exchange(lines: LineContacts) -> None:
     assert served.exchange is None
 
 
+def test_what_a_factor_has_answered_once_is_not_solved_for_again(
+    lines: LineContacts, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A node and three points have ended, two have begun, reactions are others: of these those that have begun are."""
+    monkeypatch.setattr(line_tangent, "STIFFER", 1e-12)
+    state = others(marked(lines))
+    assert state.tangent is not None
+    solves = [state.tangent.response.factorised.factor.counter.solves]
+    for _ in range(2):
+        served = state.tangent.on(state)
+        assert served is not None
+        assert served.exchange is not None
+        solves.append(state.tangent.response.factorised.factor.counter.solves)
+    first, again = np.diff(solves)
+    exchange = served.exchange
+    carries = len(exchange.turning.stiffer) - len(exchange.turning.of_factor)
+    assert first == len(exchange.changes.T)
+    assert again == exchange.added.by_x.shape[0] + carries
+
+
 def test_too_many_others_ask_for_a_factor(lines: LineContacts, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(line_tangent, "MOST_CHANGES", 5)
     state = others(marked(lines))

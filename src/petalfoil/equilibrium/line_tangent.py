@@ -7,7 +7,7 @@ that (C16): a solve each (`line_exchange.py`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.line_exchange import CurveRows, LineExchange
+from petalfoil.equilibrium.line_exchange import CurveRows, FactorAnswers, LineExchange, Turning
 from petalfoil.equilibrium.linear_response import LinearResponse
 from petalfoil.solvers.constraints import places_among
 from petalfoil.sparsity import SparseRows
@@ -79,6 +79,8 @@ class LineTangent:
     ----------
     response : LinearResponse
         The factorised tangent of a state.
+    answers : FactorAnswers
+        What it has been asked for, by whatever contacts it served.
     nodes : (m,) bool array
         Contacts at nodes of that state.
     place : (j + k,) int array
@@ -94,6 +96,7 @@ class LineTangent:
     """
 
     response: LinearResponse
+    answers: FactorAnswers
     nodes: Mask
     place: Index
     at_nodes: int
@@ -104,8 +107,9 @@ class LineTangent:
     @classmethod
     def of(cls, state: LineContacts, response: LinearResponse) -> LineTangent:
         """That of a state itself."""
-        by_e = response.motion.contacts.gap_by_e
-        return cls(response, state.held, np.arange(len(by_e)), len(state.held_reaction), by_e)
+        contacts = response.motion.contacts
+        by_e, answers = contacts.gap_by_e, FactorAnswers(response.factorised, contacts.slope_by_x)
+        return cls(response, answers, state.held, np.arange(len(by_e)), len(state.held_reaction), by_e)
 
     def on(self, state: LineContacts) -> LineTangent | None:
         """The same for the contacts of a later state; None where a factorisation is better."""
@@ -115,8 +119,8 @@ class LineTangent:
         contacts, known = self.response.motion.contacts, place >= 0
         opened = np.ones(contacts.constraints.G.shape[0], dtype=np.bool_)
         opened[place[known]] = False
-        added, (turning, number, stiffer) = np.flatnonzero(~known), self._turning(state, place)
-        count = np.count_nonzero(opened) + len(added) + len(stiffer)
+        added, (turning, number) = np.flatnonzero(~known), self._turning(state, place)
+        count = np.count_nonzero(opened) + len(added) + len(turning.stiffer)
         if count > MOST_CHANGES:
             return None
         weights = weights_of(state, added)
@@ -126,13 +130,15 @@ class LineTangent:
         by_e[known], by_e[added] = contacts.gap_by_e[place[known]], gaps.by_e
         exchange = None
         if count:
-            exchange = LineExchange.of(self.response.factorised, np.flatnonzero(opened), gaps, turning, stiffer)
+            exchange = LineExchange.of(self.answers, np.flatnonzero(opened), gaps, turning)
             if exchange is None:
                 return None
-        return LineTangent(self.response, self.nodes, place, len(state.held_reaction), by_e, exchange, number)
+        return replace(
+            self, place=place, at_nodes=len(state.held_reaction), by_e=by_e, exchange=exchange, turning=number
+        )
 
-    def _turning(self, state: LineContacts, place: Index) -> tuple[CurveRows, Index, Array]:
-        """Slopes at points whose travel stiffness is another: rows, numbers of the points (-1: ended), differences."""
+    def _turning(self, state: LineContacts, place: Index) -> tuple[Turning, Index]:
+        """Points whose travel stiffness is another, and their numbers among those of the state, (c,) (-1: ended)."""
         contacts, points = self.response.motion.contacts, place[len(state.held_reaction) :] - self._first_point
         own, before = state.travel_stiffness, contacts.travel_stiffness
         here = np.full(len(before), -1)
@@ -145,7 +151,7 @@ class LineTangent:
         by_e = state.points.slope[fresh] @ state.problem.layout.wall.contacts.by_e
         rows = CurveRows(by_x, np.concatenate([contacts.slope_by_e[other], by_e]))
         stiffer = np.concatenate([now[other] - before[other], own[fresh]])
-        return rows, np.concatenate([here[other], fresh]), stiffer
+        return Turning(other, rows, stiffer), np.concatenate([here[other], fresh])
 
     def _places(self, state: LineContacts) -> Index | None:
         """Places of the contacts of a state among those of the factor, -1 of others; None where that is not known."""
@@ -212,7 +218,7 @@ class LineTangent:
     def units(self) -> tuple[Array, Array, Array]:
         """The same by a unit of each coordinate of the journal, (n, d), (j + k, d) and (c, d)."""
         own = self.response.tangent
-        slopes = np.zeros((0, self.by_e.shape[1])) if self.exchange is None else self.exchange.turning.by_e
+        slopes = np.zeros((0, self.by_e.shape[1])) if self.exchange is None else self.exchange.turning.slopes.by_e
         each = zip(own.units.T, own.reaction_units.T, self.by_e.T, slopes.T, strict=True)
         dx, dlam, moments = zip(*(self._amended(*one) for one in each), strict=True)
         return np.column_stack(dx), np.column_stack(dlam), np.column_stack(moments)
@@ -227,7 +233,7 @@ class LineTangent:
         """Force on the journal by changes of the unknowns (n,), reactions (j + k,) and their travel (E13)."""
         border = self.response.tangent.border
         force = border.row_derivative @ dx[border.columns] + self.by_e.T @ dlam
-        return np.asarray(force if self.exchange is None else force - self.exchange.turning.by_e.T @ moments)
+        return np.asarray(force if self.exchange is None else force - self.exchange.turning.slopes.by_e.T @ moments)
 
 
 def weights_of(state: LineContacts, contacts: Index) -> sp.csr_array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,12 +89,20 @@ def axis_3d(length: float, cells: int, *, half: bool, grading: float = 0.0, dens
     from an end to the middle places the stations instead.
     """
     cells += cells % 2 if half else 0
-    s = np.arange(cells // 2 + 1 if half else cells + 1) / cells
     if len(density):
-        z = length * equidistributed(density, s)
+        z = length * remembered(tuple(density), cells, half)
     else:
+        s = np.arange(cells // 2 + 1 if half else cells + 1) / cells
         z = length * (s - grading / (2.0 * np.pi) * np.sin(2.0 * np.pi * s))
     return AxialGrid(z, trapezoid(z) * (2.0 if half else 1.0), length, half)
+
+
+@lru_cache(maxsize=64)
+def remembered(density: tuple[float, ...], cells: int, half: bool) -> NDArray[np.float64]:
+    """Places of the stations of `axis_3d`: each result of each point of a curve asks for the same."""
+    places = equidistributed(density, np.arange(cells // 2 + 1 if half else cells + 1) / cells)
+    places.setflags(write=False)
+    return places
 
 
 def equidistributed(density: Sequence[float], s: NDArray[np.float64]) -> NDArray[np.float64]:
