@@ -133,8 +133,11 @@ class SmallMotion:
 
     @property
     def elimination_key(self) -> Hashable | None:
-        """Friction joins unknowns that do not meet otherwise, and has its own orders."""
-        return self.problem.elimination_key if self.sticking is None else (self.problem.layout, "sticking")
+        """Friction and contact points join unknowns that do not meet otherwise, and have their own orders."""
+        own = self.problem.elimination_key
+        if self.sticking is not None:
+            return own, "sticking"
+        return (own, "points") if own is not None and len(self.contacts.travel_stiffness) else own
 
     def moved_system(self, solver: LinearSolver) -> MovedSystem:
         """The same for a reduced model, in the free unknowns `y`: `dX = basis dy + N de`; one factorisation.

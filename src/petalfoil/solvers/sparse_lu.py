@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -135,9 +135,9 @@ class LinearSolver:
             factor = Factor(symmetric_lu(scaled, places), row, col, places, self.counter)
             if trusted(scaled, factor):
                 if order is not None and scaled.n:  # active contacts may hold all unknowns
-                    fill = factor.lu.nnz / scaled.n
-                    found = elimination_order(scaled, factor.lu.perm_c, fill) if places is None else None
-                    order.learn(found, fill, len(scaled.data))
+                    fill, found = factor.lu.nnz / scaled.n, factor.lu.perm_c
+                    own = None if places is not None else partial(elimination_order, scaled, found, fill)
+                    order.learn(own, fill, len(scaled.data))
                 return factor
         except RuntimeError:  # SuperLU met a zero pivot: without the diagonal it may still do
             pass

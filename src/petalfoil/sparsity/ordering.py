@@ -8,6 +8,7 @@ differ in a few unknowns.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -33,8 +34,11 @@ class Order(Protocol):
     def known(self, entries: int = 0) -> Index | None:
         """Unknowns in the order of elimination of a matrix with so many entries; None if it must be found."""
 
-    def learn(self, order: Index | None, fill: float, entries: int = 0) -> None:
-        """A factorisation of so many entries had `fill` factors an unknown, in `order` if it had to find one."""
+    def learn(self, order: Callable[[], Index] | None, fill: float, entries: int = 0) -> None:
+        """A factorisation of so many entries had `fill` factors an unknown; `order` tells the one that it had to find.
+
+        It is asked for when another factorisation is to follow it.
+        """
 
 
 def postorder(matrix: sp.csc_array, order: Index) -> Index:
@@ -74,25 +78,34 @@ def parents(matrix: sp.csc_array, order: Index) -> Index:
 
 @dataclass
 class Learnt:
-    """Place of every unknown in an elimination that once served, (n,), and the entries an unknown it led to first.
+    """Places of the unknowns in an elimination that once served, and the entries an unknown it led to first.
 
-    Factors in the postorder are compared with each other, not with those of the factorisation that found it: in
-    postorder SuperLU joins columns of nearly equal structure, and stores a fifth more.
+    The postorder is found when the order is first followed: many matrices stay the only ones of their kind. Factors in
+    it are compared with each other, not with those of the factorisation that found it: in postorder SuperLU joins
+    columns of nearly equal structure, and stores a fifth more.
     """
 
-    rank: Array | None = None
+    found: Callable[[], Array] | None = None
     fill: float = np.inf
+    _rank: Array | None = None
 
-    def keep(self, rank: Array) -> None:
-        """Keep a new order."""
-        self.rank, self.fill = rank, np.inf
+    @property
+    def rank(self) -> Array | None:
+        """Place of every unknown, (n,); None where no order is known."""
+        if self._rank is None and self.found is not None:
+            self._rank, self.found = self.found(), None
+        return self._rank
+
+    def keep(self, found: Callable[[], Array]) -> None:
+        """Keep a new order, `found` when it is asked for."""
+        self.found, self._rank, self.fill = found, None, np.inf
 
     def judge(self, fill: float) -> None:
         """Give the order up where factors have grown."""
         if np.isinf(self.fill):
             self.fill = fill
         elif fill > GROWN * self.fill:
-            self.rank = None
+            self.found = self._rank = None
 
 
 @dataclass
@@ -108,12 +121,12 @@ class Elimination:
         rank = self.whole.rank if entries <= FULLER * self.entries else None
         return None if rank is None else np.argsort(rank, kind="stable")
 
-    def learn(self, order: Index | None, fill: float, entries: int = 0) -> None:
+    def learn(self, order: Callable[[], Index] | None, fill: float, entries: int = 0) -> None:
         """Keep what a factorisation of all unknowns has found."""
         if order is None:
             self.whole.judge(fill)
         else:
-            self.whole.keep(places(order))
+            self.whole.keep(lambda: places(order()))
             self.entries = entries
 
 
@@ -135,14 +148,18 @@ class TiedOrder:
         np.maximum.at(last, self.group[inside], rank[inside])
         return np.argsort(last, kind="stable")
 
-    def learn(self, order: Index | None, fill: float, entries: int = 0) -> None:
+    def learn(self, order: Callable[[], Index] | None, fill: float, entries: int = 0) -> None:
         """Keep what a factorisation of the groups has found, for each of their unknowns."""
         if order is None:
             self.learnt.judge(fill)
             return
-        # a held unknown may move with the next contact set: it is placed by the one before it, its neighbour
-        spread = np.maximum.accumulate(np.where(self.group >= 0, np.arange(len(self.group)), 0))
-        self.learnt.keep(places(order)[self.group[spread]])
+
+        def of_each() -> Array:
+            # a held unknown may move with the next contact set: it is placed by the one before it, its neighbour
+            spread = np.maximum.accumulate(np.where(self.group >= 0, np.arange(len(self.group)), 0))
+            return places(order())[self.group[spread]]
+
+        self.learnt.keep(of_each)
 
 
 def places(order: Index) -> Array:

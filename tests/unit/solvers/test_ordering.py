@@ -72,9 +72,23 @@ def test_an_order_is_found_once_and_kept() -> None:
     assert_array_equal(np.sort(known), np.arange(81))
 
 
+def test_an_order_is_found_only_for_a_second_matrix() -> None:
+    kept, asked = Elimination(), []
+
+    def order() -> np.ndarray:
+        asked.append(True)
+        return np.arange(5)
+
+    kept.learn(order, 10.0, 100)
+    assert not asked
+    for _ in range(2):
+        assert_array_equal(kept.known(100), np.arange(5))
+    assert len(asked) == 1
+
+
 def test_an_order_is_given_up_where_factors_have_grown() -> None:
     kept = Elimination()
-    kept.learn(np.arange(5), 10.0)
+    kept.learn(lambda: np.arange(5), 10.0)
     kept.learn(None, 12.0)  # in postorder SuperLU stores more: the first such factors are the measure
     kept.learn(None, 0.99 * GROWN * 12.0)
     assert kept.known() is not None
@@ -85,17 +99,17 @@ def test_an_order_is_given_up_where_factors_have_grown() -> None:
 def test_an_order_does_not_serve_a_matrix_with_more_entries() -> None:
     """The first matrix of an interior point lacks entries of the later ones."""
     kept = Elimination()
-    kept.learn(np.arange(5), 10.0, 100)
+    kept.learn(lambda: np.arange(5), 10.0, 100)
     assert kept.known(int(0.99 * FULLER * 100)) is not None
     assert kept.known(int(1.1 * FULLER * 100)) is None
-    kept.learn(np.arange(5), 12.0, 120)
+    kept.learn(lambda: np.arange(5), 12.0, 120)
     assert kept.known(120) is not None
 
 
 def test_orders_pass_from_one_contact_set_to_the_next() -> None:
     kept = Elimination()
     before = TiedOrder(kept.tied, np.array([0, 1, -1, 1, 2]), 3)  # the second and fourth move together, the third not
-    before.learn(np.array([2, 0, 1]), 1.0)
+    before.learn(lambda: np.array([2, 0, 1]), 1.0)
     after = TiedOrder(kept.tied, np.array([0, 1, 2, 3, 0]), 4)  # all move, the first with the last
     order = after.known()
     assert order is not None
