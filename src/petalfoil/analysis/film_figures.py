@@ -200,10 +200,18 @@ def film_work(before: BearingState, after: BearingState) -> float:
 
 
 def dragging_work(before: BearingState, after: BearingState) -> float:
-    """Work of the journal's dry friction on wall and rotor between two instants (D6), (D7) [1], not on the shaft."""
+    """Work of the journal's dry friction on wall and rotor between two instants (D6), (D7) [1], not on the shaft.
+
+    Between an instant with contact points and one with contacts at nodes it is that at the nodes.
+    """
     earlier, later = before.problem, after.problem
     if later.acting is later.G:
         return 0.0
+    if before.points is not None and after.points is not None:
+        each = (before.points.rubbing, after.points.rubbing)
+        on_wall, on_rotor = (0.5 * (one + other) for one, other in zip(*each, strict=True))
+        moved = after.points.state.w - before.points.state.w, later.displacement - earlier.displacement
+        return float(on_wall @ moved[0] + on_rotor @ moved[1])
     pulled = 0.5 * (before.lam + after.lam)
     on_wall = (later.acting.T @ pulled - later.G.T @ pulled) @ (after.x - before.x)
     on_rotor = (later.border.by_reactions - later.border.gap_derivative.T) @ pulled

@@ -22,12 +22,9 @@ Array = NDArray[np.float64]
 
 
 def points_in_time(layout: BearingLayout, friction: Friction | None) -> PointLayout | None:
-    """Where contacts of a motion lie between nodes: of petals whose friction has no width, whom no journal drags.
-
-    None of others.
-    """
+    """Where contacts of a motion lie between nodes; None of petals whose friction has a width or two directions."""
     smooth = friction is None or (friction.exact and friction.directions == 1)
-    return layout.elements if smooth and not layout.case.drags_petals else None
+    return layout.elements if smooth else None
 
 
 def released_at_points(

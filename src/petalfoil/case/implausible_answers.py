@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from petalfoil.case import gas_properties
 from petalfoil.case.definitions import Case
-from petalfoil.case.sections import ModelKind
+from petalfoil.case.sections import ContactDiscretization, ModelKind
 from petalfoil.units.writing import format_percent, format_quantity
 
 Scalars = Mapping[str, float | int | bool | str]
@@ -84,6 +84,7 @@ def of_answer(case: Case, scalars: Scalars) -> Iterator[str]:
             "such stiff packs forces change by several per cent from grid to grid, stiffness and damping by more; "
             "compare two grids (--error)"
         )
+    yield from _dragged_at_nodes(case, scalars)
     if number(scalars, "friction_harmonics") == 1.0:
         yield (
             "friction_harmonics: slips of petals that rub were taken for sines, as they are in 3-D, with many contacts "
@@ -97,6 +98,19 @@ def of_answer(case: Case, scalars: Scalars) -> Iterator[str]:
             f"nodal_force_difference: the force is {format_percent(apart)} from that with contacts at nodes of the "
             "same grid, which in stiff packs miss it; that the equilibrium is the same one is known to so much only: "
             "refine model.cells_per_pitch until it falls"
+        )
+
+
+def _dragged_at_nodes(case: Case, scalars: Scalars) -> Iterator[str]:
+    """Contacts of a journal that drags petals along, in 3-D."""
+    between = case.model.kind is ModelKind.THREE_D and case.model.contacts is ContactDiscretization.POINTS
+    touches = number(scalars, "contact_normal_force") != 0.0
+    if between and case.drags_petals and touches and "at nodes" in str(scalars.get("contact_model", "")):
+        yield (
+            "contact_model: contacts are at nodes, for a journal that drags petals along (surface.journal_rubbing) "
+            "pushes them in other directions than those in which gaps close, and contact lines between nodes take "
+            "reactions along the gaps alone; from grid to grid forces change by several per cent, stiffness and "
+            'damping by more: compare two grids (--error), or take "torque"'
         )
 
 

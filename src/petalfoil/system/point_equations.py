@@ -159,10 +159,28 @@ class PointEquations:
         """`D`: motion along the journal of the faces that it drags, and its derivative by the places (D6)."""
         return dragged_faces(self.whole.pack, self.state.points)
 
+    @property
+    def journal_friction(self) -> float:
+        """`mu_f` of a journal that drags petals along, 0 where it does not, or in time while it does not turn [1]."""
+        return self.whole.journal_friction if self.problem.turns else 0.0
+
+    @property
+    def reaction_on_journal(self) -> Array:
+        """Force on the journal by unit loads on the nodal gaps, (2 n_node, d)."""
+        return self.whole.reaction_on_journal if self.problem.turns else self.whole.curves.by_e
+
+    @property
+    def rubbing(self) -> tuple[Array, Array]:
+        """Dry friction of the journal on the petals (D6), (n_wall,), and on the journal itself (D7), (d,)."""
+        if not self.journal_friction:
+            return np.zeros(self.whole.n_wall), np.zeros(len(self.problem.displacement))
+        on_petals = self.journal_friction * (self._dragged[0].T @ self.state.points.reaction)
+        return on_petals, self.whole.rubbing_on_journal.T @ self._nodal_loads
+
     @cached_property
     def acting(self) -> tuple[Triplets, Triplets]:
         """Forces of unit reactions on the petals, (j, n_wall), and their derivative by the places (D6)."""
-        friction, shape = self.whole.journal_friction, (len(self.idle), self.whole.n_wall)
+        friction, shape = self.journal_friction, (len(self.idle), self.whole.n_wall)
         if not friction:
             return self.gaps.by_w
         gaps = (sp.csr_array((n.data, (n.rows, n.cols)), shape=shape) for n in self.gaps.by_w)
@@ -175,8 +193,8 @@ class PointEquations:
         points, state, gaps = self.state.points, self.state, self.gaps
         elastic = self.whole.elastic(state.w) - self.whole.push @ (state.P - 1.0)
         wall = elastic - self.whole.curves.by_w.T @ self._nodal_loads
-        if friction := self.whole.journal_friction:
-            wall -= friction * (self._dragged[0].T @ points.reaction)
+        if self.journal_friction:
+            wall -= self.rubbing[0]
         value = np.where(self.idle > 0.0, points.reaction, gaps.value)
         return wall, self.film.residual, value, gaps.slope[points.ends] * self.travels
 
@@ -259,7 +277,7 @@ class PointEquations:
     def force_rows(self) -> Array:
         """Derivative of the force on the journal by the unknowns, (d, n)."""
         points = self.state.points
-        value, slope = self.gaps.of_nodal(self.whole.reaction_on_journal)
+        value, slope = self.gaps.of_nodal(self.reaction_on_journal)
         film = self.whole.layout.border.row_derivative
         by_place = slope.T * points.reaction
         travel = (by_place @ points.spread if points.inner.any() else by_place) * self.travels
@@ -275,7 +293,7 @@ class PointEquations:
     def journal_force(self) -> Array:
         """Force of film and contacts on the journal over the unit of force, (d,)."""
         film: Array = self.whole.layout.border.row_derivative @ (self.state.P - 1.0)
-        return film + self.whole.reaction_on_journal.T @ self._nodal_loads
+        return film + self.reaction_on_journal.T @ self._nodal_loads
 
     @property
     def force(self) -> Array:

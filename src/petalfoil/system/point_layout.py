@@ -99,10 +99,15 @@ class PointLayout:
     @cached_property
     def reaction_on_journal(self) -> Array:
         """Force on the journal by unit loads on the nodal gaps, with its dry friction (D7), (2 n_node, d)."""
+        return np.asarray(self.curves.by_e + self.rubbing_on_journal)
+
+    @cached_property
+    def rubbing_on_journal(self) -> Array:
+        """What dry friction of a journal that turns adds to it, (2 n_node, d)."""
         normal = self.curves.by_e
         along = np.zeros_like(normal)
         along[:, 0::2], along[:, 1::2] = -normal[:, 1::2], normal[:, 0::2]
-        return np.asarray(normal + self.journal_friction * along)
+        return self.journal_friction * along
 
     @cached_property
     def film_by_w(self) -> SparseRows:

@@ -175,6 +175,17 @@ EVERY: dict[str, tuple[str, Callable[[], Told], Callable[[], Told]]] = {
         lambda: of(scalars={"friction_harmonics": 1}),
         lambda: of(scalars={"friction_harmonics": 4}),
     ),
+    "_dragged_at_nodes contact_model": (
+        "contact_model",
+        lambda: of(
+            scalars={"contact_model": "contacts at nodes", "contact_normal_force": 1.0},
+            **{"model.kind": "3d", "surface.journal_rubbing": "force"},
+        ),
+        lambda: of(
+            scalars={"contact_model": "contacts at nodes", "contact_normal_force": 0.0},
+            **{"model.kind": "3d", "surface.journal_rubbing": "force"},
+        ),
+    ),
     "_short_lines model.cells_per_pitch": (
         "model.cells_per_pitch",
         lambda: of("rig", {"friction_harmonics": 4}, **{"model.kind": "3d", "model.cells_per_pitch": 26}),
