@@ -45,7 +45,7 @@ def test_samples_of_one_harmonic_have_the_closed_form() -> None:
     """(E10) to the second order of the samples: contacts that stick, slip a little and slip far."""
     stiffness, limit = np.array([1.0, 2.0, 0.7, 1.3]), np.array([0.5, 0.9, 0.4, 0.2])
     slip = np.array([0.4, 0.5, 0.8j, -2.0 + 1.0j])
-    force = SampledFriction(stiffness, limit, HalfPeriod(1)).force(slip[None])[0]
+    force = SampledFriction(stiffness, limit, HalfPeriod(1)).cycle(slip[None]).force[0]
     expected = equivalent_stiffness(stiffness, limit, np.abs(slip))[0] * slip
     assert_allclose(force, expected, rtol=2e-4)
     assert force[0] == pytest.approx(stiffness[0] * slip[0], rel=1e-14)
@@ -57,11 +57,12 @@ def test_derivatives_of_friction_and_residual_are_theirs() -> None:
     slip, step = some(3, 5), some(3, 5, seed=2)
     law = SampledFriction(stiffness, limit, HalfPeriod(3))
     parts = np.concatenate([step.real, step.imag])
-    change = np.einsum("kab,bk->ak", law.derivative(slip), parts)
+    change = np.einsum("kab,bk->ak", law.cycle(slip).derivative, parts)
     whole = FrictionHarmonics(stiffness, limit, some(2, 5, 5, seed=3))
-    by_slope = (whole.slope(slip) @ parts.ravel()).reshape(6, 5)
+    slope = whole.tangent(whole.cycle(slip), 3).times(step)
+    by_slope = np.concatenate([slope.real, slope.imag])
     for size in (1e-5, 1e-6):
-        moved = (law.force(slip + size * step) - law.force(slip)) / size
+        moved = (law.cycle(slip + size * step).force - law.cycle(slip).force) / size
         assert_allclose(np.concatenate([moved.real, moved.imag]), change, atol=1e-7)
         left = [whole.left(slip + part * step, slip[0])[0] for part in (size, 0.0)]
         away = (left[0] - left[1]) / size
@@ -230,15 +231,17 @@ def test_more_frequencies_change_the_loss_little(monkeypatch: pytest.MonkeyPatch
 
 
 @pytest.mark.slow
-def test_slips_in_two_directions_and_large_packs_have_one_harmonic() -> None:
+def test_large_packs_have_one_harmonic(monkeypatch: pytest.MonkeyPatch) -> None:
     """And say so."""
     whole = {"model.cells_per_pitch": 8, "model.axial_cells": 4, "surface.petal_friction": 0.3}
-    record = coefficients.record(case("paper_n8_spatial", **whole), [4000.0], load=(0.0, -10.0), amplitude=1e-6)
-    assert record.scalars["friction_harmonics"] == 1
-    assert np.isnan(record.scalars["friction_harmonics_change"])
-    flat = coefficients.record(
-        case("paper_n8", **{"surface.petal_friction": 0.3, "model.cells_per_pitch": 12}),
-        [4000.0], load=(0.0, -10.0), amplitude=5e-6,
-    )  # fmt: skip
-    assert flat.scalars["friction_harmonics"] >= 8
-    assert 0.0 < flat.scalars["friction_harmonics_change"] <= CHANGE
+
+    def told() -> dict[str, object]:
+        return coefficients.record(
+            case("paper_n8_spatial", **whole), [4000.0], load=(0.0, -10.0), amplitude=1e-6
+        ).scalars
+
+    assert told()["friction_harmonics"] == 8
+    monkeypatch.setattr("petalfoil.dynamics.rubbing_cycle.LARGEST", 8)
+    one = told()
+    assert one["friction_harmonics"] == 1
+    assert np.isnan(float(str(one["friction_harmonics_change"])))

@@ -9,6 +9,7 @@
 `natural_modes.py`         damped natural motions of a rigid rotor
 `harmonic_balance.py`      friction between petals in a whirl of given amplitude, one harmonic of the slips
 `friction_harmonics.py`    the same with several harmonics
+`harmonic_tangent.py`      their steps of Newton
 `rubbing_cycle.py`         force of either on the journal, with as many harmonics as it needs
 `rubbing_whirl.py`         the bearing in such a whirl, on an ellipse of any shape
 `rubbing_modes.py`         natural modes and neutral whirls at that amplitude

@@ -8,23 +8,28 @@ slips by unit friction forces at the frequency of harmonic `h`, and `r` a part o
 
 in which `T(v)` is friction (E20) of the stiffness `1 / (1/k + r)`. In all harmonics the solution does not depend on
 `r`. In few it does: a contact that sticks has a constant `s`, which only many harmonics have, but `v` follows its force
-smoothly. Newton's method solves for `v`.
+smoothly. Newton's method solves for `v`. Contacts that slip in a plane have the law of a disk (E20b) and an `r` for
+each direction: along the shaft they give a hundredth of what they give along the petals.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.dynamics.harmonic_tangent import HarmonicTangent
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.errors import ConvergenceError
-from petalfoil.physics.sampled_friction import HalfPeriod, SampledFriction
+from petalfoil.physics.sampled_disk import DiskCycle, NoCycleError, SampledDisk
+from petalfoil.physics.sampled_friction import HalfPeriod, LineCycle, SampledFriction
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+Cycle: TypeAlias = LineCycle | DiskCycle
 
 AGREE = 1e-11
 """Residual of the slips, over the largest without friction, below which they agree with their friction."""
@@ -74,20 +79,38 @@ class FrictionHarmonics:
         Stiffness of contacts while sticking, and the largest forces over the amplitude.
     compliances : (m, k, k) array
         Slips against unit friction forces at the first harmonics; those above move as at the last.
+    directions : int
+        Directions of slip of each contact, one after the other among the `k`.
     """
 
     stiffness: Array
     limit: Array
     compliances: Complex
+    directions: int = 1
 
     @cached_property
     def own(self) -> Array:
         """`r`, (k,)."""
         return np.asarray(OWN * np.maximum(np.diagonal(self.compliances[-1]).real, 0.0))
 
-    def law(self, harmonics: int) -> SampledFriction:
-        """Friction of `v`."""
-        return SampledFriction(1.0 / (1.0 / self.stiffness + self.own), self.limit, HalfPeriod(harmonics))
+    def cycle(self, joint: Complex, near: Cycle | None = None) -> Cycle:
+        """Friction of `v`, which may be `near` that of a former one.
+
+        Raises
+        ------
+        NoCycleError
+            Forces do not repeat.
+        """
+        compliance, time = 1.0 / self.stiffness + self.own, HalfPeriod(len(joint))
+        if self.directions == 1:
+            return SampledFriction(1.0 / compliance, self.limit, time).cycle(joint)
+        compliance = compliance.reshape(self.directions, -1)
+        law = SampledDisk(compliance, self.limit[: compliance.shape[1]], time)
+        return law.cycle(joint, near if isinstance(near, DiskCycle) else None)
+
+    def joined(self, slip: Complex, friction: Complex) -> Slips:
+        """Slips of one harmonic (k,) that have these friction forces."""
+        return Slips((slip + self.own * friction)[None], friction[None], 0)
 
     def coupling(self, harmonics: int) -> Complex:
         """`R_h - r`, (harmonics, k, k)."""
@@ -120,42 +143,37 @@ class FrictionHarmonics:
         ConvergenceError
             There were too many.
         """
-        enough = AGREE * float(np.max(np.abs(free), initial=0.0))
-        left, friction = self.left(joint, free)
-        for count in range(STEPS):
-            if np.max(np.abs(left), initial=0.0) <= enough:
-                return Slips(joint, friction, before + count)
-            full, length = self.newton(joint, left), 1.0
-            while True:
-                there, force = self.left(joint + length * full, free)
-                if np.linalg.norm(there) < np.linalg.norm(left) or length < SHORTEST:
-                    break
-                length *= 0.5
-            joint, left, friction = joint + length * full, there, force
+        enough, failed = AGREE * float(np.max(np.abs(free), initial=0.0)), f"do not agree in {STEPS} steps"
+        try:
+            left, cycle = self.left(joint, free)
+            for count in range(STEPS):
+                if np.max(np.abs(left), initial=0.0) <= enough:
+                    return Slips(joint, cycle.force, before + count)
+                joint, left, cycle = self.stepped(joint, left, cycle, free)
+        except NoCycleError as failure:
+            failed = str(failure)
         raise ConvergenceError(
-            f"{len(joint)} harmonics of friction between petals do not agree with their slips in {STEPS} steps",
+            f"{len(joint)} harmonics of friction between petals do not agree with their slips: {failed}",
             history=current_run().history,
             advice="ask for another amplitude, or for the stuck limit without one",
         )
 
-    def left(self, joint: Complex, free: Complex) -> tuple[Complex, Complex]:
-        """Residual of (E22) and friction forces, (harmonics, k)."""
-        friction = self.law(len(joint)).force(joint)
-        left = joint + np.einsum("hij,hj->hi", self.coupling(len(joint)), friction)
+    def stepped(self, joint: Complex, left: Complex, cycle: Cycle, free: Complex) -> tuple[Complex, Complex, Cycle]:
+        """Slips, residual and cycle after a step of Newton, halved until the residual is less."""
+        full, length = self.tangent(cycle, len(joint)).solve(-left), 1.0
+        while True:
+            there, ahead = self.left(joint + length * full, free, cycle)
+            if np.linalg.norm(there) < np.linalg.norm(left) or length < SHORTEST:
+                return joint + length * full, there, ahead
+            length *= 0.5
+
+    def left(self, joint: Complex, free: Complex, near: Cycle | None = None) -> tuple[Complex, Cycle]:
+        """Residual of (E22), (harmonics, k), and the cycle of the friction forces."""
+        cycle = self.cycle(joint, near)
+        left = joint + np.einsum("hij,hj->hi", self.coupling(len(joint)), cycle.force)
         left[0] -= free
-        return left, friction
+        return left, cycle
 
-    def newton(self, joint: Complex, left: Complex) -> Complex:
-        """Step of Newton, (harmonics, k), real and imaginary parts apart."""
-        harmonics, k = joint.shape
-        step = np.linalg.solve(self.slope(joint), -np.concatenate([left.real, left.imag]).ravel())
-        both = step.reshape(2 * harmonics, k)
-        return np.asarray(both[:harmonics] + 1j * both[harmonics:])
-
-    def slope(self, joint: Complex) -> Array:
-        """Derivative of the residual by `v`, (2 harmonics k, 2 harmonics k): real parts of all, then imaginary ones."""
-        harmonics, k = joint.shape
-        own = np.moveaxis(self.law(harmonics).derivative(joint), 0, -1)
-        by_slip = self.coupling(harmonics)[:, :, None, :] * (own[:harmonics] + 1j * own[harmonics:])[:, None]
-        both = np.concatenate([by_slip.real, by_slip.imag]).reshape(2 * harmonics * k, -1)
-        return np.asarray(np.eye(2 * harmonics * k) + both)
+    def tangent(self, cycle: Cycle, harmonics: int) -> HarmonicTangent:
+        """Derivative of the residual by `v`."""
+        return HarmonicTangent(self.coupling(harmonics), cycle.derivative)

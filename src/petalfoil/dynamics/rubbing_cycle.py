@@ -28,8 +28,11 @@ FEWEST, MOST = 4, 32
 CHANGE = 5e-3
 """Change of the friction on the journal by twice as many harmonics, over it, at which they are enough."""
 
-LARGEST = 64
-"""Most directions of slip, of all contacts, with several harmonics: the step of Newton takes time in their cube."""
+LARGEST = 512
+"""Most slips, one or two of each contact, with several harmonics: the step of Newton takes time in their cube."""
+
+LARGEST_IN_WHIRLS = 64
+"""Most slips with several harmonics where a free whirl is solved for, along lines: it does so at every evaluation."""
 
 
 @dataclass(frozen=True)
@@ -66,8 +69,13 @@ ONE_HARMONIC = HarmonicsTold(1, np.nan)
 
 
 def takes_several(sliding: SlidingContacts) -> bool:
-    """Whether slips have several harmonics: of few contacts, each along a line."""
-    return sliding.friction.directions == 1 and len(sliding.limit) <= LARGEST
+    """Whether slips have several harmonics: of contacts that are not too many."""
+    return len(sliding.limit) <= LARGEST
+
+
+def solves_several(sliding: SlidingContacts) -> bool:
+    """Whether they have several in free whirls: of few contacts, each along a line."""
+    return sliding.friction.directions == 1 and len(sliding.limit) <= LARGEST_IN_WHIRLS
 
 
 @dataclass(frozen=True)
@@ -123,10 +131,12 @@ class RubbingCycle:
         """
         if len(self.compliances) == 1:
             return self.force(free, 1), ONE_HARMONIC
-        force, told = self.force(free, FEWEST), HarmonicsTold(FEWEST, np.inf)
+        found, told = self.with_harmonics(free, FEWEST), HarmonicsTold(FEWEST, np.inf)
+        force = self.on_journal(found.friction[0])
         while told.friction_harmonics_change > CHANGE and told.friction_harmonics < MOST:
             half, harmonics = force, 2 * told.friction_harmonics
-            force = self.force(free, harmonics)
+            found = self.with_harmonics(free, harmonics, found)
+            force = self.on_journal(found.friction[0])
             told = HarmonicsTold.between(harmonics, force, half)
         return force, told
 
@@ -140,16 +150,30 @@ class RubbingCycle:
         ConvergenceError
             Slips and friction did not agree.
         """
-        cycle = self.cycle
-        if harmonics == 1:
-            slip = cycle.settled(free, self.compliances[0])
-            friction = cycle.sliding.equivalent(slip, cycle.amplitude)[0] * slip
-        else:
-            friction = self.with_harmonics(free, harmonics).friction[0]
-        return cycle.response.forced(-against_slip(cycle.sliding.friction, friction, len(cycle.response.units)))[1]
+        return self.on_journal(
+            self.one(free)[1] if harmonics == 1 else self.with_harmonics(free, harmonics).friction[0]
+        )
+
+    def on_journal(self, friction: Complex) -> Complex:
+        """Force on the journal by friction forces (k,), over the amplitude."""
+        response = self.cycle.response
+        return response.forced(-against_slip(self.cycle.sliding.friction, friction, len(response.units)))[1]
+
+    def one(self, free: Complex) -> tuple[Complex, Complex]:
+        """Slips and friction forces of one harmonic by (E11), (k,) each, over the amplitude.
+
+        Raises
+        ------
+        ConvergenceError
+            Slips and friction did not agree.
+        """
+        slip = self.cycle.settled(free, self.compliances[0])
+        return slip, self.cycle.sliding.equivalent(slip, self.cycle.amplitude)[0] * slip
 
     def with_harmonics(self, free: Complex, harmonics: int, last: Slips | None = None) -> Slips:
-        """Slips of so many harmonics (E22) from half as many, and so on from one; or from `last`, of as many.
+        """Slips of so many harmonics (E22) from half as many, and so on from one; or from `last`, of so many or less.
+
+        Of contacts that slip in a plane those of one harmonic are (E11), of which the first `FEWEST` follow.
 
         Samples begin where the slips without friction are largest together, so that turning their phase turns that of
         friction and changes nothing else.
@@ -160,10 +184,13 @@ class RubbingCycle:
             Slips and friction did not agree.
         """
         sliding = self.cycle.sliding
-        law = FrictionHarmonics(sliding.friction.stiffness, sliding.limit / self.cycle.amplitude, self.compliances)
+        directions, limit = sliding.friction.directions, sliding.limit / self.cycle.amplitude
+        law = FrictionHarmonics(sliding.friction.stiffness, limit, self.compliances, directions)
         phase = complex(np.exp(0.5j * np.angle(complex(np.sum(free**2)))))
-        if last is None:
+        if last is None and directions == 1:
             found = law.settled(free / phase, 1)
+        elif last is None:
+            found = law.settled(free / phase, min(FEWEST, harmonics), law.joined(*self.one(free / phase)))
         else:
             found = law.solved(last.turned(1.0 / phase).joint, free / phase, 0)
         while len(found.joint) < harmonics:

@@ -13,6 +13,7 @@
 `asperity_contact.py`  contact pressures that decay with the gap
 `dry_friction.py`      Coulomb friction between petals and on the bushing (D1)-(D3)
 `sampled_friction.py`  friction forces of slips to and fro, harmonic by harmonic (E20), (E21)
+`sampled_disk.py`      the same of contacts that slip in a plane
 `petal_membrane.py`    bending and stretching of a petal in 3-D (M8)-(M10)
 `petal_sliding.py`     petals that slide along themselves and stretch, 2-D (M1)-(M4)
 `bump_strip.py`        stiffness of one bump of a bump foil (B1)-(B3)

@@ -80,20 +80,9 @@ class SampledFriction:
     limit: Array
     time: HalfPeriod
 
-    def force(self, slip: Complex) -> Complex:
-        """Harmonics of the friction forces by those of the slips, (harmonics, k) each."""
-        return self.time.shaped(self._followed(slip)[0])
-
-    def derivative(self, slip: Complex) -> Array:
-        """Derivative of each contact's forces by its slips, (k, 2 harmonics, 2 harmonics): real, then imaginary parts.
-
-        The force of a contact has changed by `k` times its way from where it slipped last, `dT_j = k (ds_j - ds_a)`.
-        """
-        basis, last = self.time.basis, self._followed(slip)[1]
-        periods = np.concatenate([*(basis * (-1.0) ** lap for lap in range(LAPS)), np.zeros((1, basis.shape[1]))])
-        way = basis[:, None, :] - periods[last]  # of contacts that never slip from zero
-        shaped = np.matmul(basis.T, np.moveaxis(way, 1, 0)) * (2.0 / len(basis))
-        return np.asarray(self.stiffness[:, None, None] * shaped)
+    def cycle(self, slip: Complex) -> LineCycle:
+        """The cycle of slips (harmonics, k)."""
+        return LineCycle(self, *self._followed(slip))
 
     def _followed(self, slip: Complex) -> tuple[Array, NDArray[np.intp]]:
         """Forces of the last half period, and the samples at which contacts slipped last, -1 for never."""
@@ -107,3 +96,39 @@ class SampledFriction:
             last = np.where(trial == force, last, j)
             path[j], lasts[j] = force, last
         return path[-len(half) :], lasts[-len(half) :]
+
+
+@dataclass(frozen=True)
+class LineCycle:
+    """Half a period.
+
+    Attributes
+    ----------
+    law : SampledFriction
+        The law.
+    path : (samples, k) array
+        Friction forces.
+    last : (samples, k) int array
+        Samples at which contacts slipped last, -1 for never.
+    """
+
+    law: SampledFriction
+    path: Array
+    last: NDArray[np.intp]
+
+    @property
+    def force(self) -> Complex:
+        """Harmonics of the friction forces, (harmonics, k)."""
+        return self.law.time.shaped(self.path)
+
+    @property
+    def derivative(self) -> Array:
+        """Derivative of each contact's forces by its slips, (k, 2 harmonics, 2 harmonics): real, then imaginary parts.
+
+        The force of a contact has changed by `k` times its way from where it slipped last, `dT_j = k (ds_j - ds_a)`.
+        """
+        basis = self.law.time.basis
+        periods = np.concatenate([*(basis * (-1.0) ** lap for lap in range(LAPS)), np.zeros((1, basis.shape[1]))])
+        way = basis[:, None, :] - periods[self.last]  # of contacts that never slip from zero
+        shaped = np.matmul(basis.T, np.moveaxis(way, 1, 0)) * (2.0 / len(basis))
+        return np.asarray(self.law.stiffness[:, None, None] * shaped)
