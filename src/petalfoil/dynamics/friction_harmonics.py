@@ -21,7 +21,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.dynamics.harmonic_tangent import HarmonicTangent
+from petalfoil.dynamics.harmonic_tangent import HarmonicTangent, moved_by_each
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.errors import ConvergenceError
 from petalfoil.physics.sampled_disk import DiskCycle, NoCycleError, SampledDisk
@@ -112,10 +112,10 @@ class FrictionHarmonics:
         """Slips of one harmonic (k,) that have these friction forces."""
         return Slips((slip + self.own * friction)[None], friction[None], 0)
 
-    def coupling(self, harmonics: int) -> Complex:
-        """`R_h - r`, (harmonics, k, k)."""
-        each = np.minimum(np.arange(harmonics), len(self.compliances) - 1)
-        return np.asarray(self.compliances[each] - np.diag(self.own))
+    @cached_property
+    def coupling(self) -> Complex:
+        """`R_h - r`, (m, k, k)."""
+        return np.asarray(self.compliances - np.diag(self.own))
 
     def settled(self, free: Complex, harmonics: int, start: Slips | None = None) -> Slips:
         """Slips that agree with their friction, from the first harmonic `free` (k,) without it.
@@ -128,7 +128,7 @@ class FrictionHarmonics:
             They do not agree.
         """
         if start is None:
-            sticking = np.eye(len(free)) + self.coupling(1)[0] / (1.0 / self.stiffness + self.own)
+            sticking = np.eye(len(free)) + self.coupling[0] / (1.0 / self.stiffness + self.own)
             joint = np.asarray(np.linalg.solve(sticking, free)[None], dtype=np.complex128)
         else:
             joint = start.joint
@@ -160,7 +160,7 @@ class FrictionHarmonics:
 
     def stepped(self, joint: Complex, left: Complex, cycle: Cycle, free: Complex) -> tuple[Complex, Complex, Cycle]:
         """Slips, residual and cycle after a step of Newton, halved until the residual is less."""
-        full, length = self.tangent(cycle, len(joint)).solve(-left), 1.0
+        full, length = self.tangent(cycle).solve(-left), 1.0
         while True:
             there, ahead = self.left(joint + length * full, free, cycle)
             if np.linalg.norm(there) < np.linalg.norm(left) or length < SHORTEST:
@@ -170,10 +170,10 @@ class FrictionHarmonics:
     def left(self, joint: Complex, free: Complex, near: Cycle | None = None) -> tuple[Complex, Cycle]:
         """Residual of (E22), (harmonics, k), and the cycle of the friction forces."""
         cycle = self.cycle(joint, near)
-        left = joint + np.einsum("hij,hj->hi", self.coupling(len(joint)), cycle.force)
+        left = joint + moved_by_each(self.coupling, cycle.force)
         left[0] -= free
         return left, cycle
 
-    def tangent(self, cycle: Cycle, harmonics: int) -> HarmonicTangent:
+    def tangent(self, cycle: Cycle) -> HarmonicTangent:
         """Derivative of the residual by `v`."""
-        return HarmonicTangent(self.coupling(harmonics), cycle.derivative)
+        return HarmonicTangent(self.coupling, cycle.derivative)

@@ -28,7 +28,7 @@ FEWEST, MOST = 4, 32
 CHANGE = 5e-3
 """Change of the friction on the journal by twice as many harmonics, over it, at which they are enough."""
 
-LARGEST = 512
+LARGEST = 2048
 """Most slips, one or two of each contact, with several harmonics: the step of Newton takes time in their cube."""
 
 LARGEST_IN_WHIRLS = 64
