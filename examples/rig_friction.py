@@ -4,7 +4,7 @@
 
 The bearing is that of `rig.toml` on 32 cells per pitch: rubbing of the journal as torque alone, a journal that drags
 petals along, the same friction between them and on the bushing, and both. Writes the table of
-docs/validation/rig-friction.md and its figure; half a minute.
+docs/validation/rig-friction.md and its figure; two minutes.
 """
 
 from __future__ import annotations
@@ -48,7 +48,6 @@ COLUMNS = {
 def run(rubs: str, load: float) -> list[Record]:
     """Run-up and coast-down under a load."""
     case = Case.load(RIG).replace(**{"model.cells_per_pitch": CELLS, **RUBS[rubs]})
-    case = case.replace(**{"model.contacts": "nodes"})  # as those of a path
     return list(runup.records(case, load=(0.0, -load), to=TOP * math.pi / 30.0, points=POINTS))
 
 

@@ -23,7 +23,8 @@ from petalfoil.analysis.stability import stability
 from petalfoil.case import Case, Rotor
 from petalfoil.equilibrium.coulomb_path import beside, rubbing_of
 from petalfoil.equilibrium.friction_history import assembled
-from petalfoil.equilibrium.friction_under_load import BALANCE, PATH, LoadedPath
+from petalfoil.equilibrium.friction_path import FrictionResult
+from petalfoil.equilibrium.friction_under_load import BALANCE, PATH, LoadedPath, path_of
 from petalfoil.equilibrium.run_context import running
 from petalfoil.equilibrium.sinking import Medium, SinkingEquations
 from petalfoil.equilibrium.sliding_newton import Iterate, SlidingNewton, SlidingTangent
@@ -91,7 +92,8 @@ def test_stiffness_of_a_pack_that_sticks_is_the_derivative_of_its_path() -> None
         assert found.load is not None
         sticky, places = replace(friction, coefficient=1e3), []
         for part in (1.0 + 1e-6, 1.0 - 1e-6):
-            step = LoadedPath(sticky, found.load * part).at_speed(found, found.problem.bearing_number, 0)
+            begin = found.problem, path_of(found)
+            step = LoadedPath(sticky, found.load * part).at_speed(begin, found.problem.bearing_number, 0)
             assert step is not None
             places.append(step.problem.displacement * scales.length)
         K = impedance(elastic_and_sliding(loaded, found)[0], 0.0, loaded.operation.speed)[0]
@@ -148,8 +150,10 @@ def pack_in_a_medium() -> tuple[SlidingTangent, slice]:
     friction = friction_of(rig(), problem.layout)
     assert friction is not None
     with running():
-        pack = assembled(friction, problem)
-        assert pack is not None
+        end = assembled(friction, problem, points=False)
+        assert end is not None
+        pack = end.state
+        assert isinstance(pack, FrictionResult)
         x = problem.layout.ambient(pack.x)
         equations = SinkingEquations(problem, np.array([0.0, -1.0]), x, Medium(0.5))
         newton = SlidingNewton(equations, friction, pack.friction, BALANCE)

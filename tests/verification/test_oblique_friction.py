@@ -191,16 +191,18 @@ def tilted(ends: Array) -> tuple[Array, Array]:
         friction, scales = friction_of(of, problem.layout), problem.layout.scales
         assert friction is not None
         assert friction.directions == 2
-        state = assembled(friction, problem)
+        way = assembled(friction, problem)
         for end in ends:
             there = problem.at(displacement=np.array([0.0, 0.0, end, 0.0]) / scales.length)
-            assert state is not None
-            state = moved(friction, (problem, state), there)
-            assert state is not None
+            assert way is not None
+            way = moved(friction, (problem, way.state), there)
+            assert way is not None
+            state = way.state
+            assert isinstance(state, FrictionResult)
             assert state.residual < 1e-8
-            assert state.lost >= 0.0
+            assert way.lost >= 0.0
             problem = there
-            lost.append(lost[-1] + state.lost * scales.force * scales.length)
+            lost.append(lost[-1] + way.lost * scales.force * scales.length)
             x = problem.layout.ambient(state.x)
             forces.append(problem.journal_force(x, state.lam)[2] * scales.force)
     return np.array(forces), np.array(lost[1:])

@@ -156,9 +156,10 @@ def test_energy_lost_by_a_pack_is_the_area_of_its_loop() -> None:
 
 @pytest.mark.slow
 def test_little_friction_loses_its_limit_times_the_slip_and_changes_little() -> None:
-    """Half the friction, half the loss; and no friction between petals that slide is no friction."""
-    _, few, lost = loop("rig", 2e-4, np.array([0.0, 4e-6]), **{"model.cells_per_pitch": 12})
-    _, _, half = loop("rig", 1e-4, np.array([0.0, 4e-6]), **{"model.cells_per_pitch": 12})
+    """Half the friction, half the loss; and no friction between petals that slide is no friction. Contacts at nodes."""
+    nodes = {"model.cells_per_pitch": 12, "model.contacts": "nodes"}
+    _, few, lost = loop("rig", 2e-4, np.array([0.0, 4e-6]), **nodes)
+    _, _, half = loop("rig", 1e-4, np.array([0.0, 4e-6]), **nodes)
     assert lost == pytest.approx(2.0 * half, rel=2e-2)
     turning = {"surface.petal_friction": 1e-6, "petals.theory": "inextensible"}  # hardly any, contacts at nodes too
     (none,) = static.records(case("rig", **{"model.cells_per_pitch": 12, **turning}), (4e-6,))
@@ -227,9 +228,13 @@ def test_a_rotor_decays_as_harmonic_balance_says(released: float, friction: floa
 
 @pytest.mark.slow
 def test_a_step_costs_one_factorisation_on_every_grid() -> None:
-    """Eight petals moved by 10 um in steps of 5 um: as many factorisations as steps, whatever the number of cells."""
+    """Eight petals moved by 10 um in steps of 5 um: as many factorisations as steps, whatever the number of cells.
+
+    Contacts at nodes.
+    """
+    nodes = {"surface.petal_friction": 0.1, "model.contacts": "nodes"}
     for cells in (12, 48):
-        rubbing = case("paper_n8", **{"model.cells_per_pitch": cells, "surface.petal_friction": 0.1})
+        rubbing = case("paper_n8", **{"model.cells_per_pitch": cells, **nodes})
         way = legs([rubbing.replace(**{"operation.eccentricity": (0.0, -e)}) for e in (0.0, 10e-6)], False)
         start, moved = follow(way)
         assert start.answer is not None

@@ -43,6 +43,19 @@ class FrictionTold:
         return cls(answer.solution_path, answer.friction.lost * scales.force * scales.length)
 
 
+@dataclass(frozen=True)
+class ContactsOnPath:
+    """Where contacts are, and in which share of the steps of the path up to there they were points between nodes."""
+
+    contact_model: str | None = None
+    point_share: float | None = None
+
+    @classmethod
+    def of(cls, answer: Solution, point_share: float | None) -> ContactsOnPath:
+        """Those of a state of a path."""
+        return cls(answer.contact_model, point_share)
+
+
 def rubs(case: Case) -> bool:
     """Whether petals rub on each other."""
     return case.surface.petal_friction > 0.0 and wall_kind(case).can(Capability.RUBBING)

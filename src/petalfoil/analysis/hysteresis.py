@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
+from petalfoil.equilibrium.friction_handover import PathState
 from petalfoil.equilibrium.friction_history import assembled, moved
-from petalfoil.equilibrium.friction_path import FrictionResult
+from petalfoil.equilibrium.nodal_state import sampled_solution
+from petalfoil.equilibrium.point_contacts import PointContacts
+from petalfoil.equilibrium.point_friction_path import RubbingPoints
 from petalfoil.equilibrium.run_context import RunContext, running
 from petalfoil.equilibrium.solution import RefinedState, Solution
 from petalfoil.system.build import build_problem
@@ -37,6 +40,8 @@ class LoopPoint:
         The foil pack there; None if it was not found.
     lost : float
         Energy lost to friction from the start up to here [J].
+    point_share : float or None
+        Share of the steps up to here that ended with contact points [1]; None if it was not found.
     run, seconds
         The run that found it, and its wall time [s].
     """
@@ -45,6 +50,7 @@ class LoopPoint:
     leg: str
     answer: Solution | None
     lost: float
+    point_share: float | None
     run: RunContext
     seconds: float
 
@@ -63,22 +69,25 @@ def follow(way: list[tuple[str, Case]]) -> Iterator[LoopPoint]:
     friction = friction_of(way[0][1], base.layout)
     if friction is None:
         raise ValueError("without friction the way does not matter")
-    before: tuple[CoupledProblem, FrictionResult] | None = None
-    total, unit = 0.0, base.layout.scales.force * base.layout.scales.length
+    before: tuple[CoupledProblem, PathState] | None = None
+    total, unit, steps, at_points = 0.0, base.layout.scales.force * base.layout.scales.length, 0, 0
     for leg, case in way:
         problem = base.at(displacement=np.array(case.operation.eccentricity) / base.layout.scales.length)
         with running() as run:
-            slid = moved(friction, before, problem) if before else assembled(friction, problem)
-        if slid is None:
-            yield LoopPoint(case, leg, None, total * unit, run, run.seconds)
+            gone = moved(friction, before, problem) if before else assembled(friction, problem)
+        if gone is None:
+            yield LoopPoint(case, leg, None, total * unit, None, run, run.seconds)
             continue
-        total += slid.lost
-        before = problem, slid
-        yield LoopPoint(case, leg, answer_of(problem, slid), total * unit, run, run.seconds)
+        total, steps, at_points = total + gone.lost, steps + gone.steps, at_points + gone.at_points
+        before, share = (problem, gone.state), at_points / steps if steps else 0.0
+        yield LoopPoint(case, leg, answer_of(problem, gone.state), total * unit, share, run, run.seconds)
 
 
-def answer_of(problem: CoupledProblem, slid: FrictionResult) -> Solution:
+def answer_of(problem: CoupledProblem, slid: PathState) -> Solution:
     """The state as the pack's, under a film at rest."""
     still = problem.at(bearing_number=0.0)
+    if isinstance(slid, RubbingPoints):
+        equations = replace(slid.equations, film_held=None)
+        return replace(sampled_solution(PointContacts(equations, slid.residual), None), solution_path=WAY)
     state = RefinedState(problem.layout.ambient(slid.x), np.zeros(problem.layout.n_wall), slid.lam)
     return Solution(still, state, slid.residual, WAY)

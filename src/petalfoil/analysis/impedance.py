@@ -56,7 +56,7 @@ def elastic_and_sliding(case: Case, answer: Solution) -> tuple[Motion, SlidingCo
     ConvergenceError
         The pack is bottomed out: the journal cannot move without bending what has no clearance to bend.
     """
-    found = None if answer.friction is not None else near_nodes(answer)
+    found = answer.elements if answer.friction is not None else near_nodes(answer)
     if found is not None:
         return on_elements(case, found)
     friction, lines = friction_of(case, answer.problem.layout), answer.lines

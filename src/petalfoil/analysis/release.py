@@ -30,6 +30,7 @@ from petalfoil.system.friction import FrictionState, friction_of
 from petalfoil.system.heat_network import HeatNetwork
 from petalfoil.system.on_shaft import ShaftStep
 from petalfoil.system.point_equations import PointState
+from petalfoil.system.point_friction import RubbingEquations
 from petalfoil.system.shaft_layout import friction_on_shaft, joined
 from petalfoil.system.temperatures import Temperatures
 from petalfoil.system.time_step import StepProblem
@@ -302,8 +303,11 @@ def held_on_shaft(problem: ShaftStep) -> tuple[Array, Array, NDArray[np.bool_]]:
 
 def at_rest_on_path(system: RotorBearing, known: Solution) -> Instant:
     """The journal released at rest where it balances, with the friction forces that the path there has left."""
-    place, state = system.problem.displacement, (known.x, known.lam, known.active)
-    start = released(system, 0.0, state, (place, np.zeros_like(place)))
+    place, found = system.problem.displacement, known.elements
+    still = place, np.zeros_like(place)
+    if system.points is not None and found is not None and isinstance(found.equations, RubbingEquations):
+        return released_at_points(system, 0.0, found.equations.state, still, found.equations.friction_force)
+    start = released(system, 0.0, (known.x, known.lam, known.active), still)
     return start if known.friction is None else replace(start, friction=known.friction.state)
 
 

@@ -17,7 +17,7 @@ from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.displacements import CHARACTERISTIC, displaced
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.fields import coordinates, wall_fields
-from petalfoil.analysis.friction_told import ASSEMBLED, TURNED, FrictionTold
+from petalfoil.analysis.friction_told import ASSEMBLED, TURNED, ContactsOnPath, FrictionTold
 from petalfoil.analysis.hysteresis import follow, legs
 from petalfoil.analysis.records import asked_position, effort, failed_record, geometry, record_of
 from petalfoil.analysis.runs import Points
@@ -116,7 +116,8 @@ def _with_friction(
                 record = failed_record("static", point.case, reason, Leg(point.leg))
             else:
                 told = FrictionTold(ASSEMBLED if exact else TURNED, point.lost)
-                own = (Leg(point.leg), told, effort(point.seconds))
+                contacts = ContactsOnPath.of(point.answer, point.point_share)
+                own = (Leg(point.leg), told, contacts, effort(point.seconds))
                 record = static_record(point.case, point.answer, *own)
         yield record
 

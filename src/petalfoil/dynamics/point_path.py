@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,15 +11,14 @@ from numpy.typing import NDArray
 from petalfoil.dynamics.time_state import AtNodes, Instant, TimeState
 from petalfoil.equilibrium.contact_runs import at_nearest_points, from_active_nodes
 from petalfoil.equilibrium.contact_sets import merged
-from petalfoil.equilibrium.nodal_state import sampled_deflection, shared_reactions, with_motion_along
+from petalfoil.equilibrium.nodal_state import shared_reactions, wall_at_nodes
 from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.system.friction import FrictionState
-from petalfoil.system.point_equations import PointEquations, PointState
-from petalfoil.system.point_friction import PointFriction, RubbingStepEquations
+from petalfoil.system.point_equations import PointEquations, PointState, same_contacts
+from petalfoil.system.point_friction import PointFriction
 from petalfoil.system.point_layout import PointLayout
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE
-from petalfoil.walls.pack_slip import stretched_along
 
 Array = NDArray[np.float64]
 
@@ -37,12 +35,7 @@ def sampled_at_nodes(equations: PointEquations) -> AtNodes:
     """A state with contact points at the nodes."""
     found, layout = PointContacts(equations, 0.0), equations.whole.layout
     x, lam = np.zeros(layout.n), shared_reactions(found)
-    wall = with_motion_along(layout.stiffness, sampled_deflection(found))
-    if isinstance(equations, RubbingStepEquations):
-        scales = layout.scales
-        along = stretched_along(equations.whole.pack, equations.state.points, equations.friction_force * scales.force)
-        wall[-along.size :] += along.ravel() / scales.length
-    x[layout.unknowns[DEFLECTION]] = wall
+    x[layout.unknowns[DEFLECTION]] = wall_at_nodes(found)
     x[equations.problem.positive] = equations.state.P
     return AtNodes(x, lam, lam > 0.0)
 
@@ -98,17 +91,6 @@ def point_guesses(whole: PointLayout, path: list[Instant], tau: float) -> list[t
 def weighted(weights: list[float], values: list[Array]) -> Array:
     """Sum of arrays of one shape times their weights."""
     return np.asarray(np.dot(weights, values))
-
-
-def same_contacts(one: PointState, other: PointState) -> bool:
-    """Whether two states have contacts on the same curves."""
-    mine, its = one.points, other.points
-    return mine is its or (same(mine.curve, its.curve) and same(mine.inner, its.inner))
-
-
-def same(one: NDArray[Any], other: NDArray[Any]) -> bool:
-    """Whether two arrays (k,) hold the same; steps ask it of the same array as a rule."""
-    return one is other or (len(one) == len(other) and not bool((one != other).any()))
 
 
 def state_at(whole: PointLayout, instant: Instant) -> PointState:

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.dynamics.compiled_stages import compiled_equations
-from petalfoil.dynamics.point_path import same, same_contacts
 from petalfoil.dynamics.stage import Stage, left_after, told
 from petalfoil.dynamics.time_state import TimeState
 from petalfoil.equilibrium.contact_sets import revised
@@ -22,7 +21,7 @@ from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError,
 from petalfoil.equilibrium.point_contacts import refuse_closed, stepped
 from petalfoil.equilibrium.rubbing_tangent import RubbingTangent
 from petalfoil.equilibrium.run_context import current_run
-from petalfoil.system.point_equations import PointState
+from petalfoil.system.point_equations import PointState, same, same_contacts
 from petalfoil.system.point_friction import RubbingStepEquations, carried
 from petalfoil.system.point_layout import PointLayout
 from petalfoil.system.point_step import PointStepEquations

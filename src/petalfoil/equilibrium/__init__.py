@@ -14,6 +14,8 @@
 `heated.py`                the temperatures of a heat network with film, contacts and position
 `friction_path.py`         equilibria with friction between petals, one after another
 `coulomb_path.py`          the same with petals that slide along themselves
+`point_friction_path.py`   film, pack and journal with friction at contact points, a step further along a path
+`friction_handover.py`     states of a path handed over from contact points to nodes, and back
 `friction_history.py`      the pack assembled and moved so, without film
 `sliding_newton.py`        film, pack and journal with such petals in one Newton
 `sinking.py`               journal and petals in a medium that holds them back

@@ -4,22 +4,33 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from petalfoil.equilibrium.coulomb_path import slide_exactly
+from petalfoil.equilibrium.friction_handover import PathState, at_nodes, at_points
 from petalfoil.equilibrium.friction_path import FrictionResult, slide
 from petalfoil.equilibrium.pack_at_rest import at_rest, unloaded
+from petalfoil.equilibrium.point_friction_path import RubbingPoints, slide_at_points
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.contact_newton import solve_contacts
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.foil_pack import FoilPackProblem
 from petalfoil.system.friction import FrictionState
+from petalfoil.system.pack_at_points import PackAtPoints
 
-HALVINGS = 8
+HALVINGS = 12
 """Times that a step of the way may be halved before there is no answer."""
+
+AT_NODES = 4
+"""How many of these halvings are left to contacts at nodes, where contact points are lost: states that are handed over
+move by what the two grids differ by."""
+
+ROUNDING = 1e-9
+"""Part of a step by which its halves may differ from powers of two."""
 
 LONGEST_MOVE = 5e-6
 """Longest step of a journal that moves in petals that slide along themselves [m]."""
@@ -28,8 +39,33 @@ LONGEST_INSERTION = 5e-5
 """Longest step of the radius of a journal that is inserted into them [m]."""
 
 
-def assembled(friction: Friction, problem: CoupledProblem) -> FrictionResult | None:
-    """The foil pack as it is assembled; None if none was found.
+@dataclass(frozen=True)
+class PathEnd:
+    """The end of a way.
+
+    Attributes
+    ----------
+    state : FrictionResult or RubbingPoints
+        The state.
+    lost : float
+        Energy lost on the way, over the units of force and length [1].
+    steps, at_points : int
+        Steps of the way, and how many of them ended with contact points.
+    """
+
+    state: PathState
+    lost: float = 0.0
+    steps: int = 0
+    at_points: int = 0
+
+    def then(self, state: PathState) -> PathEnd:
+        """After one more step."""
+        at_points = self.at_points + isinstance(state, RubbingPoints)
+        return PathEnd(state, self.lost + state.lost, self.steps + 1, at_points)
+
+
+def assembled(friction: Friction, problem: CoupledProblem, *, points: bool = True) -> PathEnd | None:
+    """The foil pack as it is assembled, with contact `points` where it has any; None if none was found.
 
     Petals that slide along themselves lie without friction round a thinner journal, short of its radius by the radial
     clearance, which then grows to its size: friction builds up as petals are pressed outward. Others are assembled
@@ -46,15 +82,15 @@ def assembled(friction: Friction, problem: CoupledProblem) -> FrictionResult | N
     fresh = FrictionState.fresh(friction, contacts.x, contacts.lam)
     start = FrictionResult(contacts.x, contacts.lam, contacts.active, contacts.state.residual, fresh, 0.0)
     if not friction.exact:
-        return start
+        return PathEnd(start)
+    begin = (with_points(friction, pack, start) if points else None) or start
     steps = math.ceil(problem.layout.case.bearing.clearance / LONGEST_INSERTION)
-    slid = led(friction, start, lambda share: unloaded(problem, (1.0 - share) * clearance, still=True), steps)
+    way = partial(inserted, problem, clearance)
+    slid = led(friction, begin, way, steps, points=points)
     return None if slid is None else replace(slid, lost=0.0)  # energy is counted from the assembled pack on
 
 
-def moved(
-    friction: Friction, before: tuple[CoupledProblem, FrictionResult], problem: CoupledProblem
-) -> FrictionResult | None:
+def moved(friction: Friction, before: tuple[CoupledProblem, PathState], problem: CoupledProblem) -> PathEnd | None:
     """The pack after the journal has moved on to `problem`; None if it fails."""
     begin, state = before
     start, way = begin.displacement, problem.displacement - begin.displacement
@@ -63,30 +99,62 @@ def moved(
     return led(friction, state, lambda share: unloaded(problem.at(displacement=start + share * way), still=True), steps)
 
 
+def inserted(problem: CoupledProblem, clearance: float, share: float) -> FoilPackProblem:
+    """The pack round a journal that a `share` of the clearance has been added to."""
+    return unloaded(problem, (1.0 - share) * clearance, still=True)
+
+
 def led(
-    friction: Friction, state: FrictionResult, at: Callable[[float], FoilPackProblem], steps: int
-) -> FrictionResult | None:
-    """The pack led along a way in equal steps, in halves where one is too long; None if it fails."""
-    parts, lost, done = [1.0 / steps] * steps, 0.0, 0.0
-    halved = steps + HALVINGS
+    friction: Friction, state: PathState, at: Callable[[float], FoilPackProblem], steps: int, *, points: bool = True
+) -> PathEnd | None:
+    """The pack led along a way in equal steps, in halves where one is too long; None if it fails.
+
+    Where contact `points` are lost, nodes hold the contacts until points are found again.
+    """
+    parts, done, way = [1.0 / steps] * steps, 0.0, PathEnd(state)
+    shortest = (1.0 + ROUNDING) * 0.5**HALVINGS / steps
     while parts:
         there = 1.0 if len(parts) == 1 else done + parts[-1]
-        slid = slid_to(at(there), friction, state)
-        current_run().note("friction", share=there, outcome="found" if slid is not None else "halved")
-        if slid is None:
-            if len(parts) > halved:
+        slid = slid_to(at(there), friction, way.state)
+        current_run().note("friction", share=there, outcome="halved" if slid is None else "found")
+        if slid is not None:
+            parts.pop()
+            done = there
+            nodal = slid if points and isinstance(slid, FrictionResult) else None
+            way = way.then((None if nodal is None else with_points(friction, at(there), nodal)) or slid)
+        elif isinstance(way.state, RubbingPoints) and parts[-1] <= shortest * 2.0**AT_NODES:
+            current_run().note("friction", share=done, outcome="contact points lost")
+            nodal = at_nodes(friction, way.state, at(done))
+            if nodal is None:
                 return None
+            way = replace(way, state=nodal)
+        elif parts[-1] <= shortest:
+            return None
+        else:
             parts = [*parts[:-1], 0.5 * parts[-1], 0.5 * parts[-1]]
-            continue
-        parts.pop()
-        done, lost = there, lost + slid.lost
-        state = slid
-    return replace(state, lost=lost)
+    return way
 
 
-def slid_to(pack: FoilPackProblem, friction: Friction, before: FrictionResult) -> FrictionResult | None:
+def slid_to(pack: FoilPackProblem, friction: Friction, before: PathState) -> PathState | None:
     """The pack after a step: exact, or with friction that builds up over a width."""
     solver = current_run().pack_solver
+    if isinstance(before, RubbingPoints):
+        ahead = PackAtPoints.of(before.whole, pack.coupled, before.state, before.force, pack.withdrawn)
+        return slide_at_points(ahead, before.law(friction.coefficient), solver)
     if not friction.exact:
         return slide(pack, friction, before, solver)
     return slide_exactly(pack, friction, before, pack.layout.wall.contacts.line_numbers, solver)
+
+
+def with_points(friction: Friction, pack: FoilPackProblem, nodal: FrictionResult) -> RubbingPoints | None:
+    """A state with contacts at nodes with contact points that keep its friction forces.
+
+    None where there are none near it, or none are asked for.
+    """
+    whole = pack.layout.elements
+    if whole is None or not friction.exact:
+        return None
+    state, force = at_points(whole, friction, nodal)
+    ahead = PackAtPoints.of(whole, pack.coupled, state, force, pack.withdrawn)
+    found = slide_at_points(ahead, None, current_run().pack_solver)
+    return None if found is None else replace(found, lost=nodal.lost)

@@ -13,8 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.equilibrium.friction_handover import PathState, at_points, shared_friction
 from petalfoil.equilibrium.friction_history import LONGEST_MOVE, assembled
 from petalfoil.equilibrium.friction_path import FrictionResult
+from petalfoil.equilibrium.nodal_state import sampled_solution, shared_reactions, wall_at_nodes
+from petalfoil.equilibrium.point_contacts import PointContacts
+from petalfoil.equilibrium.point_friction_path import RubbingPoints, reached, slide_at_points
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.sinking import Medium, SinkingEquations
 from petalfoil.equilibrium.sliding_newton import SlidingNewton, SlidingOptions
@@ -23,8 +27,11 @@ from petalfoil.equilibrium.under_load import FORCE_TOLERANCE
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 from petalfoil.system.coupled import CoupledProblem
-from petalfoil.system.friction import energy_lost
+from petalfoil.system.friction import FrictionState, energy_lost, slips
 from petalfoil.system.loaded import load_scale
+from petalfoil.system.point_friction import RubbingEquations
+from petalfoil.system.sinking_points import SinkingPoints
+from petalfoil.system.unknowns import DEFLECTION
 
 Array = NDArray[np.float64]
 
@@ -67,33 +74,53 @@ class LoadedPath:
     load: Array
 
     def set_down(self, problem: CoupledProblem) -> Solution | None:
-        """The pack of `problem` assembled at rest round the centred journal, which then sinks; None if it fails."""
+        """The pack of `problem` assembled at rest round the centred journal, which then sinks; None if it fails.
+
+        With contact points if they lead there, else with contacts at nodes.
+        """
         still = problem.at(bearing_number=0.0, displacement=np.zeros(problem.layout.n_position))
-        pack = assembled(self.friction, still)
-        if pack is None:
-            return None
-        start = replace(pack, x=problem.layout.ambient(pack.x))
-        return self.sunk(still, start) if np.any(self.load) else self.solution(still, start)
+        for points in (True, False):
+            pack = assembled(self.friction, still, points=points)
+            start = None if pack is None else in_film(pack.state, still)
+            if start is None or (points and not isinstance(start, RubbingPoints)):
+                continue
+            found = self.sunk(still, start) if np.any(self.load) else self.solution(still, start)
+            if found is not None:
+                return found
+        return None
 
     def run_up(self, known: Solution, problem: CoupledProblem) -> Solution | None:
-        """The state at the speed of `problem` after `known`; from rest through parts of it. None if it fails."""
+        """The state at the speed of `problem` after `known`; from rest through parts of it. None if it fails.
+
+        Where contact points are lost, nodes hold the contacts until points are found again.
+        """
         begin, end = known.problem.bearing_number, problem.bearing_number
         ways = [end * part for part in FROM_REST] if begin == 0.0 < end else [end]
         found: Solution | None = known
         for number in ways:
-            found = None if found is None else self.at_speed(found, number, PARTS)
+            start = None if found is None else path_of(found)
+            if found is None or start is None:
+                return None
+            known, found = found, self.at_speed((found.problem, start), number, PARTS)
+            if found is None and isinstance(start, RubbingPoints):
+                current_run().note("friction", outcome="contact points lost")
+                found = self.at_speed((known.problem, sampled(self.friction, start)), number, PARTS)
         return found
 
-    def at_speed(self, known: Solution, bearing_number: float, parts: int) -> Solution | None:
+    def at_speed(self, known: tuple[CoupledProblem, PathState], bearing_number: float, parts: int) -> Solution | None:
         """The state at another bearing number; half the way first where that is too far. None if it fails."""
-        there = known.problem.at(bearing_number=bearing_number)
-        found = self.balanced(there, path_of(known)) or self.sunk(there, path_of(known))
+        before, start = known
+        there = before.at(bearing_number=bearing_number)
+        points = self.with_points(there, start)
+        found = None if points is None else self.balanced(there, points)
+        found = found or self.balanced(there, start) or self.sunk(there, start)
         if found is None and parts:
-            half = self.at_speed(known, 0.5 * (known.problem.bearing_number + bearing_number), parts - 1)
-            found = None if half is None else self.at_speed(half, bearing_number, parts - 1)
+            half = self.at_speed(known, 0.5 * (before.bearing_number + bearing_number), parts - 1)
+            if half is not None:
+                found = self.at_speed((half.problem, path_of(half)), bearing_number, parts - 1)
         return found
 
-    def sunk(self, problem: CoupledProblem, before: FrictionResult) -> Solution | None:
+    def sunk(self, problem: CoupledProblem, before: PathState) -> Solution | None:
         """The journal released where `problem` has it (M7), until it balances; None if it does not come to rest."""
         longest, thicker = longest_step(problem), 0
         unbalanced = load_scale(self.load)
@@ -107,31 +134,55 @@ class LoadedPath:
                 continue
             moved = float(np.linalg.norm(step[0].displacement - problem.displacement))
             problem, before = step
-            unbalanced = float(np.linalg.norm(problem.journal_force(before.x, before.lam) + self.load))
+            unbalanced = float(np.linalg.norm(force_of(problem, before) + self.load))
             found = self.balanced(problem, before) if moved < NEARLY * longest else None
             if found is not None:
                 return found
             thicker = max(thicker - 1, 0)
         return None
 
-    def balanced(self, problem: CoupledProblem, before: FrictionResult) -> Solution | None:
+    def balanced(self, problem: CoupledProblem, before: PathState) -> Solution | None:
         """The balance no farther than a step from where `problem` has the journal; None if there is none."""
         step = self.stepped(problem, before, Medium())
         if step is None:
             return None
         moved = float(np.linalg.norm(step[0].displacement - problem.displacement))
         found = self.solution(*step)
-        good = found.residual <= RESIDUAL_TOLERANCE and found.force_residual <= FORCE_TOLERANCE
+        good = found.reported_residual <= RESIDUAL_TOLERANCE and found.force_residual <= FORCE_TOLERANCE
         return found if good and moved <= longest_step(problem) else None
 
     def stepped(
-        self, problem: CoupledProblem, before: FrictionResult, medium: Medium
-    ) -> tuple[CoupledProblem, FrictionResult] | None:
+        self, problem: CoupledProblem, before: PathState, medium: Medium
+    ) -> tuple[CoupledProblem, PathState] | None:
         """The state after a step in a `medium`; None if it is not found."""
+        if isinstance(before, RubbingPoints):
+            found = self.points_after(problem, before, medium)
+        else:
+            found = self.nodes_after(problem, before, medium)
+        current_run().note("friction", outcome="not found" if found is None else "found")
+        return found
+
+    def points_after(
+        self, problem: CoupledProblem, before: RubbingPoints, medium: Medium
+    ) -> tuple[CoupledProblem, PathState] | None:
+        """The same of contact points."""
+        own, at = before.equations, (problem.displacement, before.state.w)
+        ahead = SinkingPoints(
+            own.whole, problem, own.state, None, own.friction_force, medium.journal, medium.petals, *at
+        )
+        found = slide_at_points(ahead, before.law(self.friction.coefficient), current_run().film_solver, self.load)
+        if found is None:
+            return None
+        lost = before.lost + found.lost
+        return problem.at(displacement=found.equations.problem.displacement), replace(found, lost=lost)
+
+    def nodes_after(
+        self, problem: CoupledProblem, before: FrictionResult, medium: Medium
+    ) -> tuple[CoupledProblem, PathState] | None:
+        """The same of contacts at nodes."""
         equations = SinkingEquations(problem, self.load, before.x, medium)
         newton = SlidingNewton(equations, self.friction, before.friction, BALANCE)
         found = newton.solved((before.x, problem.displacement, before.active, before.lam, before.friction.force))
-        current_run().note("friction", outcome="not found" if found is None else "found")
         if found is None:
             return None
         state, after = newton.state(*found)
@@ -139,11 +190,30 @@ class LoadedPath:
         reached = FrictionResult(state.x, state.lam, state.active, state.residual, after, lost)
         return problem.at(displacement=state.b), reached
 
-    def solution(self, problem: CoupledProblem, reached: FrictionResult) -> Solution:
+    def with_points(self, problem: CoupledProblem, nodal: PathState) -> RubbingPoints | None:
+        """A state with contacts at nodes with contact points and its friction forces, near it under the load.
+
+        None where there are none, or none are looked for.
+        """
+        whole = problem.layout.elements
+        if whole is None or isinstance(nodal, RubbingPoints):
+            return None
+        state, force = at_points(whole, self.friction, nodal)
+        ahead = RubbingEquations(whole, problem, replace(state, P=nodal.x[problem.positive]), friction_force=force)
+        found = slide_at_points(ahead, None, current_run().film_solver, self.load)
+        return None if found is None else replace(found, lost=nodal.lost)
+
+    def solution(self, problem: CoupledProblem, reached: PathState) -> Solution:
         """A state as a solution that knows its path."""
-        state = RefinedState(reached.x, np.zeros(problem.layout.n_wall), reached.lam)
+        if isinstance(reached, RubbingPoints):
+            found = PointContacts(plain(reached.equations), reached.residual)
+            known = sampled_solution(found, self.load)
+            state = FrictionState.fresh(self.friction, known.x, known.lam)
+            path = FrictionPath(state, known.lam > 0.0, reached.lost)
+            return replace(known, solution_path=PATH, friction=path)
+        nodal = RefinedState(reached.x, np.zeros(problem.layout.n_wall), reached.lam)
         path = FrictionPath(reached.friction, reached.active, reached.lost)
-        return Solution(problem, state, reached.residual, PATH, load=self.load, friction=path)
+        return Solution(problem, nodal, reached.residual, PATH, load=self.load, friction=path)
 
 
 def longest_step(problem: CoupledProblem) -> float:
@@ -151,9 +221,45 @@ def longest_step(problem: CoupledProblem) -> float:
     return LONGEST_MOVE / problem.layout.scales.length
 
 
-def path_of(known: Solution) -> FrictionResult:
+def path_of(known: Solution) -> PathState:
     """A known state, to go on from."""
-    path = known.friction
+    path, found = known.friction, known.elements
     if path is None:
         raise ValueError("a solution without friction forces")
+    if found is not None and isinstance(found.equations, RubbingEquations):
+        return replace(reached(found.equations, None), lost=path.lost)
     return FrictionResult(known.x, known.lam, path.active, known.residual, path.state, path.lost)
+
+
+def plain(equations: RubbingEquations) -> RubbingEquations:
+    """A state as it is under its film, out of any medium."""
+    return RubbingEquations(
+        equations.whole, equations.problem, equations.state, friction_force=equations.friction_force
+    )
+
+
+def force_of(problem: CoupledProblem, reached: PathState) -> Array:
+    """Force of film and contacts on the journal over the unit of force, (d,) [1]."""
+    if isinstance(reached, RubbingPoints):
+        return reached.equations.journal_force
+    return problem.journal_force(reached.x, reached.lam)
+
+
+def in_film(state: PathState, problem: CoupledProblem) -> PathState:
+    """A pack that was moved without film under one at ambient pressure, nothing lost so far."""
+    whole = problem.layout.elements
+    if isinstance(state, RubbingPoints) and whole is not None:
+        return replace(state, equations=plain(replace(state.equations, whole=whole)), lost=0.0)
+    if isinstance(state, RubbingPoints):
+        raise TypeError("contact points without elements")
+    return replace(state, x=problem.layout.ambient(state.x), lost=0.0)
+
+
+def sampled(friction: Friction, known: RubbingPoints) -> FrictionResult:
+    """A state with contact points at the nodes, where petals and friction forces are; not in equilibrium there."""
+    found, problem = PointContacts(known.equations, known.residual), known.equations.problem
+    x, lam = np.zeros(problem.layout.n), shared_reactions(found)
+    x[problem.layout.unknowns[DEFLECTION]], x[problem.positive] = wall_at_nodes(found), known.state.P
+    limit = friction.coefficient * friction.normal(lam)
+    kept = FrictionState(slips(friction, x), shared_friction(friction, known), limit)
+    return FrictionResult(x, lam, lam > 0.0, known.residual, kept, known.lost)

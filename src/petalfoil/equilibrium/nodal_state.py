@@ -22,9 +22,11 @@ from petalfoil.physics.petal_elements import clamped_beam, clamped_beam_bend
 from petalfoil.sparsity import add_up
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.film_rows import FilmState
+from petalfoil.system.point_friction import RubbingEquations
 from petalfoil.system.unknowns import DEFLECTION
 from petalfoil.walls import PlacedContacts
 from petalfoil.walls.element_pack import ElementLoads
+from petalfoil.walls.pack_slip import stretched_along
 
 Array = NDArray[np.float64]
 
@@ -106,8 +108,7 @@ def sampled_solution(found: ElementEquilibrium, load: Array | None) -> Solution:
     """
     problem = found.equations.problem
     x = np.zeros(problem.layout.n)
-    wall = with_motion_along(problem.layout.stiffness, sampled_deflection(found))
-    x[problem.layout.unknowns[DEFLECTION]], x[problem.positive] = wall, found.equations.pressures
+    x[problem.layout.unknowns[DEFLECTION]], x[problem.positive] = wall_at_nodes(found), found.equations.pressures
     nodal = RefinedState(x, np.zeros(problem.layout.n_wall), shared_reactions(found))
     return Solution(
         problem, nodal, found.residual, FOLLOWED, load=load, elements=found, elements_sought=True, sampled=found
@@ -131,6 +132,17 @@ def with_motion_along(stiffness: sp.csr_array, deflection: Array) -> Array:
         return deflection
     own, by_deflection = stiffness[n:, n:], stiffness[n:, :n]
     return np.concatenate([deflection, spla.spsolve(sp.csc_array(own), -(by_deflection @ deflection))])
+
+
+def wall_at_nodes(found: ElementEquilibrium) -> Array:
+    """All unknowns of the petals (n_wall,) at the nodes [1]: with what friction at contact points stretches them by."""
+    equations, layout = found.equations, found.equations.problem.layout
+    wall = with_motion_along(layout.stiffness, sampled_deflection(found))
+    if isinstance(equations, RubbingEquations):
+        scales = layout.scales
+        along = stretched_along(found.pack, found.points, equations.friction_force * scales.force)
+        wall[-along.size :] += along.ravel() / scales.length
+    return wall
 
 
 def shared_reactions(found: ElementEquilibrium) -> Array:

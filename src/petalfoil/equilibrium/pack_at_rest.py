@@ -78,7 +78,11 @@ def central_point(problem: CoupledProblem, barrier: float, start: PrimalDualPoin
 
 def at_rest(problem: CoupledProblem, withdrawn: float = 0.0, *, still: bool = False) -> ActiveContacts | None:
     """Deflections and active contacts of the assembled pack; None if not found."""
-    pack = unloaded(problem, withdrawn, still=still)
+    return resting(unloaded(problem, withdrawn, still=still))
+
+
+def resting(pack: FoilPackProblem) -> ActiveContacts | None:
+    """Deflections and active contacts of a pack under its load; None if not found."""
     start = free_start(pack)
     for goal in REST_GOALS:
         watch = current_run().watch("pack", settled(goal))

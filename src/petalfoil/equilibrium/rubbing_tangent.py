@@ -17,7 +17,7 @@ from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError,
 from petalfoil.solvers.coulomb import ContactForces, ContactSpace, KnownForces, States, contact_forces
 from petalfoil.solvers.sparse_lu import LinearSolver
 from petalfoil.system.friction import slips_forward
-from petalfoil.system.point_friction import PointFriction, RubbingStepEquations
+from petalfoil.system.point_friction import PointFriction, RubbingEquations
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -39,8 +39,8 @@ class RubbingTangent(ElementTangent):
     moves: Array
 
     @classmethod
-    def about(cls, equations: RubbingStepEquations, load: Array, solver: LinearSolver) -> Self:
-        """Factorise at a state.
+    def about(cls, equations: RubbingEquations, load: Array | None, solver: LinearSolver) -> Self:
+        """Factorise at a state; without a load the journal stays where it is.
 
         Raises
         ------
@@ -51,15 +51,17 @@ class RubbingTangent(ElementTangent):
         forces = np.zeros((equations.n, len(equations.friction_force)))
         forces[: equations.whole.n_wall] = equations.rubbed.T.toarray()
         own = plain.factor.solve(-forces)
+        parts = {each.name: getattr(plain, each.name) for each in fields(ElementTangent)}
+        if load is None:
+            return cls(**parts, changes=own, moves=np.zeros((len(equations.problem.displacement), own.shape[1])))
         try:
             moves = np.linalg.solve(plain.gradient, -plain.rows @ own)
         except np.linalg.LinAlgError:
             raise NoPointsError("the load does not determine the journal's position") from None
-        parts = {each.name: getattr(plain, each.name) for each in fields(ElementTangent)}
         return cls(**parts, changes=own + plain.units @ moves, moves=moves)
 
     def step(
-        self, equations: RubbingStepEquations, friction: PointFriction, load: Array
+        self, equations: RubbingEquations, friction: PointFriction, load: Array | None
     ) -> tuple[tuple[Array, Array], Array]:
         """Changes of unknowns and position at a state, and the friction forces (j,) that go with them.
 
@@ -77,7 +79,7 @@ class RubbingTangent(ElementTangent):
         return (change + self.changes @ more, move + self.moves @ more), force
 
     def settled(
-        self, equations: RubbingStepEquations, friction: PointFriction, change: Array, rubs: Index
+        self, equations: RubbingEquations, friction: PointFriction, change: Array, rubs: Index
     ) -> ContactForces:
         """Friction forces of the contacts `rubs` (k,) after a `change` (n,) that their forces add to.
 

@@ -321,7 +321,7 @@ SCALARS: dict[str, Variable] = {
     "friction_path": _run("", "path that friction forces between petals are those of", "friction_path", DataType.STR),
     "bottomed_out": _run("", "journal, petals and bushing touch at one angle", "bottomed_out", DataType.BOOL),
     "contact_model": _run("", "where contacts are", "contact_model", DataType.STR),
-    "point_share": _run("1", "share of the steps of a motion with contact points between nodes", "share_pts"),
+    "point_share": _run("1", "share of the steps of a motion or a path with contact points between nodes", "share_pts"),
     "known_equilibria": _run("1", "equilibria known at this position", "N_eq", DataType.INT),
     "jump": _run("", "this point left the branch of the point before", "jump", DataType.BOOL),
     "journal_radius": _geometry("m", "radius of the journal", "R_j"),

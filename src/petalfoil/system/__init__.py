@@ -19,6 +19,8 @@
 `compiled_points.py`      these loops
 `point_tables.py`         what they read and return, as plain arrays
 `point_friction.py`       friction between petals at contact points that travel (M13)
+`pack_at_points.py`       the pack without film with it, round a journal of its size or thinner
+`sinking_points.py`       film, pack and journal with it in a medium that holds them back
 `shaft_layout.py`         what stays the same of two bearings on one shaft
 `on_shaft.py`             both side by side in a step in time
 `temperatures.py`         temperatures of film, shaft, pack and bushing

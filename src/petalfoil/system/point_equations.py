@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -39,6 +40,17 @@ class PointState:
     w: Array
     P: Array
     points: ContactPoints
+
+
+def same_contacts(one: PointState, other: PointState) -> bool:
+    """Whether two states have contacts on the same curves."""
+    mine, its = one.points, other.points
+    return mine is its or (same(mine.curve, its.curve) and same(mine.inner, its.inner))
+
+
+def same(one: NDArray[Any], other: NDArray[Any]) -> bool:
+    """Whether two arrays (k,) hold the same; steps ask it of the same array as a rule."""
+    return one is other or (len(one) == len(other) and not bool((one != other).any()))
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Friction between petals at contact points within a step in time, whose places travel (M13).
+"""Friction between petals at contact points within a step, whose places travel (M13): in time or along a path.
 
 Friction forces `T` act on both faces where they touch now. A contact slips by what the material of its two faces has
 moved since the step began, half way between the places of the contact then and now. With the petals `w`, `w_0` and the
@@ -20,8 +20,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.physics.gap_curves import ContactPoints
-from petalfoil.system.friction import FrictionState
-from petalfoil.system.point_equations import PointState
+from petalfoil.system.friction import FrictionState, slips_forward
+from petalfoil.system.point_equations import PointEquations, PointState
 from petalfoil.system.point_layout import PointLayout
 from petalfoil.system.point_step import PointStepEquations
 from petalfoil.walls.pack_slip import slip_by_place, slip_compliance, slip_compliance_by_place, slip_rows
@@ -89,6 +89,17 @@ class PointFriction:
         """Slip since the step began, force and its limit on all contacts."""
         return FrictionState(self.slip(state, force).value, force, self.limit(state.points))
 
+    def broken(self, after: FrictionState) -> float:
+        """How far slips and friction forces are from (M6): slip that should not be, force over the limit [1]."""
+        over = np.abs(after.force) - after.limit
+        slides = slips_forward(after.force, after.limit)
+        wrong = np.where(slides == 0, np.abs(after.slip), np.maximum(-slides * after.slip, 0.0))
+        touching, most = after.limit > 0.0, np.max(after.limit, initial=0.0)
+        return max(
+            float(np.max(wrong[touching], initial=0.0)),
+            float(np.max(over, initial=0.0)) / max(float(most), np.finfo(float).tiny),
+        )
+
     def lost(self, after: FrictionState, points: ContactPoints) -> float:
         """Energy lost in a step that leads to a state with contacts `points`: mean limits times slips [1]."""
         then, last = self.limit(self.begin.points), matched(points, self.begin.points)
@@ -138,8 +149,8 @@ def stretching_energy(whole: PointLayout, points: ContactPoints, force: Array) -
 
 
 @dataclass(frozen=True)
-class RubbingStepEquations(PointStepEquations):
-    """The equations of a stage with friction forces on the petals.
+class RubbingEquations(PointEquations):
+    """The equations with friction forces on the petals, which the law of a step holds them to.
 
     Attributes
     ----------
@@ -169,3 +180,15 @@ class RubbingStepEquations(PointStepEquations):
         first = self.n - len(points.position)
         block = sp.coo_array((more.data, (more.row, first + more.col)), shape=(self.n, self.n))
         return sp.csc_array(super().steady + block)
+
+    @property
+    def wall_forces(self) -> tuple[Array, Array, Array]:
+        """Elastic forces, loads with `-B^T T` among them, and magnitudes of these, (n_wall,)."""
+        elastic, loads, size = super().wall_forces
+        pulls = self.rubbed.T @ self.friction_force
+        return elastic, loads - pulls, size + abs(self.rubbed).T @ np.abs(self.friction_force)
+
+
+@dataclass(frozen=True)
+class RubbingStepEquations(RubbingEquations, PointStepEquations):
+    """The same in a stage of a step in time."""
