@@ -89,6 +89,34 @@ class HalfArch:
         both[1, 1] += stretch
         return both[:, 0], both[:, 1], both[:, 2]
 
+    def loss(self, mu: float, gap: float, ends: tuple[float, float]) -> float:
+        """Energy lost in a closed cycle of pressure between `ends` by the leaf on its tip, a `gap` before the wall.
+
+        It slips along `T = +-mu N`, and sticks in between.
+        """
+        by_V, by_H, by_q = self.tip_compliance  # (W, -V) of the tip by -N, -T, q
+        give = np.column_stack([by_V, by_H])
+
+        def forces(q: float, slip: float | None, sign: float) -> tuple[float, float, float]:
+            """Reaction, friction and slip at a pressure, sticking at a slip or slipping with a sign."""
+            if slip is None:
+                N = (by_q[0] * q - gap) / (give[0, 0] + sign * mu * give[0, 1])
+                T = sign * mu * N
+            else:
+                N, T = np.linalg.solve(give, by_q * q - np.array([gap, slip]))
+            return float(N), float(T), float(by_q[1] * q - give[1] @ [N, T])
+
+        def leaves(slip: float, sign: float, a: float, b: float) -> float:
+            """Pressure at which the stuck tip begins to slip with `sign`: where `T = sign mu N`, linear in pressure."""
+            miss = [T - sign * mu * N for N, T, _ in (forces(q, slip, 0.0) for q in (a, b))]
+            return float(a + (b - a) * miss[0] / (miss[0] - miss[1]))
+
+        low, high = ends
+        top, bottom = forces(high, None, 1.0), forces(low, None, -1.0)
+        back = forces(leaves(top[2], -1.0, high, low), None, -1.0)
+        forth = forces(leaves(bottom[2], 1.0, low, high), None, 1.0)
+        return sum(0.5 * abs(a[1] + b[1]) * abs(a[2] - b[2]) for a, b in ((back, bottom), (forth, top)))
+
     def under(self, V: float, H: float, q: float) -> Array:
         """(out, up, area swept, turn of the foot) under forces of the foot and a pressure on the arch."""
         return np.asarray(self.compliance @ np.array([V, H, q]))

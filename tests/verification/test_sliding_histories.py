@@ -38,6 +38,8 @@ ARC, SLENDER, GAP = 0.87, 230.0, 0.005
 """Angle and slenderness of a clamped leaf of radius 1, and the gap of its tip to a wall across it, in `q R^4 / D`."""
 LOW, HIGH = 1.0, 2.0
 """Pressures of the cycle."""
+LEAF = HalfArch(ARC, SLENDER, 64)
+"""The leaf in Hermite elements."""
 
 
 def leaf(cells: int, mu: float) -> tuple[ElasticProblem, Array, Friction]:
@@ -68,32 +70,6 @@ def led(problem: ElasticProblem, unit: Array, friction: Friction, path: Array) -
     return states
 
 
-def exact_loss(mu: float) -> float:
-    """Energy lost in a closed cycle by the leaf in Hermite elements: it slips along `T = +-mu N`, sticks in between."""
-    by_V, by_H, by_q = HalfArch(ARC, SLENDER, 64).tip_compliance  # (W, -V) of the tip by -N, -T, q
-    give = np.column_stack([by_V, by_H])
-
-    def forces(q: float, slip: float | None, sign: float) -> tuple[float, float, float]:
-        """Reaction, friction and slip at a pressure, sticking at a slip or slipping with a sign."""
-        if slip is None:
-            N = (by_q[0] * q - GAP) / (give[0, 0] + sign * mu * give[0, 1])
-            T = sign * mu * N
-        else:
-            N, T = np.linalg.solve(give, by_q * q - np.array([GAP, slip]))
-        return float(N), float(T), float(by_q[1] * q - give[1] @ [N, T])
-
-    def leaves(slip: float, sign: float, ends: tuple[float, float]) -> float:
-        """Pressure at which the stuck tip begins to slip with `sign`: where `T = sign mu N`, linear in the pressure."""
-        a, b = (forces(q, slip, 0.0) for q in ends)
-        miss = [T - sign * mu * N for N, T, _ in (a, b)]
-        return float(ends[0] + (ends[1] - ends[0]) * miss[0] / (miss[0] - miss[1]))
-
-    top, bottom = forces(HIGH, None, 1.0), forces(LOW, None, -1.0)
-    back = forces(leaves(top[2], -1.0, (HIGH, LOW)), None, -1.0)
-    forth = forces(leaves(bottom[2], 1.0, (LOW, HIGH)), None, 1.0)
-    return sum(0.5 * abs(a[1] + b[1]) * abs(a[2] - b[2]) for a, b in ((back, bottom), (forth, top)))
-
-
 @pytest.mark.slow
 def test_loop_of_an_arc_leaf_on_its_tip() -> None:
     """Within 0.2 % of slip, stick, slip back, stick in closed form, on 64 cells."""
@@ -104,7 +80,7 @@ def test_loop_of_an_arc_leaf_on_its_tip() -> None:
         problem, unit, friction = leaf(cells, mu)
         states = led(problem, unit, friction, np.concatenate([[LOW], path]))
         lost = sum(state.lost for state in states[-48:]) * UNIT * (ARC / cells)
-        errors.append(lost / exact_loss(mu) - 1.0)
+        errors.append(lost / LEAF.loss(mu, GAP, (LOW, HIGH)) - 1.0)
     assert abs(errors[-1]) < 2e-3
     assert abs(errors[-1]) < 0.5 * abs(errors[0])
 
@@ -124,7 +100,7 @@ def test_an_arc_leaf_whose_tip_sticks_loses_nothing() -> None:
     """Friction past which the tip holds: an arch, whose slip stays."""
     problem, unit, friction = leaf(32, 20.0)
     states = led(problem, unit, friction, np.array([LOW, 1.3, 1.6, HIGH, 1.5, LOW]))
-    assert sum(state.lost for state in states) < 1e-9 * exact_loss(0.2)
+    assert sum(state.lost for state in states) < 1e-9 * LEAF.loss(0.2, GAP, (LOW, HIGH))
     assert_allclose([state.friction.slip[0] for state in states], states[0].friction.slip[0], atol=1e-9)
 
 
