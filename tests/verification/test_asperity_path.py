@@ -9,8 +9,9 @@ import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
+from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.solve import solve
-from petalfoil.equilibrium.asperity_contacts import with_asperities
+from petalfoil.equilibrium.asperity_contacts import AsperityContacts, with_asperities
 from petalfoil.equilibrium.asperity_path import free_petals, from_free_petals, moved, petals_alone
 from petalfoil.equilibrium.element_contacts import start_at
 from petalfoil.equilibrium.element_tangent import ElementTangent
@@ -75,3 +76,19 @@ def test_stiff_packs_are_nearer_to_fine_grids_than_contacts_at_nodes() -> None:
     force = float(np.hypot(fine["force_x"], fine["force_y"]))
     assert apart[0] >= 0.5 * force
     assert apart[1] <= 0.05 * force
+
+
+@pytest.mark.slow
+def test_other_equilibria_over_asperities_are_told() -> None:
+    """Pack 88, led away by 0.3 of its displacement and back, has 8.7 N for 10.1; the answer tells of others."""
+    case = random_pack(88)
+    assert float(solve(case)["known_equilibria"]) >= 2.0
+    with running():
+        answer = operating_point(case, None).answer
+        found = answer.elements
+        assert isinstance(found, AsperityContacts)
+        away = found.at(answer.problem.at(displacement=1.3 * answer.problem.displacement))
+        other = away.at(answer.problem)
+    assert other.residual <= 1e-8
+    force = [float(np.linalg.norm(one.equations.force)) for one in (found, other)]
+    assert abs(force[1] - force[0]) > 0.1 * force[0]

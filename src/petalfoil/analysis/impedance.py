@@ -93,7 +93,8 @@ def on_elements(case: Case, found: ElementEquilibrium) -> tuple[Motion, SlidingC
     if friction is None:
         return ElementMotion(found), None
     whole = PointLayout(found.pack, layout)
-    sliding = SlidingContacts.at(friction_at_points(friction, whole, found.points), found.points.reaction)
+    points = found.friction_points
+    sliding = SlidingContacts.at(friction_at_points(friction, whole, points), points.reaction)
     return ElementMotion(found, sliding.friction), sliding
 
 

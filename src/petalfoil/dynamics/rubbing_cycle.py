@@ -14,6 +14,7 @@ from petalfoil.dynamics.friction_harmonics import FrictionHarmonics, Slips
 from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import Motion
+from petalfoil.errors import ConvergenceError
 from petalfoil.system.friction import against_slip, slips
 
 Complex = NDArray[np.complex128]
@@ -173,8 +174,6 @@ class RubbingCycle:
     def with_harmonics(self, free: Complex, harmonics: int, last: Slips | None = None) -> Slips:
         """Slips of so many harmonics (E22) from half as many, and so on from one; or from `last`, of so many or less.
 
-        Of contacts that slip in a plane those of one harmonic are (E11), of which the first `FEWEST` follow.
-
         Samples begin where the slips without friction are largest together, so that turning their phase turns that of
         friction and changes nothing else.
 
@@ -187,16 +186,32 @@ class RubbingCycle:
         directions, limit = sliding.friction.directions, sliding.limit / self.cycle.amplitude
         law = FrictionHarmonics(sliding.friction.stiffness, limit, self.compliances, directions)
         phase = complex(np.exp(0.5j * np.angle(complex(np.sum(free**2)))))
-        if last is None and directions == 1:
-            found = law.settled(free / phase, 1)
-        elif last is None:
-            found = law.settled(free / phase, min(FEWEST, harmonics), law.joined(*self.one(free / phase)))
+        if last is None:
+            found = self.begun(law, free / phase, harmonics)
         else:
             found = law.solved(last.turned(1.0 / phase).joint, free / phase, 0)
         while len(found.joint) < harmonics:
             found = law.settled(free / phase, 2 * len(found.joint), found)
         current_run().note("harmonic balance", steps=found.steps, contacts=len(free), harmonics=harmonics)
         return found.turned(phase)
+
+    def begun(self, law: FrictionHarmonics, free: Complex, harmonics: int) -> Slips:
+        """The first slips, of one harmonic along lines, by a Newton's method that begins where contacts stick.
+
+        Of contacts that slip in a plane, and where that method is lost, those of one harmonic are (E11), of which the
+        first `FEWEST` follow.
+
+        Raises
+        ------
+        ConvergenceError
+            Slips and friction did not agree.
+        """
+        if law.directions == 1:
+            try:
+                return law.settled(free, 1)
+            except ConvergenceError as failure:
+                current_run().note("harmonic balance", outcome=f"slips of (E11) lead on: {failure}")
+        return law.settled(free, min(FEWEST, harmonics), law.joined(*self.one(free)))
 
 
 @dataclass

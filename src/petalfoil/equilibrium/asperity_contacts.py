@@ -85,6 +85,11 @@ class AsperityContacts:
         return self.equations.points
 
     @property
+    def friction_points(self) -> ContactPoints:
+        """Points at which friction between petals acts."""
+        return self.equations.friction_points
+
+    @property
     def contact_model(self) -> str:
         """Where its contacts are, for people."""
         return AT_ASPERITIES

@@ -111,6 +111,11 @@ class PointContacts:
         return self.equations.state.points
 
     @property
+    def friction_points(self) -> ContactPoints:
+        """Points at which friction between petals acts: its contacts."""
+        return self.points
+
+    @property
     def contact_model(self) -> str:
         """Where its contacts are, for people."""
         return AT_POINTS

@@ -125,6 +125,10 @@ class ElementEquilibrium(Protocol):
         """Its contacts, as points."""
 
     @property
+    def friction_points(self) -> ContactPoints:
+        """Points at which friction between petals acts."""
+
+    @property
     def residual(self) -> float:
         """Largest scaled residual."""
 

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from petalfoil.mesh import hermite
 from petalfoil.physics.gap_curves import ContactPoints, Facing, GapCurves
+from petalfoil.physics.lumped_pressure import two_points
 from petalfoil.physics.petal_elements import clamped_beam
 from petalfoil.sparsity import add_up
 
@@ -157,14 +158,30 @@ class ContactSamples:
 
     def as_points(self, pressure: Array) -> ContactPoints:
         """One point in each element that carries load, at the centroid of its reactions."""
-        reaction = (self.weight * pressure).sum(axis=1)
-        loaded = np.flatnonzero(reaction > NOTHING * max(float(reaction.sum()), 1.0))
-        curve = self.curve[loaded]
-        place = (pressure[loaded] @ self.place) / pressure[loaded].sum(axis=1)
-        position = self.element[loaded] - self.curves.first[curve] + place
+        loaded, reaction = self._loaded(pressure)
+        total = reaction.sum(axis=1)
+        return self._in_order(loaded, (reaction @ self.place) / total, total)
+
+    def friction_points(self, pressure: Array) -> ContactPoints:
+        """Points at which friction acts: two in each element whose pressure is wide, else one (K18)."""
+        loaded, reaction = self._loaded(pressure)
+        element, place, part = two_points(self.place, reaction)
+        return self._in_order(loaded[element], place, part)
+
+    def _loaded(self, pressure: Array) -> tuple[Index, Array]:
+        """Elements that carry load, (L,), and the reactions of their samples, (L, S)."""
+        reaction = self.weight * pressure
+        total = reaction.sum(axis=1)
+        loaded = np.flatnonzero(total > NOTHING * max(float(total.sum()), 1.0))
+        return loaded, reaction[loaded]
+
+    def _in_order(self, element: Index, place: Array, reaction: Array) -> ContactPoints:
+        """Contacts at places in sampled elements, (k,) each, in their order along the curves."""
+        curve = self.curve[element]
+        position = self.element[element] - self.curves.first[curve] + place
         order = np.lexsort((position, curve))
-        none = np.zeros(len(loaded), dtype=np.intp)
-        return ContactPoints(curve[order], position[order], none, reaction[loaded][order])
+        none = np.zeros(len(order), dtype=np.intp)
+        return ContactPoints(curve[order], position[order], none, reaction[order])
 
 
 @dataclass(frozen=True)

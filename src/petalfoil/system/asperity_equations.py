@@ -212,3 +212,8 @@ class AsperityEquations:
     def points(self) -> ContactPoints:
         """One point for the contact in each element."""
         return self.samples.as_points(self.pressure)
+
+    @property
+    def friction_points(self) -> ContactPoints:
+        """Points at which friction between petals acts."""
+        return self.samples.friction_points(self.pressure)
