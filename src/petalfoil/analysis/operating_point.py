@@ -95,7 +95,12 @@ def position_point(case: Case, problem: CoupledProblem | None = None) -> Operati
     ConvergenceError
         None was found.
     """
-    return from_coarse_grid(case, None) or with_reported(case, at_position(case, problem))
+    if begins_with_lines(case) and case.operation.moment is None:
+        problem = problem or build_problem(case)
+        found = from_coarse_grid(problem, None)
+        if found is not None:
+            return found
+    return with_reported(case, at_position(case, problem))
 
 
 def loaded_point(case: Case, load: Vector) -> OperatingPoint:
@@ -106,18 +111,16 @@ def loaded_point(case: Case, load: Vector) -> OperatingPoint:
     ConvergenceError
         No position was found.
     """
-    return from_coarse_grid(case, load) or with_reported(case, OperatingPoint(*under_load(case, load)))
+    found = from_coarse_grid(build_problem(case), load) if begins_with_lines(case) else None
+    return found or with_reported(case, OperatingPoint(*under_load(case, load)))
 
 
-def from_coarse_grid(case: Case, load: Vector | None) -> OperatingPoint | None:
+def from_coarse_grid(problem: CoupledProblem, load: Vector | None) -> OperatingPoint | None:
     """The equilibrium with contact lines that one on a coarser grid leads to, at its position or under a load [N].
 
     None where that leads nowhere, or where there may be others: `at_position` and `under_load` then tell which it is.
     """
-    unplaced = load is None and case.operation.moment is not None
-    if unplaced or not begins_with_lines(case):
-        return None
-    problem = build_problem(case)
+    case = problem.layout.case
     found = by_coarse_grid(problem, None if load is None else load_of(case, load, problem.layout))
     if found is None:
         return None
