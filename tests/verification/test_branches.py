@@ -11,7 +11,7 @@ import scipy.linalg as la
 from numpy.testing import assert_allclose
 
 from petalfoil.analysis.branch_choice import coarse
-from petalfoil.analysis.curve import curve
+from petalfoil.analysis.curve import curve, point_after
 from petalfoil.analysis.solve import solve
 from petalfoil.case import Case
 from petalfoil.dynamics.film_stability import leading_eigenvalue
@@ -29,6 +29,7 @@ from petalfoil.equilibrium.branches import (
 )
 from petalfoil.equilibrium.cold_start import BARRIERS, attempt, solve_cold
 from petalfoil.equilibrium.continuation import settle
+from petalfoil.equilibrium.run_context import running
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
 from petalfoil.solvers.constraints import constrain
@@ -83,6 +84,24 @@ def test_forty_leading_eigenvalues() -> None:
         assert_allclose(found.real, exact.real, rtol=0.0, atol=1e-4 * abs(exact), err_msg=str(number))
         beside = leading_eigenvalue(answer, (1.0 + 0.1 * (-1.0) ** number) * exact.real)
         assert_allclose(beside.real, exact.real, rtol=0.0, atol=1e-4 * abs(exact), err_msg=str(number))
+
+
+@pytest.mark.slow
+def test_a_point_of_a_curve_in_space_asks_for_half_of_the_solves_for_its_growth_rate() -> None:
+    """Eight petals, whose leading eigenvalues lie within a few per cent: seen from near that of the point before."""
+    grid = {"model.cells_per_pitch": 16, "model.axial_cells": 8, "model.axial_density": "uniform"}
+    first, second = (
+        case("paper_n8_spatial", **(grid | {"operation.eccentricity": (0.0, -down)})) for down in (80e-6, 100e-6)
+    )
+    before = point_after(first, build_problem(first), None)
+    solves, rates = [], []
+    for growth in (0.0, before.branch.growth_rate or 0.0):
+        with running() as run:
+            found = point_after(second, build_problem(second), before.answer, growth=growth)
+        solves.append(run.probes.solves)
+        rates.append(found.branch.growth_rate)
+    assert_allclose(*rates, rtol=1e-5)
+    assert solves[1] <= 0.6 * solves[0]
 
 
 def test_a_stable_equilibrium_is_called_so() -> None:
