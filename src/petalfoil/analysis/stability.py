@@ -167,6 +167,8 @@ def stability(  # noqa: PLR0913 - the options of the verb
     --speeds or --loads as a table over load and speed. Petals with friction
     stick, as in the smallest motions; with an --amplitude they rub: modes
     pass that amplitude, and a rotor of the critical mass whirls on with it.
+    In 3-D their slips are taken for sines, as several harmonics of a mode cost
+    eight times as much; `coefficients` with an amplitude has them.
     Where the row "contacts" says "at nodes" and petals lie on each other
     along a stretch, frequencies are accurate to several per cent, a small
     damping to 50 %. A case without rotor.span is one bearing, and masses are
