@@ -21,8 +21,8 @@ equilibrium: in most packs it is below 1 %, in stiff clamped ones some per cent.
 
 FEWEST_CELLS = 7.0
 """Cells along which neighbours overlap from which contacts near a root are points (`line_signs.freed_near_ends`). The
-rig's damping at 1 um is 41 % too large on 16 cells per pitch (4), 20 % too small on 24 (6), 1 and 10 % too large on 32
-(8)."""
+rig's damping at 1 um is 18 and 14 % too large on 16 cells per pitch (4), 20 and 12 % too small on 24 (6), 0 and 6 % too
+large on 32 (8)."""
 
 MAX_KNUDSEN = 0.1
 """Mean free path over film thickness above which first-order slip no longer holds (Burgdorfer 1959)."""
