@@ -221,8 +221,10 @@ def test_a_state_goes_to_nodes_and_comes_back() -> None:
 
 
 @pytest.mark.slow
-def test_points_that_are_lost_come_back_and_it_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No points are found in the fourth step, however short: nodes carry the friction over it."""
+@pytest.mark.parametrize("halved", [0, friction_history.MOST_HALVED])
+def test_points_that_are_lost_come_back_and_it_is_told(monkeypatch: pytest.MonkeyPatch, halved: int) -> None:
+    """No points are found in the fourth step, however short: nodes carry the friction over it, or to its way's end."""
+    monkeypatch.setattr(friction_history, "MOST_HALVED", halved)
     calls: list[float] = []
 
     def sometimes(ahead: PackAtPoints, *others: object) -> RubbingPoints | None:

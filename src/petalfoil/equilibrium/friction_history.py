@@ -29,6 +29,10 @@ AT_NODES = 4
 """How many of these halvings are left to contacts at nodes, where contact points are lost: states that are handed over
 move by what the two grids differ by."""
 
+MOST_HALVED = 60
+"""Steps of a way that may be halved before nodes hold the contacts to its end: stiff packs would be led there in
+thousands of steps of the shortest length."""
+
 ROUNDING = 1e-9
 """Part of a step by which its halves may differ from powers of two."""
 
@@ -111,7 +115,7 @@ def led(
 
     Where contact `points` are lost, nodes hold the contacts until points are found again.
     """
-    parts, done, way = [1.0 / steps] * steps, 0.0, PathEnd(state)
+    parts, done, way, halved = [1.0 / steps] * steps, 0.0, PathEnd(state), 0
     shortest = (1.0 + ROUNDING) * 0.5**HALVINGS / steps
     while parts:
         there = 1.0 if len(parts) == 1 else done + parts[-1]
@@ -122,7 +126,8 @@ def led(
             done = there
             nodal = slid if points and isinstance(slid, FrictionResult) else None
             way = way.then((None if nodal is None else with_points(friction, at(there), nodal)) or slid)
-        elif isinstance(way.state, RubbingPoints) and parts[-1] <= shortest * 2.0**AT_NODES:
+        elif isinstance(way.state, RubbingPoints) and (halved == MOST_HALVED or parts[-1] <= shortest * 2.0**AT_NODES):
+            points = points and halved < MOST_HALVED
             current_run().note("friction", share=done, outcome="contact points lost")
             nodal = at_nodes(friction, way.state, at(done))
             if nodal is None:
@@ -131,7 +136,7 @@ def led(
         elif parts[-1] <= shortest:
             return None
         else:
-            parts = [*parts[:-1], 0.5 * parts[-1], 0.5 * parts[-1]]
+            parts, halved = [*parts[:-1], 0.5 * parts[-1], 0.5 * parts[-1]], min(halved + 1, MOST_HALVED)
     return way
 
 
