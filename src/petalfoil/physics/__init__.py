@@ -12,6 +12,7 @@
 `gap_curves.py`        gaps between petals with continuous slopes, and contact points anywhere on them
 `asperity_contact.py`  contact pressures that decay with the gap
 `lumped_pressure.py`   points at which friction acts in their place (K18)
+`sprung_beam.py`       loads of a clamped beam on springs, in a step for each
 `dry_friction.py`      Coulomb friction between petals and on the bushing (D1)-(D3)
 `sampled_friction.py`  friction forces of slips to and fro, harmonic by harmonic (E20), (E21)
 `sampled_disk.py`      the same of contacts that slip in a plane

@@ -6,7 +6,7 @@ is the contact of rough surfaces with exponentially distributed asperity heights
 1966, doi:10.1098/rspa.1966.0242). For small `s` it is contact of smooth surfaces. A contact point becomes a pressure
 over the width `sqrt(s / g'')`, whatever it carries, and nothing has to be found but the pressure: no contact opens,
 closes or jumps. Gaps and pressures are sampled evenly in each element. Reactions bend their own element further, as
-those of points do (K11), which couples the samples of an element:
+those of points do (K11), which couples the samples of an element (S8):
 
     g = rows n + C b lam ,   lam = weight q ,   dlam = -(1 + W C b)^-1 W rows dn ,   W = lam / s         (K14)
 
@@ -26,6 +26,7 @@ from petalfoil.mesh import hermite
 from petalfoil.physics.gap_curves import ContactPoints, Facing, GapCurves
 from petalfoil.physics.lumped_pressure import two_points
 from petalfoil.physics.petal_elements import clamped_beam
+from petalfoil.physics.sprung_beam import on_springs
 from petalfoil.sparsity import add_up
 
 Array = NDArray[np.float64]
@@ -211,9 +212,8 @@ class ContactResponse:
         stiffness = samples.weight * pressure / height
         loaded = np.flatnonzero(np.max(stiffness, axis=1, initial=0.0) > NOTHING)
         k, C = stiffness[loaded], samples.compliance[loaded]
-        coupled = np.eye(samples.per_element) + k[:, :, None] * (C[:, None, None] * samples.bending)
         right = k[:, :, None] * samples.rows[loaded], (stiffness * height * mismatch)[loaded][:, :, None]
-        solved = np.asarray(np.linalg.solve(coupled, np.concatenate(right, axis=2)), dtype=np.float64)
+        solved = on_springs(k, C, np.concatenate(right, axis=2))
         return cls(samples, loaded, solved[:, :, :4], solved[:, :, 4])
 
     @cached_property
