@@ -15,9 +15,11 @@ from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.continuation import advance
 from petalfoil.equilibrium.pack_at_rest import at_rest
 from petalfoil.equilibrium.run_context import running
+from petalfoil.equilibrium.small_motion import AT_POINTS
 from petalfoil.system.build import build_problem
 from tests.cases import case
 from tests.random_packs import random_case
+from tests.verification.test_results_from_points import TEN
 
 PACKAGES = ("paper_n6", "paper_n8", "paper_n10")
 DISPLACEMENTS = (0.0, 100e-6, 200e-6, 280e-6)
@@ -143,6 +145,16 @@ def test_a_cold_start_with_all_that_is_asked_about_it() -> None:
         s = solve.record(random_case(rng, **{"model.contacts": "nodes"})).scalars
         counts.append(sum(int(s[key]) for key in COSTS))  # type: ignore[call-overload]
     assert np.median(counts) <= 20
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["turbocharger", "six petals", "random 3", "random 6", "random 9"])
+def test_answers_with_contact_points_cost_the_same_on_fine_grids(name: str) -> None:
+    """Pack, film, contact points, growth rate and other equilibria: 14 to 23 when this was written."""
+    for cells in (32, 512):
+        s = solve.record(TEN[name].replace(**{"model.cells_per_pitch": cells})).scalars
+        assert s["contact_model"] == AT_POINTS
+        assert sum(int(s[key]) for key in COSTS) <= 24  # type: ignore[call-overload]
 
 
 @pytest.mark.slow
