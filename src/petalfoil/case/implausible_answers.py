@@ -124,8 +124,8 @@ def _short_lines(case: Case, scalars: Scalars) -> Iterator[str]:
         needed = math.ceil(FEWEST_CELLS / (pack.overlap - 1.0))
         yield (
             f"model.cells_per_pitch: {case.cells_per_pitch} leave {cells:.2g} cells where neighbouring petals overlap, "
-            "too few for contacts near a root to lie between nodes: damping of petals that rub may be off by half at "
-            f"small amplitudes; give at least {needed}"
+            "too few for contacts near a root to lie between nodes: damping of petals that rub may be off by a fifth "
+            f"at small amplitudes; give at least {needed}"
         )
 
 
