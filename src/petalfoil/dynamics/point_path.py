@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from petalfoil.dynamics.time_state import AtNodes, Instant, TimeState
 from petalfoil.equilibrium.contact_runs import at_nearest_points, from_active_nodes
 from petalfoil.equilibrium.contact_sets import merged
-from petalfoil.equilibrium.nodal_state import shared_reactions, wall_at_nodes
+from petalfoil.equilibrium.nodal_state import shared_reactions, unknowns_at_nodes
 from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.system.friction import FrictionState
@@ -33,11 +33,9 @@ def at_points_instant(tau: float, equations: PointEquations, moving: TimeState, 
 
 def sampled_at_nodes(equations: PointEquations) -> AtNodes:
     """A state with contact points at the nodes."""
-    found, layout = PointContacts(equations, 0.0), equations.whole.layout
-    x, lam = np.zeros(layout.n), shared_reactions(found)
-    x[layout.unknowns[DEFLECTION]] = wall_at_nodes(found)
-    x[equations.problem.positive] = equations.state.P
-    return AtNodes(x, lam, lam > 0.0)
+    found = PointContacts(equations, 0.0)
+    lam = shared_reactions(found)
+    return AtNodes(unknowns_at_nodes(found), lam, lam > 0.0)
 
 
 def nodal_friction(friction: Friction, instant: Instant) -> FrictionState:

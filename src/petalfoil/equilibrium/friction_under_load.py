@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from petalfoil.equilibrium.friction_handover import PathState, at_points, shared_friction
 from petalfoil.equilibrium.friction_history import LONGEST_MOVE, assembled
 from petalfoil.equilibrium.friction_path import FrictionResult
-from petalfoil.equilibrium.nodal_state import sampled_solution, shared_reactions, wall_at_nodes
+from petalfoil.equilibrium.nodal_state import sampled_solution, shared_reactions, unknowns_at_nodes
 from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.equilibrium.point_friction_path import RubbingPoints, reached, slide_at_points
 from petalfoil.equilibrium.run_context import current_run
@@ -31,7 +31,6 @@ from petalfoil.system.friction import FrictionState, energy_lost, slips
 from petalfoil.system.loaded import load_scale
 from petalfoil.system.point_friction import RubbingEquations
 from petalfoil.system.sinking_points import SinkingPoints
-from petalfoil.system.unknowns import DEFLECTION
 
 Array = NDArray[np.float64]
 
@@ -257,9 +256,8 @@ def in_film(state: PathState, problem: CoupledProblem) -> PathState:
 
 def sampled(friction: Friction, known: RubbingPoints) -> FrictionResult:
     """A state with contact points at the nodes, where petals and friction forces are; not in equilibrium there."""
-    found, problem = PointContacts(known.equations, known.residual), known.equations.problem
-    x, lam = np.zeros(problem.layout.n), shared_reactions(found)
-    x[problem.layout.unknowns[DEFLECTION]], x[problem.positive] = wall_at_nodes(found), known.state.P
+    found = PointContacts(known.equations, known.residual)
+    x, lam = unknowns_at_nodes(found), shared_reactions(found)
     limit = friction.coefficient * friction.normal(lam)
     kept = FrictionState(slips(friction, x), shared_friction(friction, known), limit)
     return FrictionResult(x, lam, lam > 0.0, known.residual, kept, known.lost)

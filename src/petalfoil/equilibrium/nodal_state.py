@@ -107,9 +107,7 @@ def sampled_solution(found: ElementEquilibrium, load: Array | None) -> Solution:
     others.
     """
     problem = found.equations.problem
-    x = np.zeros(problem.layout.n)
-    x[problem.layout.unknowns[DEFLECTION]], x[problem.positive] = wall_at_nodes(found), found.equations.pressures
-    nodal = RefinedState(x, np.zeros(problem.layout.n_wall), shared_reactions(found))
+    nodal = RefinedState(unknowns_at_nodes(found), np.zeros(problem.layout.n_wall), shared_reactions(found))
     return Solution(
         problem, nodal, found.residual, FOLLOWED, load=load, elements=found, elements_sought=True, sampled=found
     )
@@ -132,6 +130,14 @@ def with_motion_along(stiffness: sp.csr_array, deflection: Array) -> Array:
         return deflection
     own, by_deflection = stiffness[n:, n:], stiffness[n:, :n]
     return np.concatenate([deflection, spla.spsolve(sp.csc_array(own), -(by_deflection @ deflection))])
+
+
+def unknowns_at_nodes(found: ElementEquilibrium) -> Array:
+    """All unknowns (n,) of a state with contacts between nodes at the nodes [1]."""
+    problem = found.equations.problem
+    x = np.zeros(problem.layout.n)
+    x[problem.layout.unknowns[DEFLECTION]], x[problem.positive] = wall_at_nodes(found), found.equations.pressures
+    return x
 
 
 def wall_at_nodes(found: ElementEquilibrium) -> Array:
