@@ -246,11 +246,8 @@ def force_of(problem: CoupledProblem, reached: PathState) -> Array:
 
 def in_film(state: PathState, problem: CoupledProblem) -> PathState:
     """A pack that was moved without film under one at ambient pressure, nothing lost so far."""
-    whole = problem.layout.elements
-    if isinstance(state, RubbingPoints) and whole is not None:
-        return replace(state, equations=plain(replace(state.equations, whole=whole)), lost=0.0)
     if isinstance(state, RubbingPoints):
-        raise TypeError("contact points without elements")
+        return replace(state, equations=plain(state.equations), lost=0.0)
     return replace(state, x=problem.layout.ambient(state.x), lost=0.0)
 
 

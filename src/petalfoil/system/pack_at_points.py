@@ -36,13 +36,15 @@ class PackAtPoints(RubbingEquations):
     def of(
         cls, whole: PointLayout, problem: CoupledProblem, state: PointState, force: Array, withdrawn: float = 0.0
     ) -> Self:
-        """The pack of `problem` in a state with friction forces `force` (j,), whatever the film.
-
-        Its journal does not turn.
-        """
+        """The pack of `problem` in a state with friction forces `force` (j,), whatever the film."""
         thick = np.full(whole.layout.wall.film.shape, THICK)
         still = problem.at(bearing_number=0.0)
-        return cls(whole.still, still, state, film_held=thick, friction_force=force, withdrawn=withdrawn)
+        return cls(whole, still, state, film_held=thick, friction_force=force, withdrawn=withdrawn)
+
+    @property
+    def turns(self) -> bool:
+        """Its journal does not turn, and drags nothing along."""
+        return False
 
     @cached_property
     def nodal_gaps(self) -> Array:

@@ -172,14 +172,19 @@ class PointEquations:
         return dragged_faces(self.whole.pack, self.state.points)
 
     @property
+    def turns(self) -> bool:
+        """Whether dry friction of the journal has its full force."""
+        return self.problem.turns
+
+    @property
     def journal_friction(self) -> float:
         """`mu_f` of a journal that drags petals along, 0 where it does not, or in time while it does not turn [1]."""
-        return self.whole.journal_friction if self.problem.turns else 0.0
+        return self.whole.journal_friction if self.turns else 0.0
 
     @property
     def reaction_on_journal(self) -> Array:
         """Force on the journal by unit loads on the nodal gaps, (2 n_node, d)."""
-        return self.whole.reaction_on_journal if self.problem.turns else self.whole.curves.by_e
+        return self.whole.reaction_on_journal if self.turns else self.whole.curves.by_e
 
     @property
     def rubbing(self) -> tuple[Array, Array]:

@@ -38,11 +38,6 @@ class PointLayout:
     pack: ElementPack
     layout: BearingLayout
 
-    @cached_property
-    def still(self) -> PointLayout:
-        """The same round a journal that does not turn and drags nothing along, as while it is inserted."""
-        return StillLayout(self.pack, self.layout) if self.journal_friction else self
-
     @property
     def n_wall(self) -> int:
         """Unknowns of the petals."""
@@ -158,13 +153,3 @@ class PointLayout:
         shape = (len(unknown), self.n_film)
         nodal = sp.coo_array((area, (nodes, unknown[nodes])), shape=shape).tocsr()
         return SparseRows(self.film_by_w.T @ nodal)
-
-
-@dataclass(frozen=True, eq=False)
-class StillLayout(PointLayout):
-    """A layout round a journal that does not turn."""
-
-    @property
-    def journal_friction(self) -> float:
-        """None."""
-        return 0.0
