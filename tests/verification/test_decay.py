@@ -80,7 +80,7 @@ def led(bearing: Case, amplitude: float, ratio: float, steps: int) -> tuple[comp
         answer = operating_point(bearing, None).answer
         sliding, scales, speed = sliding_at(bearing, answer), answer.problem.layout.scales, bearing.operation.speed
         assert sliding is not None
-        K, C, _ = cycle_impedance(SmallMotion.at_nodes(answer), ratio * speed, speed, (sliding, amplitude))
+        rubs = cycle_impedance(SmallMotion.at_nodes(answer), ratio * speed, speed, (sliding, amplitude))
         x, y = answer.problem.displacement * scales.length
         begun = Orbit.begin(
             bearing.replace(rotor=Rotor(mass=MASS)), OrbitRequest(duration=1.0, initial=(x + amplitude, y))
@@ -99,7 +99,7 @@ def led(bearing: Case, amplitude: float, ratio: float, steps: int) -> tuple[comp
             force.append(problem.journal_force(there.x, there.lam)[0] * scales.force)
     tau, F = np.array(times[-steps - 1 :]), np.array(force[-steps - 1 :])
     first = 2.0 / period * np.trapezoid(F * np.exp(-1j * ratio * tau), tau)
-    return complex(-first / amplitude), complex(K[0, 0], ratio * speed * C[0, 0])
+    return complex(-first / amplitude), complex(rubs.stiffness[0, 0], ratio * speed * rubs.damping[0, 0])
 
 
 @pytest.mark.slow

@@ -91,10 +91,10 @@ def test_a_mode_along_a_line_solves_its_equation_with_the_cycle_of_coefficients(
         left = []
         for found in (several, one):
             cycle = RubbingCycle.of(bearing_.sliding, bearing_.motion, found.number, rubbing().amplitude)
-            gradient, enough = cycle.force_gradient()
+            gradient = cycle.force_gradient()
             inert = MASS * (SPEED * found.number) ** 2
-            left.append(abs(inert - rubbing().stiffness_unit * gradient[0, 0]) / abs(inert))
-    assert told.friction_harmonics == enough.friction_harmonics >= 8
+            left.append(abs(inert - rubbing().stiffness_unit * gradient.force[0, 0]) / abs(inert))
+    assert told.friction_harmonics == gradient.told.friction_harmonics >= 8
     assert told.friction_harmonics_change <= CHANGE
     assert left[0] < 1e-6
     assert left[1] > 1e-2

@@ -95,7 +95,8 @@ def entry(name: str, row: int, column: int) -> Callable[[Record, int], Cell]:
         if name not in record.fields:
             return ABSENT
         value, bars = float(record.fields[name][index][row][column]), record.fields.get(f"{name}_error")
-        return value if bars is None else f"{number(value)} ± {number(float(bars[index][row][column]))}"
+        bar = np.nan if bars is None else float(bars[index][row][column])
+        return value if np.isnan(bar) else f"{number(value)} ± {number(bar)}"
 
     return read
 
@@ -122,17 +123,28 @@ TABLE = ArrayTable(
 )
 LISTS = ("whirl_frequency", *MATRICES)
 ERROR_BARS = {
-    "stiffness_error": Variable(ENTRIES, "N m-1", "error bar of the stiffness, from a grid study", "dK"),
-    "damping_error": Variable(ENTRIES, "N s m-1", "error bar of the damping, from a grid study", "dC"),
+    "stiffness_error": Variable(
+        ENTRIES, "N m-1", "error bar of the stiffness, from grids and harmonics of slips", "dK"
+    ),
+    "damping_error": Variable(ENTRIES, "N s m-1", "error bar of the damping, from grids and harmonics of slips", "dC"),
 }
+HARMONICS_CHANGES = {
+    "stiffness_harmonics_change": Variable(
+        ENTRIES, "N m-1", "change of the stiffness from half as many harmonics", "dK_h"
+    ),
+    "damping_harmonics_change": Variable(
+        ENTRIES, "N s m-1", "change of the damping from half as many harmonics", "dC_h"
+    ),
+}
+HISTORIES = (*ERROR_BARS, *HARMONICS_CHANGES, *TILTING)
 
 
 @analysis(
-    SinglePoint(lists=LISTS, histories=(*ERROR_BARS, *TILTING), table=TABLE),
-    Series(lists=LISTS, histories=(*ERROR_BARS, *TILTING), table=TABLE, at=at_speed),
+    SinglePoint(lists=LISTS, histories=HISTORIES, table=TABLE),
+    Series(lists=LISTS, histories=HISTORIES, table=TABLE, at=at_speed),
     exports=EXPORTS,
     excludes={"speed": ("speeds",)},
-    results={**ERROR_BARS, **TILTING},
+    results={**ERROR_BARS, **HARMONICS_CHANGES, **TILTING},
     error_bars=True,
 )
 def coefficients(  # noqa: PLR0913 - the options of the verb
@@ -259,13 +271,16 @@ def point(case: Case, asked: CoefficientRequest, load: Vector | None) -> Record:
     answer = free_to_tilt(bearing, found.answer) if asked.tilt else held(bearing, found.answer)
     motion, sliding = elastic_and_sliding(bearing, answer)
     harmonics: list[HarmonicsTold] = []
+    changes: dict[str, Array] = {}
     if asked.amplitude is None or sliding is None:
         pairs = impedances(motion, asked.frequencies, speed)
     else:
         rubs = sliding, asked.amplitude
         cycles = [cycle_impedance(motion.frictionless, frequency, speed, rubs) for frequency in asked.frequencies]
-        pairs = [(K, C) for K, C, _ in cycles]
-        harmonics.append(HarmonicsTold.most_of([told for *_, told in cycles]))
+        pairs = [(one.stiffness, one.damping) for one in cycles]
+        harmonics.append(HarmonicsTold.most_of([one.told for one in cycles]))
+        by_harmonics = blocks(bearing, [one.changes for one in cycles])
+        changes = {f"{name}_harmonics_change": by_harmonics[name] for name in MATRICES}
     cost = effort(current_run().seconds)
     return record_of(
         "coefficients",
@@ -276,7 +291,7 @@ def point(case: Case, asked: CoefficientRequest, load: Vector | None) -> Record:
         ContactModel.of_motion(motion),
         RunOutcome(residual=found.answer.reported_residual),
         cost,
-        fields=dict(blocks(bearing, pairs)),
+        fields={**blocks(bearing, pairs), **changes},
         coords={"whirl_frequency": asked.frequencies, "row": np.arange(2), "column": np.arange(2)},
     )
 

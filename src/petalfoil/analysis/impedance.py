@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,26 @@ SLOW = 1e-6
 
 FEW = 3
 """Most frequencies that are solved for one by one: a reduced model costs three factorisations and its basis."""
+
+
+@dataclass(frozen=True)
+class CycleImpedance:
+    """Stiffness and damping where contacts rub.
+
+    Attributes
+    ----------
+    stiffness, damping : (d, d) array
+        `K` [N/m] and `C` [N s/m].
+    changes : (d, d) array, (d, d) array
+        By how much they differ from those with half as many harmonics of the slips; nan with one harmonic.
+    told : HarmonicsTold
+        Harmonics of the slips.
+    """
+
+    stiffness: Array
+    damping: Array
+    changes: tuple[Array, Array]
+    told: HarmonicsTold
 
 
 def sliding_at(case: Case, answer: Solution) -> SlidingContacts | None:
@@ -121,8 +141,8 @@ def impedance(motion: Motion, frequency: float, speed: float) -> tuple[Array, Ar
 
 def cycle_impedance(
     motion: Motion, frequency: float, speed: float, rubs: tuple[SlidingContacts, float]
-) -> tuple[Array, Array, HarmonicsTold]:
-    """The same where contacts rub in a whirl of an amplitude [m], and with how many harmonics of the slips.
+) -> CycleImpedance:
+    """The same where contacts rub in a whirl of an amplitude [m].
 
     `motion` is without their friction.
 
@@ -133,6 +153,6 @@ def cycle_impedance(
     """
     scales, (sliding, amplitude) = motion.problem.layout.scales, rubs
     cycle = RubbingCycle.of(sliding, motion, 1j * frequency / speed, amplitude / scales.length)
-    gradient, told = cycle.force_gradient()
-    Z = -gradient * scales.force / scales.length
-    return Z.real, Z.imag / frequency, told
+    found = cycle.force_gradient()
+    Z, change = (-gradient * scales.force / scales.length for gradient in (found.force, found.change))
+    return CycleImpedance(Z.real, Z.imag / frequency, (change.real, change.imag / frequency), found.told)

@@ -80,6 +80,25 @@ def solves_several(sliding: SlidingContacts) -> bool:
 
 
 @dataclass(frozen=True)
+class JournalForce:
+    """Force on the journal, over unit of force and length [1], by one displacement or by each.
+
+    Attributes
+    ----------
+    force : (d,) or (d, d) array
+        The force, a column for each displacement.
+    change : (d,) or (d, d) array
+        By how much it differs from that with half as many harmonics; nan with one harmonic, which has no half.
+    told : HarmonicsTold
+        Harmonics, and the largest change.
+    """
+
+    force: Complex
+    change: Complex
+    told: HarmonicsTold
+
+
+@dataclass(frozen=True)
 class RubbingCycle:
     """A whirl of one frequency with friction.
 
@@ -107,22 +126,22 @@ class RubbingCycle:
         ]
         return cls(each[0], np.array([one.compliance() for one in each]))
 
-    def force_gradient(self) -> tuple[Complex, HarmonicsTold]:
-        """`dF/de` of film and contacts on the journal over unit of force and length [1]; the harmonics it took.
+    def force_gradient(self) -> JournalForce:
+        """`dF/de` of film and contacts on the journal, (d, d).
 
         Raises
         ------
         ConvergenceError
             Slips and friction did not agree.
         """
-        response, columns, told = self.cycle.response, [], []
-        for unit, force in zip(response.units.T, response.force_gradient.T, strict=True):
-            by_friction, harmonics = self.with_enough(slips(self.cycle.sliding.friction, unit))
-            columns.append(force + by_friction)
-            told.append(harmonics)
-        return np.column_stack(columns), HarmonicsTold.most_of(told)
+        response = self.cycle.response
+        each = [self.with_enough(slips(self.cycle.sliding.friction, unit)) for unit in response.units.T]
+        by_friction = np.column_stack([one.force for one in each])
+        change = np.column_stack([one.change for one in each])
+        told = HarmonicsTold.most_of([one.told for one in each])
+        return JournalForce(response.force_gradient + by_friction, change, told)
 
-    def with_enough(self, free: Complex) -> tuple[Complex, HarmonicsTold]:
+    def with_enough(self, free: Complex) -> JournalForce:
         """Force of friction on the journal with as many harmonics as it needs, over the amplitude.
 
         Raises
@@ -131,15 +150,16 @@ class RubbingCycle:
             Slips and friction did not agree.
         """
         if len(self.compliances) == 1:
-            return self.force(free, 1), ONE_HARMONIC
+            one = self.force(free, 1)
+            return JournalForce(one, np.full_like(one, np.nan), ONE_HARMONIC)
         found, told = self.with_harmonics(free, FEWEST), HarmonicsTold(FEWEST, np.inf)
-        force = self.on_journal(found.friction[0])
+        force = half = self.on_journal(found.friction[0])
         while told.friction_harmonics_change > CHANGE and told.friction_harmonics < MOST:
             half, harmonics = force, 2 * told.friction_harmonics
             found = self.with_harmonics(free, harmonics, found)
             force = self.on_journal(found.friction[0])
             told = HarmonicsTold.between(harmonics, force, half)
-        return force, told
+        return JournalForce(force, force - half, told)
 
     def force(self, free: Complex, harmonics: int) -> Complex:
         """Force of friction on the journal with so many harmonics, a power of 2, over the amplitude.

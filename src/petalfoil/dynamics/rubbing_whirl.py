@@ -92,7 +92,7 @@ class RubbingBearing:
             return self
         rubbing = RubbingCycle.of(self.sliding, self.motion, s, scale)
         free = RubbingResponse(self, rubbing.cycle.response, rubbing.compliances).free(v)
-        return replace(self, several=FollowedSlips(rubbing.with_enough(free)[1].friction_harmonics))
+        return replace(self, several=FollowedSlips(rubbing.with_enough(free).told.friction_harmonics))
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,8 +13,10 @@ from numpy.testing import assert_allclose
 import petalfoil
 from petalfoil.analysis.arguments import Load
 from petalfoil.analysis.balance import balance
-from petalfoil.analysis.coefficients import coefficients
+from petalfoil.analysis.coefficients import coefficients, entry
 from petalfoil.analysis.declaration import Analysis, analysis
+from petalfoil.analysis.error_bars import BY_HARMONICS, field_bars
+from petalfoil.analysis.grid_study import grid_of, grids
 from petalfoil.analysis.known_verbs import forget
 from petalfoil.analysis.liftoff import liftoff
 from petalfoil.analysis.richardson import SAFETY
@@ -115,6 +118,31 @@ def test_a_grid_without_an_answer_leaves_no_bars(monkeypatch: pytest.MonkeyPatch
     record = point.record(FLAT, error=True)
     assert record.errors == {}
     assert "no error bars" in record.remarks[0]
+
+
+def rubbing(bearing: Case, change: float) -> Record:
+    """A stiffness with an error of second order in each entry, and what half as many harmonics change it by."""
+    ones = np.ones((1, 2, 2))
+    fields = {"stiffness": (5.0 + 3.0 / bearing.cells_per_pitch**2) * ones, "stiffness_harmonics_change": change * ones}
+    coords = {"whirl_frequency": np.ones(1), "row": np.arange(2), "column": np.arange(2)}
+    scalars = {"converged": True}
+    return Record(analysis="toy", scalars=scalars, fields=fields, coords=coords, case_toml=bearing.to_toml())
+
+
+def test_what_more_harmonics_change_is_added_to_the_bar_from_the_grids() -> None:
+    for change in (0.0, 0.25, -0.25):
+        answers = {grid_of(one): (rubbing(one, change),) for one in grids(FLAT)}
+        bars = field_bars(rubbing(FLAT, change), 0, answers)["stiffness_error"]
+        assert_allclose(bars, SAFETY * BAR + BY_HARMONICS * abs(change), rtol=1e-6)
+
+
+def test_with_one_harmonic_there_is_no_bar() -> None:
+    answers = {grid_of(one): (rubbing(one, np.nan),) for one in grids(FLAT)}
+    record = rubbing(FLAT, np.nan)
+    bars = field_bars(record, 0, answers)["stiffness_error"]
+    assert np.all(np.isnan(bars))
+    barred = replace(record, fields={**record.fields, "stiffness_error": bars})
+    assert entry("stiffness", 0, 0)(barred, 0) == record.fields["stiffness"][0, 0, 0]
 
 
 def test_a_table_over_load_and_speed_has_none() -> None:
