@@ -27,6 +27,7 @@ LIMITS = {
     "liftoff": 0.35,
     "runup": 0.35,
     "orbit_2d": 0.2,
+    "orbit_fifth": 0.2,
     "orbit_3d": 0.4,
     "designs": 1.0 / 3.0,
 }

@@ -32,6 +32,17 @@ def compiled(function: F) -> F:
     return cast(F, numba.njit(cache=True, error_model="numpy")(function))
 
 
+def is_on_disk(file: Path, function: str, sources: Path) -> bool:
+    """Whether a compiled `function` of a `file` lies beside it and is younger than all `sources` below a folder.
+
+    numba need not be imported for that. Where the folder of the file cannot be written, numba keeps what it compiles
+    in another one, which is not looked at.
+    """
+    written = max(source.stat().st_mtime for source in sources.rglob("*.py"))
+    indices = (file.parent / "__pycache__").glob(f"{file.stem}.{function}_*.nbi")
+    return any(index.stat().st_mtime > written for index in indices)
+
+
 @cache
 def digest(module: str) -> str:
     """A digest of what the loops of a module are made of.

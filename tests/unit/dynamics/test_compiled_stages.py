@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import sys
+from types import ModuleType
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from petalfoil.dynamics import compiled_stages
 from petalfoil.dynamics.adaptive_steps import MarchOptions, march
-from petalfoil.dynamics.compiled_stages import WORTH, worth_compiling
+from petalfoil.dynamics.compiled_stages import LOOPS, TO_COMPILE, TO_LOAD, StepsBefore, worth_compiling
 from petalfoil.dynamics.tr_bdf2 import AcceptedStep
 from petalfoil.system.compiled_step import CompiledStepEquations
 from tests.unit.dynamics.test_point_stage import begun
@@ -22,26 +25,53 @@ def steps(count: int) -> list[AcceptedStep]:
         return [next(motion) for _ in range(count)]
 
 
-@pytest.mark.slow
-def test_long_motions_are_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where numba is, and only with contact points that do not rub."""
-    bearing = begun().system
+@pytest.fixture
+def unpaid(monkeypatch: pytest.MonkeyPatch) -> StepsBefore:
+    """A process with numba that has loaded nothing, and no steps before."""
     monkeypatch.setattr(compiled_stages, "numba_is_installed", lambda: True)
-    assert worth_compiling(bearing, WORTH)
-    assert not worth_compiling(bearing, 0.99 * WORTH)
-    assert not worth_compiling(bearing.at_nodes, WORTH)
+    monkeypatch.setattr(compiled_stages, "compiled_before", lambda: False)
+    monkeypatch.delitem(sys.modules, LOOPS, raising=False)
+    monkeypatch.setattr(compiled_stages, "BEFORE", StepsBefore())
+    return compiled_stages.BEFORE
+
+
+@pytest.mark.slow
+def test_motions_are_compiled_by_what_is_still_to_be_paid(unpaid: StepsBefore, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Long ones; shorter ones with loops on disk, or after others; all of them where the loops are loaded."""
+    bearing = begun().system
+    assert worth_compiling(bearing, TO_COMPILE)
+    assert not worth_compiling(bearing, 0.6 * TO_COMPILE)
+    assert unpaid.steps == 0.6 * TO_COMPILE
+    assert worth_compiling(bearing, 0.4 * TO_COMPILE)
+    unpaid.steps = 0.0
+    monkeypatch.setattr(compiled_stages, "compiled_before", lambda: True)
+    assert worth_compiling(bearing, TO_LOAD)
+    assert not worth_compiling(bearing, 0.99 * TO_LOAD)
+    unpaid.steps = 0.0
+    assert not worth_compiling(bearing, 1.0)
+    monkeypatch.setitem(sys.modules, LOOPS, ModuleType(LOOPS))
+    assert worth_compiling(bearing, 1.0)
+
+
+@pytest.mark.slow
+def test_only_contact_points_that_do_not_rub_are_compiled(unpaid: StepsBefore, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Others are not, however long, nor do their steps count; none are without numba."""
+    bearing = begun().system
+    assert not worth_compiling(bearing.at_nodes, TO_COMPILE)
     rubbing = begun(**{"surface.petal_friction": 0.1}).system
     assert rubbing.friction is not None
-    assert not worth_compiling(rubbing, WORTH)
+    assert not worth_compiling(rubbing, TO_COMPILE)
     dragging = begun(**{"surface.journal_rubbing": "force", "surface.friction_coefficient": 0.1}).system
-    assert dragging.points is None or not worth_compiling(dragging, WORTH)
+    assert dragging.points is None or not worth_compiling(dragging, TO_COMPILE)
     monkeypatch.setattr(compiled_stages, "numba_is_installed", lambda: False)
-    assert not worth_compiling(bearing, WORTH)
+    assert not worth_compiling(bearing, TO_COMPILE)
+    assert unpaid.steps == 0.0
 
 
 @pytest.mark.slow
 def test_a_compiled_motion_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     """Position, gas and contact points, to rounding."""
+    monkeypatch.setattr("petalfoil.dynamics.adaptive_steps.worth_compiling", lambda *_: False)
     plain = steps(4)
     monkeypatch.setattr("petalfoil.dynamics.adaptive_steps.worth_compiling", lambda *_: True)
     fast = steps(4)
