@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from petalfoil.analysis.release import Kept, released
 from petalfoil.analysis.release_at_points import equations_at, released_at_points
 from petalfoil.case import Case
-from petalfoil.dynamics.point_stage import balanced
 from petalfoil.dynamics.speed_schedule import Schedule
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
+from petalfoil.dynamics.travelling_stage import balanced
 from petalfoil.errors import UsageError
 from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE

@@ -18,7 +18,8 @@
 `rotor_motion.py`          mass, loads and unbalance in the units of the problem
 `time_state.py`            state at an instant
 `stage.py`                 one implicit stage: film, wall, contacts and rotor in one Newton
-`point_stage.py`           the same with contact points that travel
+`travelling_stage.py`      the same with contacts between nodes: corrections, tangents, sets of contacts
+`point_stage.py`           contact points that travel, in 2-D
 `compiled_stages.py`       which motions evaluate it in compiled loops
 `point_path.py`            instants with contact points, at the nodes and extrapolated
 `tr_bdf2.py`               a step of second order from two stages, with an error estimate
