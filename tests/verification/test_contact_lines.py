@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 
 import petalfoil
 from petalfoil.analysis.evaluation import Evaluation
+from petalfoil.analysis.operating_point import operating_point
 from petalfoil.case import Case
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.continuation import advance
@@ -16,12 +17,13 @@ from petalfoil.equilibrium.followed_lines import followed_lines, foretold
 from petalfoil.equilibrium.led_points import led, with_nodal_contacts
 from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
 from petalfoil.equilibrium.line_sets import between_nodes, settled, with_lines
-from petalfoil.equilibrium.line_signs import bearing_alone, covered, freed, gaining, parted, revised
+from petalfoil.equilibrium.line_signs import bearing_alone, covered, dips, freed, gaining, parted, revised, without
 from petalfoil.equilibrium.run_context import current_run, running
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
+from tests.cases import case
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -306,3 +308,44 @@ def test_a_gap_that_closes_at_the_end_of_a_line_is_a_contact_at_its_node(lines: 
     assert more.held.sum() == lines.held.sum() + 1
     assert len(more.reaction) == len(lines.reaction) + 1
     assert_allclose(more.held_reaction.sum(), lines.held_reaction.sum(), rtol=1e-12)
+
+
+@pytest.mark.parametrize("depth", [0.01, 1e-5])
+def test_a_gap_that_closes_between_nodes_is_a_contact_where_it_is_least(lines: LineContacts, depth: float) -> None:
+    """A parabola that (K15) gives back: nodes beside its vertex are open, the vertex is below zero or hardly is."""
+    free = without(lines, np.ones(len(lines.held_reaction), dtype=bool), np.ones(len(lines.reaction), dtype=bool))
+    kind = free.points.lines[0]
+    vertex = kind.phi[5] + 0.4 * (kind.phi[6] - kind.phi[5])
+    gaps = np.ones(len(free.held))
+    gaps[kind.number[2]] = 0.1 * ((kind.phi - vertex) / (kind.phi[6] - vertex)) ** 2 - depth
+    vars(free)["gaps"] = gaps
+    none = np.zeros(0, dtype=np.intp)
+    found = dips(free, none)
+    assert gaps.min() > 0.0
+    if depth < 1e-4:
+        assert len(found.phi) == 0
+        return
+    assert found.line.tolist() == [2]
+    assert_allclose(found.phi, vertex, rtol=1e-9)
+    more = revised(free)
+    assert more is not None
+    assert_allclose(more.points.phi, vertex, rtol=1e-9)
+    assert more.reaction.tolist() == [0.0]
+    assert len(dips(free, kind.number[2, 5:7]).phi) == 0
+
+
+@pytest.mark.slow
+def test_no_gap_is_closed_between_nodes_without_a_contact() -> None:
+    """The rig on its petals, 32 x 12 cells: 7e-3 of the reference film was, and K 3 % off."""
+    grid = {"model.kind": "3d", "model.cells_per_pitch": 32, "model.axial_cells": 12}
+    rig = case("rig", **{**grid, "surface.petal_friction": 0.0, "operation.load": (0.0, -300.0)})
+    with running():
+        found = with_lines(operating_point(rig, None).answer).lines
+    assert isinstance(found, LineContacts)
+    near = covered(found)
+    for number, kind in enumerate(found.points.lines):
+        on, cell = np.nonzero(~near[kind.number[:, :-1]] & ~near[kind.number[:, 1:]])
+        for share in np.linspace(0.1, 0.9, 9):
+            phi = (1.0 - share) * kind.phi[cell] + share * kind.phi[cell + 1]
+            between = replace(found.points, kind=np.full(len(on), number), line=on, phi=phi)
+            assert between.along(found.gaps)[0].min() >= -2e-4

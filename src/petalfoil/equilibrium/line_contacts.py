@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Self, TypeVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -145,6 +146,11 @@ class LineContacts:
         return self.problem.journal_force(self.x, self.lam)
 
     @property
+    def springs(self) -> Array:
+        """Stiffness of what holds the journal beside film and contacts, (n_position, n_position): none."""
+        return np.zeros((len(self.problem.displacement), len(self.problem.displacement)))
+
+    @property
     def unbalanced(self) -> Array:
         """Force on the journal that is left under the load, (n_position,); zeros at a fixed position."""
         return np.zeros_like(self.force) if self.load is None else self.force + self.load
@@ -201,13 +207,13 @@ class LineContacts:
         """Small motions about the state."""
         return SmallMotion(self.problem, self.linearized, self.contacts, contact_model=ON_LINES)
 
-    def under(self, problem: CoupledProblem, load: Array | None) -> LineContacts:
+    def under(self, problem: CoupledProblem, load: Array | None) -> Self:
         """The same state under other equations on a grid of the same shape, under a load at its own position."""
         there = problem if load is None else problem.at(displacement=self.problem.displacement)
         points = replace(self.points, lines=there.layout.wall.contacts.lines)
         return replace(self, problem=there, points=points, load=load)
 
-    def moved(self, change: LineChange, length: float, problem: CoupledProblem) -> LineContacts:
+    def moved(self, change: LineChange, length: float, problem: CoupledProblem) -> Self:
         """The state after a `length` of a change, under the equations of `problem` before the journal's move."""
         j = len(self.held_reaction)
         return replace(
@@ -234,6 +240,10 @@ class LineContacts:
         return stepped(there, LineTangent.of(self, self.motion.growing(0.0, current_run().probe_solver)))
 
 
+Contacts = TypeVar("Contacts", bound=LineContacts)
+"""A state, at rest or in a step in time."""
+
+
 class NoLinesError(ArithmeticError):
     """No equilibrium with contact points between nodes was found; it says why."""
 
@@ -255,7 +265,7 @@ def step_of(state: LineContacts, tangent: LineTangent) -> LineChange:
     return tangent.correction(state, LineResiduals.of(state), way)
 
 
-def changed(state: LineContacts, tangent: LineTangent, change: LineChange, trust: float) -> LineContacts:
+def changed(state: Contacts, tangent: LineTangent, change: LineChange, trust: float) -> Contacts:
     """The state after a change by a tangent, shortened where pressures would vanish.
 
     Points travel `trust` cells at most.

@@ -11,8 +11,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.line_contacts import LineContacts
+from petalfoil.equilibrium.line_contacts import Contacts, LineContacts
 from petalfoil.physics.contact_points import MARGIN, POINT_NODES
+from petalfoil.physics.line_points import LinePoints
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 
 Array = NDArray[np.float64]
@@ -22,6 +23,10 @@ Mask = NDArray[np.bool_]
 PENETRATION = 1e-4
 """A gap this far below zero gains a contact, in units of the reference film (1 nm)."""
 
+DEEPER = 2.0
+"""How much deeper a gap may be below a node than the parabola through it and the nodes beside it, where it is looked
+for."""
+
 EARLY_PENETRATION = 1e-3
 """The same of a state that has not converged (10 nm)."""
 
@@ -29,7 +34,7 @@ EARLY_PULL = 1e-6
 """A reaction this far below zero leaves such a state, in ambient pressure on a node."""
 
 
-def parted(state: LineContacts) -> LineContacts:
+def parted(state: Contacts) -> Contacts:
     """With the nodes beside each point at which the gap does not curve upward in its place."""
     held = state.held.copy()
     held[state.points.beside[state.doubled].ravel()] = True
@@ -39,24 +44,28 @@ def parted(state: LineContacts) -> LineContacts:
     return replace(state, points=points, reaction=reaction, held=held, held_reaction=shared[held])
 
 
-def revised(state: LineContacts) -> LineContacts | None:
+def revised(state: Contacts) -> Contacts | None:
     """Other contacts, where the signs ask for them; None where they are right.
 
     Reactions that pull leave. A point at which the gap does not curve upward is two contacts within a cell, at the
     nodes beside it. Of nodes whose gaps are below zero the lowest of each run gains a point, unless there is one beside
-    it: all of them would be more contacts than the petal has freedom to meet.
+    it: all of them would be more contacts than the petal has freedom to meet. A gap that is below zero between nodes
+    alone gains one where it is least.
     """
     if np.any(state.doubled):
         return parted(state)
     bears = state.held_reaction > -RESIDUAL_TOLERANCE * state.problem.weight[state.held]
     pushes = state.reaction > -RESIDUAL_TOLERANCE
     fresh = lowest_of_runs(state, (state.gaps < -PENETRATION) & ~covered(state))
-    if bears.all() and pushes.all() and not len(fresh):
+    between = dips(state, fresh)
+    if bears.all() and pushes.all() and not len(fresh) and not len(between.phi):
         return None
-    return gaining(without(state, ~bears, ~pushes), fresh)
+    gained = gaining(without(state, ~bears, ~pushes), fresh)
+    none_yet = np.zeros(len(between.phi))
+    return replace(gained, points=gained.points.joined(between), reaction=np.concatenate([gained.reaction, none_yet]))
 
 
-def corrected_early(state: LineContacts, *, frees: bool) -> LineContacts:
+def corrected_early(state: Contacts, *, frees: bool) -> Contacts:
     """Other contacts before Newton's method has converged, where the signs ask for them; the state itself where not.
 
     As long as it `frees` contacts, single nodes become points, and points at which the gap does not curve upward may
@@ -72,7 +81,7 @@ def corrected_early(state: LineContacts, *, frees: bool) -> LineContacts:
     return gaining(freed(left) if frees else left, fresh)
 
 
-def gaining(state: LineContacts, fresh: Index) -> LineContacts:
+def gaining(state: Contacts, fresh: Index) -> Contacts:
     """The state with contacts at the nodes of some gaps: points, but at the ends of lines, where nothing travels."""
     ends = np.concatenate([lines.number[:, [0, -1]].ravel() for lines in state.points.lines])
     at_ends = np.isin(fresh, ends)
@@ -84,13 +93,13 @@ def gaining(state: LineContacts, fresh: Index) -> LineContacts:
     return replace(state, points=points, reaction=reaction, held=held, held_reaction=carried[held])
 
 
-def bearing_alone(state: LineContacts) -> LineContacts:
+def bearing_alone(state: Contacts) -> Contacts:
     """The state without contacts whose reactions are below zero, foretold ones: they would leave a tangent later."""
     pulls, also = state.held_reaction < 0.0, state.reaction < 0.0
     return without(state, pulls, also) if pulls.any() or also.any() else state
 
 
-def without(state: LineContacts, nodes: Mask, points: Mask) -> LineContacts:
+def without(state: Contacts, nodes: Mask, points: Mask) -> Contacts:
     """The state without some of its contacts, `nodes` (j,) and `points` (k,)."""
     held = state.held.copy()
     held[np.flatnonzero(held)] = ~nodes
@@ -103,8 +112,14 @@ def without(state: LineContacts, nodes: Mask, points: Mask) -> LineContacts:
     )
 
 
-def freed(state: LineContacts) -> LineContacts:
+def freed(state: Contacts) -> Contacts:
     """With points in place of contacts at single nodes away from the ends of their lines: they are free to travel."""
+    alone = single_nodes(state)
+    return with_points_at(state, alone, reactions_at_nodes(state), alone)
+
+
+def single_nodes(state: LineContacts) -> Mask:
+    """Contacts at single nodes away from the ends of their lines and from points, (m,)."""
     alone, near = np.zeros(len(state.held), dtype=np.bool_), np.zeros(len(state.held), dtype=np.bool_)
     near[state.points.beside.ravel()] = True
     for lines in state.points.lines:
@@ -112,10 +127,10 @@ def freed(state: LineContacts) -> LineContacts:
         single = held[:, 1:-1] & ~held[:, :-2] & ~held[:, 2:] & ~near[lines.number]
         single[:, :MARGIN] = single[:, len(lines.phi) - MARGIN :] = False
         alone[lines.number[single]] = True
-    return with_points_at(state, alone, reactions_at_nodes(state), alone)
+    return alone
 
 
-def freed_near_ends(state: LineContacts) -> LineContacts:
+def freed_near_ends(state: Contacts) -> Contacts:
     """With points in place of short runs of nodes beside the ends of their lines, where a petal lies near a root.
 
     Curvatures of the nodal gap cannot be read there on both sides, so that (K8) does not place these points: they begin
@@ -142,7 +157,7 @@ def reactions_at_nodes(state: LineContacts) -> Array:
     return out
 
 
-def with_points_at(state: LineContacts, begins: Mask, reaction: Array, runs: Mask) -> LineContacts:
+def with_points_at(state: Contacts, begins: Mask, reaction: Array, runs: Mask) -> Contacts:
     """The state with points at the nodes `begins` in place of contacts at the nodes `runs`; reactions at all (m,)."""
     if not begins.any():
         return state
@@ -167,3 +182,22 @@ def lowest_of_runs(state: LineContacts, below: Mask) -> Index:
         beside = np.pad(gaps, ((0, 0), (1, 1)), constant_values=np.inf)
         lowest[lines.number] = np.isfinite(gaps) & (gaps <= beside[:, :-2]) & (gaps < beside[:, 2:])
     return np.flatnonzero(lowest)
+
+
+def dips(state: LineContacts, fresh: Index) -> LinePoints:
+    """Points where gaps are below zero between nodes, away from contacts and from the nodes `fresh`.
+
+    Each lies beside a node whose gap is lower than those at the nodes beside it, where (K15) is least.
+    """
+    taken, nodes = covered(state), []
+    taken[fresh] = True
+    for lines in state.points.lines:
+        gaps = state.gaps[lines.number]
+        before, after = gaps[:, :-2] - gaps[:, 1:-1], gaps[:, 2:] - gaps[:, 1:-1]
+        lowest = (before >= 0.0) & (after > 0.0)
+        rise = np.where(lowest, before + after, 1.0)
+        deepest = gaps[:, 1:-1] - DEEPER * (after - before) ** 2 / (8.0 * rise)
+        low = lowest & (deepest < -PENETRATION) & ~taken[lines.number[:, 1:-1]]
+        nodes.append(lines.number[:, 1:-1][low])
+    there = state.points.at_nodes(np.concatenate(nodes)).lowest(state.gaps)
+    return there.kept((there.along(state.gaps)[0] < -PENETRATION) & ~np.any(taken[there.beside], axis=1))

@@ -184,17 +184,29 @@ class LinePoints:
 
     def with_nodes(self, gaps: Index) -> LinePoints:
         """With points at the nodes of some gaps."""
-        kind, line, phi = [self.kind], [self.line], [self.phi]
+        return self.joined(self.at_nodes(gaps))
+
+    def at_nodes(self, gaps: Index) -> LinePoints:
+        """Points at the nodes of some gaps alone."""
+        none = np.zeros(0, dtype=np.intp)
+        kind, line, phi = [none], [none], [np.zeros(0)]
         for number, lines in enumerate(self.lines):
             on, node = np.nonzero(np.isin(lines.number, gaps))
             kind.append(np.full(len(on), number))
             line.append(on)
             phi.append(lines.phi[node])
-        together = replace(self, kind=np.concatenate(kind), line=np.concatenate(line), phi=np.concatenate(phi))
-        if self.before is None:
-            return together
-        fresh = np.full(len(together.phi) - len(self.phi), -1)
-        return replace(together, before=np.concatenate([self.before, fresh]))
+        return LinePoints(self.lines, self.gaps, np.concatenate(kind), np.concatenate(line), np.concatenate(phi))
+
+    def joined(self, others: LinePoints) -> LinePoints:
+        """These points, then others, which no earlier state has."""
+        fresh = np.full(len(others.phi), -1)
+        return replace(
+            self,
+            kind=np.concatenate([self.kind, others.kind]),
+            line=np.concatenate([self.line, others.line]),
+            phi=np.concatenate([self.phi, others.phi]),
+            before=None if self.before is None else np.concatenate([self.before, fresh]),
+        )
 
     def _kinds(self) -> Iterable[tuple[Mask, GapLines]]:
         for number, lines in enumerate(self.lines):
