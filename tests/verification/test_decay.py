@@ -13,7 +13,8 @@ from petalfoil.analysis.impedance import cycle_impedance, elastic, elastic_and_s
 from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.orbit import orbit
 from petalfoil.analysis.orbit_motion import Orbit
-from petalfoil.analysis.release import OrbitRequest, released
+from petalfoil.analysis.release import OrbitRequest
+from petalfoil.analysis.release_at_nodes import released
 from petalfoil.case import Case, Rotor
 from petalfoil.dynamics.adaptive_steps import MarchOptions, march
 from petalfoil.dynamics.critical_mass import whirl_impedance

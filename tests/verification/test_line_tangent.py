@@ -87,12 +87,12 @@ def test_what_a_factor_has_answered_once_is_not_solved_for_again(
     monkeypatch.setattr(line_tangent, "STIFFER", 1e-12)
     state = others(marked(lines))
     assert state.tangent is not None
-    solves = [state.tangent.response.factorised.factor.counter.solves]
+    solves = [state.tangent.linear.factorised.factor.counter.solves]
     for _ in range(2):
         served = state.tangent.on(state)
         assert served is not None
         assert served.exchange is not None
-        solves.append(state.tangent.response.factorised.factor.counter.solves)
+        solves.append(state.tangent.linear.factorised.factor.counter.solves)
     first, again = np.diff(solves)
     exchange = served.exchange
     carries = len(exchange.turning.stiffer) - len(exchange.turning.of_factor)

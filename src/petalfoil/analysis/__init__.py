@@ -74,10 +74,13 @@ What they share:
 `parameter_change.py`  changes of parameters whose effects are told
 `film_force.py`        film and petals for another program's integrator
 `release.py`           where a large motion begins
+`release_at_nodes.py`  an instant with contacts at nodes
 `release_at_points.py`   the same with contact points
+`release_on_lines.py`  the same with contact lines
 `film_figures.py`      film, contacts and friction of one bearing in it
 `orbit_motion.py`      a large motion, step by step
 `restart.py`           a motion that goes on from a result
+`restart_on_lines.py`  its contact lines as numbers
 `trace.py`             what a motion leaves behind
 `steps_ahead.py`       what a motion costs, told before it begins
 `grid_study.py`        nested grids; error bars of arrays such as stiffness

@@ -42,7 +42,7 @@ from petalfoil.dynamics.adaptive_steps import MarchOptions, march
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.equilibrium.run_context import RunContext, new_run
-from petalfoil.equilibrium.small_motion import AT_POINTS, HELD_AT_NODES
+from petalfoil.equilibrium.small_motion import AT_POINTS, HELD_AT_NODES, ON_LINES
 from petalfoil.results.motion import figures_of, tilt_figures
 from petalfoil.results.parts import RunOutcome
 from petalfoil.results.record import Record
@@ -129,9 +129,9 @@ class ContactsInTime:
         problem = system.problem
         if not (problem.layout if isinstance(problem, StepProblem) else problem.parts[0].layout).n_wall:
             return cls(contact_model=None, point_share=None)
-        share = at_points / steps if steps else 0.0
-        between = f"{AT_POINTS} in {format_percent(share)} of the steps, contacts at nodes in the others"
-        model = AT_POINTS if share == 1.0 else between if at_points else HELD_AT_NODES
+        share, kind = at_points / steps if steps else 0.0, ON_LINES if system.lines else AT_POINTS
+        between = f"{kind} in {format_percent(share)} of the steps, contacts at nodes in the others"
+        model = kind if share == 1.0 else between if at_points else HELD_AT_NODES
         return cls(contact_model=model, point_share=share)
 
 
@@ -199,15 +199,11 @@ class Orbit:
                 warm = temperatures_of(case, request)
                 warmed, supports = at_kept(case, warm)
                 known = balance_on_path(warmed, request)
-                place, slope, at_points = first_position(warmed if case.shares_evenly else case, request, known)
-                request = replace(request, slope=slope)
+                first = first_position(warmed if case.shares_evenly else case, request, known)
+                request, place = replace(request, slope=first.slope), first.place
                 placed = at(warmed, eccentricity=place)
                 system, time = system_of(placed, supports, schedule, request.load), 0.0
-                start = (
-                    at_rest(placed, system, request, at_points=at_points)
-                    if known is None
-                    else at_rest_on_path(system, known)
-                )
+                start = at_rest(placed, system, request, first) if known is None else at_rest_on_path(system, known)
         else:
             time, warm, place = continued(case, schedule, restart), kept_temperatures(case, restart), None
             placed, supports = at_kept(case, warm)
@@ -236,7 +232,7 @@ class Orbit:
         for stepped in self.run.during(march(self.system, self.start, end, options)):
             self.trace.add(stepped.end)
             self.taken += 1
-            self.at_points += stepped.end.points is not None
+            self.at_points += stepped.end.between_nodes
             self.residual = max(self.residual, stepped.residual)
             yield (stepped.end.tau - begin) / (end - begin), f"{self.trace.turned / TURN:.1f} turns"
 

@@ -11,25 +11,28 @@ from numpy.typing import NDArray
 from petalfoil.analysis.friction_told import follows_path
 from petalfoil.analysis.heat_results import at_temperatures
 from petalfoil.analysis.operating_point import Vector, at, at_position, under_load
+from petalfoil.analysis.release_at_nodes import released
 from petalfoil.analysis.release_at_points import points_in_time, released_at_points
+from petalfoil.analysis.release_on_lines import lines_beside, lines_in_time, released_on_lines
 from petalfoil.analysis.rotor_balance import RotorInBearings
 from petalfoil.case import Case
 from petalfoil.dynamics.adaptive_steps import MarchOptions
 from petalfoil.dynamics.rotor_motion import RotorMotion, constant_load
 from petalfoil.dynamics.speed_schedule import Schedule
-from petalfoil.dynamics.time_state import AtNodes, Instant, TimeState
+from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.element_contacts import near_nodes, with_elements
+from petalfoil.equilibrium.line_contacts import LineContacts
+from petalfoil.equilibrium.line_sets import with_lines
 from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import UsageError
 from petalfoil.system.build import build_pair, build_problem, on_the_same_wall
 from petalfoil.system.coupled import CoupledProblem
-from petalfoil.system.friction import FrictionState, friction_of
+from petalfoil.system.friction import friction_of
 from petalfoil.system.heat_network import HeatNetwork
 from petalfoil.system.on_shaft import ShaftStep
-from petalfoil.system.point_equations import PointState
 from petalfoil.system.point_friction import RubbingEquations
 from petalfoil.system.shaft_layout import friction_on_shaft, joined
 from petalfoil.system.temperatures import Temperatures
@@ -164,12 +167,15 @@ class FirstPosition(NamedTuple):
     slope : (2,)
         Slopes of a shaft in two bearings [rad].
     at_points : bool
-        Whether it may begin with contact points: not from a balance that has none.
+        Whether it may begin with contact points or lines: not from a balance that has none.
+    lines : LineContacts or None
+        Contact lines of the balance that it is released near.
     """
 
     place: Vector | None
     slope: Vector
     at_points: bool = True
+    lines: LineContacts | None = None
 
 
 def first_position(case: Case, request: OrbitRequest, known: Solution | None = None) -> FirstPosition:
@@ -190,29 +196,35 @@ def first_position(case: Case, request: OrbitRequest, known: Solution | None = N
     if not case.shares_evenly:
         return FirstPosition(*on_both(case, request))
     load, speed = constant_load(case, request.load), request.schedule(case).speed(0.0)
-    (x, y), at_points = case.operation.eccentricity, True
+    (x, y), at_points, lines = case.operation.eccentricity, True, None
     if np.any(load) or speed > 0.0:  # every place balances a shaft at rest without a load
         found, _ = under_load(at(case, speed, (0.0, 0.0)), load)
-        place, at_points = place_of_balance(case, found)
+        place, at_points, lines = place_of_balance(case, found)
         x, y = map(float, place * found.problem.layout.scales.length)
     if case.rotor is not None and request.schedule(case).speed(0.0) > 0.0:
         x -= case.rotor.unbalance  # a shaft that does not turn feels none
     beyond = np.hypot(x, y) >= case.pack_clearance
     short = LYING * case.pack_clearance / np.hypot(x, y) if beyond else 1.0
-    return FirstPosition((float(short * x), float(short * y)), request.slope, at_points)
+    return FirstPosition((float(short * x), float(short * y)), request.slope, at_points, lines)
 
 
-def place_of_balance(case: Case, found: Solution) -> tuple[Array, bool]:
+def place_of_balance(case: Case, found: Solution) -> tuple[Array, bool, LineContacts | None]:
     """Displacement over the reference length at which a motion has the load of a balance, (n_position,) [1].
 
-    It is that of contact points where the balance has them; and whether it has.
+    It is that of contact points or lines where the balance has them; whether it has, and the lines.
     """
     layout = found.problem.layout
-    if case.bearings > 1 or points_in_time(layout, friction_of(case, layout)) is None:
-        return found.problem.displacement, False
+    friction = friction_of(case, layout)
+    if lines_in_time(case, layout, friction):
+        lines = with_lines(found).lines
+        if not isinstance(lines, LineContacts):
+            return found.problem.displacement, False, None
+        return lines.problem.displacement, True, lines
+    if case.bearings > 1 or points_in_time(layout, friction) is None:
+        return found.problem.displacement, False, None
     between = with_elements(found)
     at_points = isinstance(between.elements, PointContacts)
-    return between.position if at_points else found.problem.displacement, at_points
+    return between.position if at_points else found.problem.displacement, at_points, None
 
 
 def on_both(case: Case, request: OrbitRequest) -> tuple[Vector, Vector]:
@@ -256,38 +268,48 @@ def system_of(case: Case, supports: tuple[Case, ...], schedule: Schedule, load: 
     rotor = RotorMotion.of(case, problem.layout.scales, schedule, load)
     alone = StepProblem(problem.layout, 0.0, problem.displacement, rotor.clock.bearing_number)
     friction = friction_of(case, problem.layout)
-    return RotorBearing(alone, rotor, friction, points_in_time(problem.layout, friction))
+    points = points_in_time(problem.layout, friction)
+    return RotorBearing(alone, rotor, friction, points, lines=lines_in_time(case, problem.layout, friction))
 
 
-def at_rest(case: Case, system: RotorBearing, request: OrbitRequest, *, at_points: bool = True) -> Instant:
+def at_rest(case: Case, system: RotorBearing, request: OrbitRequest, first: FirstPosition) -> Instant:
     """The journal held where it is, film and petals in equilibrium, and released at time zero.
 
-    With contact points where it may begin `at_points`: the place of a balance at nodes is none of points.
+    With contact points or lines where it may begin with them: the place of a balance at nodes is none of points.
 
     From a balance its mass centre rests, and the shaft turns about that: a start without a blow.
     """
     rotor, scales = case.rotor, system.problem.layout.scales
     speed, place = system.rotor.schedule.speed(0.0), system.problem.displacement
-    points: PointState | None = None
-    off = np.zeros_like(place)  # of the axis from the mass centre, over the reference length
-    if rotor is not None and request.initial == "balance":
-        off[:2] = [-rotor.unbalance / scales.length, 0.0]
-    if isinstance(system.problem, ShaftStep) and rotor is not None:
-        place = place + rotor.lever / scales.length * np.array([0.0, 0.0, *request.slope])
-        state = held_on_shaft(system.problem.at(bearing_number=system.rotor.bearing_number(0.0), displacement=place))
-    else:
-        there = at(case, speed)
-        alone = system.problem if isinstance(system.problem, StepProblem) else None
-        answer = at_position(there, None if alone is None else on_the_same_wall(alone, there)).answer
-        state = answer.x, answer.lam, answer.active
-        found = None if system.points is None or not at_points else near_nodes(answer)
-        if isinstance(found, PointContacts):
-            points = found.equations.state
     turning = np.zeros_like(place)
-    turning[:2] = np.array([-off[1], off[0]]) * speed / system.rotor.clock.rate
-    if points is not None:
-        return released_at_points(system, 0.0, points, (place, turning))
+    if rotor is not None and request.initial == "balance":  # the axis is off the mass centre by the unbalance
+        turning[1] = -rotor.unbalance / scales.length * speed / system.rotor.clock.rate
+    if not isinstance(system.problem, ShaftStep):
+        return one_at_rest(at(case, speed), system, first, (place, turning))
+    if rotor is not None:
+        place = place + rotor.lever / scales.length * np.array([0.0, 0.0, *request.slope])
+    state = held_on_shaft(system.problem.at(bearing_number=system.rotor.bearing_number(0.0), displacement=place))
     return released(system, 0.0, state, (place, turning))
+
+
+def one_at_rest(case: Case, system: RotorBearing, first: FirstPosition, moving: tuple[Array, Array]) -> Instant:
+    """The same of a rotor in one bearing, `case` at the speed of the start; `moving` are position and velocity."""
+    if isinstance(system.problem, ShaftStep):
+        raise TypeError("this rotor is in two bearings")
+    problem = on_the_same_wall(system.problem, case)
+    lines = None if first.lines is None else lines_beside(first.lines, problem)
+    if lines is not None:
+        return released_on_lines(system, 0.0, lines, moving)
+    answer = at_position(case, problem).answer
+    if system.points is not None and first.at_points:
+        found = near_nodes(answer)
+        if isinstance(found, PointContacts):
+            return released_at_points(system, 0.0, found.equations.state, moving)
+    if system.lines and first.at_points:
+        near = with_lines(answer).lines
+        if isinstance(near, LineContacts):
+            return released_on_lines(system, 0.0, near, moving)
+    return released(system, 0.0, (answer.x, answer.lam, answer.active), moving)
 
 
 def held_on_shaft(problem: ShaftStep) -> tuple[Array, Array, NDArray[np.bool_]]:
@@ -309,17 +331,3 @@ def at_rest_on_path(system: RotorBearing, known: Solution) -> Instant:
         return released_at_points(system, 0.0, found.equations.state, still, found.equations.friction_force)
     start = released(system, 0.0, (known.x, known.lam, known.active), still)
     return start if known.friction is None else replace(start, friction=known.friction.state)
-
-
-def released(
-    system: RotorBearing, tau: float, state: tuple[Array, Array, NDArray[np.bool_]], moving: tuple[Array, Array]
-) -> Instant:
-    """An instant from unknowns, reactions and active contacts, position and velocity: its rates by the equations."""
-    (x, lam, closed), (e, v), rotor = state, moving, system.rotor
-    problem = system.problem.at(displacement=e, bearing_number=rotor.bearing_number(tau))
-    force = problem.journal_force(x, lam) + rotor.outside(tau) - rotor.gyroscopic(tau) @ v
-    speeding = np.asarray(np.linalg.solve(rotor.inertia, force), dtype=np.float64)
-    stored, storing = problem.stored(x), problem.storing(x, lam)
-    change = TimeState(storing + problem.filled(stored, storing), v, speeding)
-    friction = None if system.friction is None else FrictionState.fresh(system.friction, x, lam)
-    return Instant(tau, TimeState(stored, e, v), change, AtNodes(x, lam, closed), friction)

@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.analysis.release import Kept, released
+from petalfoil.analysis.release import Kept
+from petalfoil.analysis.release_at_nodes import released
 from petalfoil.analysis.release_at_points import equations_at, released_at_points
+from petalfoil.analysis.release_on_lines import released_on_lines
+from petalfoil.analysis.restart_on_lines import HeldState, lines_of, numbers_of
 from petalfoil.case import Case
 from petalfoil.dynamics.speed_schedule import Schedule
 from petalfoil.dynamics.time_state import Instant
@@ -22,6 +25,7 @@ from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 from petalfoil.system.friction import against_slip
 from petalfoil.system.point_equations import PointState
 from petalfoil.system.temperatures import Temperatures
+from petalfoil.system.time_step import StepProblem
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE
 
 if TYPE_CHECKING:
@@ -38,6 +42,9 @@ RECORDED = ("x", "y", "velocity_x", "velocity_y", "min_film_thickness", "peak_pr
 BALANCED, BALANCED_SLIDING = RESIDUAL_TOLERANCE, 0.02
 """Residual of the wall's rows up to which a state is one. Stages leave 2e-12; with friction, whose limits follow the
 reactions a correction late, 2e-3."""
+
+PULL = 1e-5
+"""Reaction below zero up to which a contact on a line is one, in ambient pressure on a node: a stage leaves a tenth."""
 
 SAME = 1e-6
 """Relative difference that speed and angle of the shaft may have where one motion goes on from another."""
@@ -57,6 +64,7 @@ def end_state(last: Instant, system: RotorBearing) -> dict[str, Array]:
         "last_velocity": last.moving.v * length * rate,
         "last_friction": np.zeros(0) if last.friction is None else last.friction.force,
         **end_points(last),
+        **({} if last.lines is None else {"last_lines": numbers_of(last.lines)}),
     }
 
 
@@ -77,6 +85,8 @@ def end_coordinates(last: Instant) -> dict[str, NDArray[np.generic]]:
     slides = 0 if last.friction is None else len(last.friction.force)
     sizes = {"unknown": len(last.x), "gap": len(last.lam), "axis": len(last.e), "slide": slides}
     sizes |= {dim: len(values) for dim, values in zip(OF_POINTS, end_points(last).values(), strict=False)}
+    if last.lines is not None:
+        sizes["line_number"] = len(numbers_of(last.lines))
     return {name: np.arange(size) for name, size in sizes.items()}
 
 
@@ -96,12 +106,15 @@ def instant_of(result: xr.Dataset, system: RotorBearing, tau: float) -> Instant:
         for name, size in zip(("state", "reactions", "position"), sizes, strict=True)
     )
     v = _state(result, "last_velocity", len(e)) / (scales.length * system.rotor.clock.rate)
-    if np.any(lam < 0.0):
+    on_lines = system.lines and "last_lines" in result  # the weights of (K15) are negative at some nodes
+    if not on_lines and np.any(lam < 0.0):
         raise _damaged("contact reactions are negative")
     if not np.all(x[layout.unknowns[PRESSURE]] > 0.0):
         raise _damaged("absolute pressures are not positive")
     if system.points is not None and "last_points" in result:
         return at_points_of(result, system, tau, (x, e / scales.length, v))
+    if on_lines:
+        return on_lines_of(result, system, tau, (x, e / scales.length, v))
     start = released(system, tau, (x, lam, lam > 0.0), (e / scales.length, v))
     if start.friction is not None:
         force = _state(result, "last_friction", len(start.friction.force))
@@ -136,6 +149,26 @@ def at_points_of(result: xr.Dataset, system: RotorBearing, tau: float, at: tuple
     if not np.allclose(start.x, x, rtol=0.0, atol=SAME * float(np.max(np.abs(x)))):
         raise _damaged("petals and loads are out of balance: deflections at nodes are not those between them")
     return start
+
+
+def on_lines_of(result: xr.Dataset, system: RotorBearing, tau: float, at: tuple[Array, Array, Array]) -> Instant:
+    """The same with contact lines.
+
+    Raises
+    ------
+    UsageError
+        The state is damaged.
+    """
+    (x, e, v), problem = at, system.problem.at(displacement=at[1], bearing_number=system.rotor.bearing_number(tau))
+    if not isinstance(problem, StepProblem):
+        raise TypeError("contacts of a shaft in two bearings are at nodes")
+    lines = lines_of(result["last_lines"].to_numpy(), HeldState(problem, x))
+    if lines is None:
+        raise _damaged("last_lines are no contact lines")
+    least = min(lines.reaction.min(initial=0.0), lines.held_reaction.min(initial=0.0))
+    if not problem.admits(x) or not balanced(lines) or least < -PULL:
+        raise _damaged("petals, loads and contacts are out of balance")
+    return released_on_lines(system, tau, lines, (e, v))
 
 
 def points_of(numbers: Array, curves: int) -> ContactPoints | None:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError
+from petalfoil.equilibrium.line_contacts import LineContacts
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.sparse_lu import SingularMatrixError
@@ -69,6 +70,8 @@ def fastest_swing(bearing: RotorBearing, start: Instant) -> float:
     problem = bearing.problem.at(displacement=start.e, bearing_number=bearing.rotor.bearing_number(start.tau))
     if start.points is not None and bearing.points is not None and isinstance(problem, StepProblem):
         return swing_of(bearing, -gradient_at_points(PointEquations(bearing.points, problem, start.points)))
+    if start.lines is not None:
+        return swing_of(bearing, -gradient_on_lines(start.lines))
     constraints = constrain(problem.G, start.active, acting=problem.acting)
     if not constraints.determinate:
         return 0.0
@@ -89,6 +92,17 @@ def gradient_at_points(equations: PointEquations) -> Array:
         return ElementTangent.at(equations, still, current_run().probe_solver).gradient
     except NoPointsError:
         return np.zeros((len(still), len(still)))
+
+
+def gradient_on_lines(lines: LineContacts) -> Array:
+    """The same with contact lines."""
+    nothing = np.zeros((len(lines.force), len(lines.force)))
+    if not lines.contacts.constraints.determinate:
+        return nothing
+    try:
+        return np.asarray(lines.motion.growing(0.0, current_run().probe_solver).force_gradient)
+    except SingularMatrixError:
+        return nothing
 
 
 def swing_of(bearing: RotorBearing, stiffness: Array) -> float:

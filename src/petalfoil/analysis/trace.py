@@ -196,7 +196,7 @@ class Trace:
             "kinetic_energy": kinetic,
             **tilt,
             "elastic_energy": elastic * force * length,
-            "at_points": float(instant.points is not None),
+            "at_points": float(instant.between_nodes),
         }
 
     def _deflections(self, instant: Instant) -> list[tuple[BearingLayout, Array]]:

@@ -20,8 +20,10 @@
 `stage.py`                 one implicit stage: film, wall, contacts and rotor in one Newton
 `travelling_stage.py`      the same with contacts between nodes: corrections, tangents, sets of contacts
 `point_stage.py`           contact points that travel, in 2-D
+`line_stage.py`            contact lines that travel, in 3-D
 `compiled_stages.py`       which motions evaluate it in compiled loops
 `point_path.py`            instants with contact points, at the nodes and extrapolated
+`line_path.py`             instants with contact lines, placed from nodes and extrapolated
 `tr_bdf2.py`               a step of second order from two stages, with an error estimate
 `adaptive_steps.py`        steps that adapt to a tolerance, from start to end
 =========================  ====================================================================

@@ -47,7 +47,7 @@ class NextStep:
     ----------
     step : float
         Its length [units of time].
-    tangent : BorderedTangent, ElementTangent or None
+    tangent : BorderedTangent, ElementTangent, LineTangent or None
         The tangent that serves it.
     calm : int
         Steps before it whose error was small.
@@ -72,7 +72,7 @@ class NextStep:
     @classmethod
     def first(cls, bearing: RotorBearing, start: Instant, step: float) -> NextStep:
         """The first step: where the start has no contact points, there are none near by as a rule."""
-        if bearing.points is None or start.points is not None:
+        if not bearing.between_nodes or start.between_nodes:
             return cls(step)
         return cls(step, at_nodes=SELDOM, hold=2 * SELDOM)
 
@@ -112,7 +112,7 @@ def march(bearing: RotorBearing, start: Instant, end: float, options: MarchOptio
         held = ahead.at_nodes > 0
         stepped = take_step(bearing.at_nodes if held else bearing, path, step, tangent, stage_options)
         if stepped is None or (stepped.error > 1.5 * options.tolerance and judged(path[-1], stepped, options)):
-            why = "error" if stepped is not None else "no answer" if held or bearing.points is None else "no points"
+            why = "error" if stepped is not None else "no answer" if held or not bearing.between_nodes else "no points"
             ahead = refused(ahead, step, stepped, options) if why != "no points" else without_points(ahead, step)
             current_run().note("motion", time=path[-1].tau, step=step, outcome=why)
             if ahead.step < options.shortest:
@@ -130,7 +130,7 @@ def judged(begin: Instant, stepped: AcceptedStep, options: MarchOptions) -> bool
     Where contacts pass from points to nodes, or back, rates at its begin are those of the other contacts: the
     difference is that of the grid, and no shorter step lessens it.
     """
-    return not options.fixed and (begin.points is None) is (stepped.end.points is None)
+    return not options.fixed and begin.between_nodes is stepped.end.between_nodes
 
 
 def refused(ahead: NextStep, step: float, stepped: AcceptedStep | None, options: MarchOptions) -> NextStep:
@@ -151,7 +151,7 @@ def without_points(ahead: NextStep, step: float) -> NextStep:
 
 def accepted(ahead: NextStep, step: float, stepped: AcceptedStep, options: MarchOptions, *, turned: bool) -> NextStep:
     """The next step: the same as long as that is about right, so that the tangent still serves."""
-    served = 0 if stepped.end.points is None else ahead.with_points + 1
+    served = 0 if not stepped.end.between_nodes else ahead.with_points + 1
     hold = HELD if served >= ahead.hold else ahead.hold
     ahead = replace(ahead, at_nodes=max(ahead.at_nodes - 1, 0), with_points=served, hold=hold)
     if options.fixed:
@@ -162,7 +162,7 @@ def accepted(ahead: NextStep, step: float, stepped: AcceptedStep, options: March
     if right < 1.0 / SAFETY * 0.8:
         return replace(ahead, step=step * max(0.3, right), tangent=None, calm=0)
     calm = ahead.calm + 1 if right > LARGER else 0
-    if calm >= CALM and stepped.end.points is not None:
+    if calm >= CALM and stepped.end.between_nodes:
         ahead = replace(ahead, lost=0)
     if calm >= CALM and step < options.longest:
         longer = min(step * min(right, LARGEST), options.longest)

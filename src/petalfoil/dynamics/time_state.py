@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.equilibrium.line_contacts import LineContacts
 from petalfoil.system.friction import FrictionState
 from petalfoil.system.point_equations import PointEquations, PointState
 
@@ -84,6 +85,8 @@ class Instant:
     equations : PointEquations or None
         Petals, film and contacts where these are points between nodes, of which what is at the nodes is sampled then;
         None where contacts are at nodes.
+    lines : LineContacts or None
+        Contacts in 3-D where they are lines between nodes; None of others.
     """
 
     tau: float
@@ -92,10 +95,16 @@ class Instant:
     found: AtNodes | Callable[[], AtNodes]
     friction: FrictionState | None = None
     equations: PointEquations | None = None
+    lines: LineContacts | None = None
+
+    @property
+    def between_nodes(self) -> bool:
+        """Whether contacts are points or lines between nodes."""
+        return self.equations is not None or self.lines is not None
 
     @property
     def points(self) -> PointState | None:
-        """State with contact points; None where contacts are at nodes."""
+        """State with contact points; None where contacts are at nodes, or lines."""
         return None if self.equations is None else self.equations.state
 
     @cached_property

@@ -14,6 +14,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.dynamics.line_path import line_guesses, on_lines_instant
+from petalfoil.dynamics.line_stage import LineStage
 from petalfoil.dynamics.point_path import (
     KNOTS,
     at_points_instant,
@@ -28,6 +30,7 @@ from petalfoil.dynamics.rotor_motion import RotorMotion
 from petalfoil.dynamics.stage import Stage, StageOptions, StageSolution, solve_sliding_stage, solve_stage
 from petalfoil.dynamics.time_state import AtNodes, Instant, TimeState
 from petalfoil.equilibrium.element_tangent import ElementTangent
+from petalfoil.equilibrium.line_tangent import LineResiduals, LineTangent
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.contact_newton import border_change
 from petalfoil.solvers.tangent import BorderedTangent
@@ -51,7 +54,7 @@ ERROR = ((4.0 * WEIGHT - 1.0) / 3.0, -1.0 / 3.0, 2.0 * IMPLICIT / 3.0)
 """Weights of the three rates in the difference to the embedded formula of third order."""
 
 
-Tangents = BorderedTangent | ElementTangent
+Tangents = BorderedTangent | ElementTangent | LineTangent
 
 
 @dataclass(frozen=True)
@@ -70,6 +73,8 @@ class RotorBearing:
         The same bearing with contacts between nodes; None where they are at nodes.
     compiled : bool
         Whether stages with contact points are evaluated in compiled loops (`compiled_stages.py`).
+    lines : bool
+        Whether contacts are lines between the nodes of a 3-D film.
     """
 
     problem: StepProblem | ShaftStep
@@ -77,11 +82,17 @@ class RotorBearing:
     friction: Friction | None = None
     points: PointLayout | None = None
     compiled: bool = False
+    lines: bool = False
+
+    @property
+    def between_nodes(self) -> bool:
+        """Whether contacts are points or lines between nodes."""
+        return self.points is not None or self.lines
 
     @property
     def at_nodes(self) -> Self:
         """The same with contacts at nodes."""
-        return self if self.points is None else replace(self, points=None)
+        return replace(self, points=None, lines=False) if self.between_nodes else self
 
     def stage(self, base: TimeState, tau: float, step: float, begin: Instant, options: StageOptions) -> Stage:
         """The implicit stage at `tau` from `base` in a step from `begin`; friction goes on from there."""
@@ -169,6 +180,8 @@ def advance(
     """Where a stage leads at `tau`, within a step or at its end; None if it has no solution."""
     if bearing.points is not None:
         return advance_points(PointStage(bearing.points, stage, bearing.compiled), tau, path, tangent)
+    if bearing.lines:
+        return advance_lines(LineStage(stage), tau, path, tangent)
     last = path[-1]
     for x, e in guesses(path, tau):
         at_nodes = tangent if isinstance(tangent, BorderedTangent) else None
@@ -197,6 +210,20 @@ def advance_points(stage: PointStage, tau: float, path: list[Instant], tangent: 
     return None
 
 
+def advance_lines(stage: LineStage, tau: float, path: list[Instant], tangent: Tangents | None) -> Reached | None:
+    """The same with contact lines."""
+    problem = stage.stage.problem
+    if not isinstance(problem, StepProblem):
+        raise TypeError("contacts of a shaft in two bearings are at nodes")
+    on_lines = tangent if isinstance(tangent, LineTangent) and path[-1].lines is not None else None
+    for start in line_guesses(problem, path, tau):
+        found = stage.solved(start, on_lines)
+        if found is not None:
+            change = found.moving.minus(stage.stage.base, stage.stage.rate)
+            return Reached(on_lines_instant(tau, found.equations, found.moving, change), found.residual, found.tangent)
+    return None
+
+
 def solved(
     stage: Stage, start: tuple[Array, Array, Mask], last: Instant, tangent: BorderedTangent | None
 ) -> StageSolution | None:
@@ -214,7 +241,7 @@ def guesses(path: list[Instant], tau: float) -> list[tuple[Array, Array]]:
     """Unknowns and displacement at `tau`: foretold from the latest instants of `path`, else as they were last."""
     latest, known = path[-1], path[-KNOTS:]
     still = (latest.x, latest.e)
-    if len(known) < 3 or any(instant.points is not None for instant in known):
+    if len(known) < 3 or any(instant.between_nodes for instant in known):
         return [still]
     weights = foretelling([instant.tau for instant in known], tau)
     x, e = (weighted(weights, values) for values in ([i.x for i in known], [i.e for i in known]))
@@ -233,6 +260,9 @@ def estimate(
     wrong = nothing.plus(step, *zip(ERROR, (instant.change for instant in instants), strict=True))
     if isinstance(tangent, ElementTangent):
         pressures, de = response_at_points(bearing.rotor, wrong, (instants[2].tau, step), tangent)
+    elif isinstance(tangent, LineTangent):
+        change, de = response_on_lines(bearing, wrong, (instants[2].tau, step), tangent)
+        pressures = change[bearing.problem.layout.unknowns[PRESSURE]]
     else:
         base, unknowns = TimeState(wrong.stored, -wrong.e, -wrong.v), bearing.problem.layout.unknowns
         stage = replace(bearing.stage(base, instants[2].tau, step, instants[0], StageOptions()), outside=still)
@@ -260,3 +290,16 @@ def response_at_points(
     pull = rotor.resistance(tau, rate) @ wrong.e + rate * (rotor.inertia @ wrong.v)
     change, de = tangent.correction(residual, -pull)
     return change[film], de
+
+
+def response_on_lines(
+    bearing: RotorBearing, wrong: TimeState, at: tuple[float, float], tangent: LineTangent
+) -> tuple[Array, Array]:
+    """Change of the unknowns (n,) and displacement (d,), as `response_at_points` for contact lines."""
+    tau, step = at
+    rate, rotor = 1.0 / (IMPLICIT * step), bearing.rotor
+    pull = rotor.resistance(tau, rate) @ wrong.e + rate * (rotor.inertia @ wrong.v)
+    rows = rate * bearing.problem.rows_of(wrong.stored)
+    closed, slopes = np.zeros(len(tangent.place)), np.zeros(len(tangent.numbers))
+    change, _, de = tangent.moved(LineResiduals(rows, closed, slopes, -pull), None)
+    return change, de

@@ -72,22 +72,22 @@ class StageTangent(Protocol):
         """The same after a correction of this size has answered what another one left."""
 
 
-State = TypeVar("State", bound=StageEquations)
-Tangent = TypeVar("Tangent", bound=StageTangent)
-Change = TypeVar("Change")
+StageState = TypeVar("StageState", bound=StageEquations)
+HeldTangent = TypeVar("HeldTangent", bound=StageTangent)
+StageChange = TypeVar("StageChange")
 
 
 @dataclass(frozen=True)
-class TravellingSolution(Generic[State, Tangent]):
+class TravellingSolution(Generic[StageState, HeldTangent]):
     """What a stage reaches: its equations, what is stepped, the tangent that found it, its largest scaled residual."""
 
-    equations: State
+    equations: StageState
     moving: TimeState
-    tangent: Tangent
+    tangent: HeldTangent
     residual: float
 
 
-class TravellingStage(ABC, Generic[State, Tangent, Change]):
+class TravellingStage(ABC, Generic[StageState, HeldTangent, StageChange]):
     """A stage with contacts between nodes.
 
     Attributes
@@ -105,7 +105,9 @@ class TravellingStage(ABC, Generic[State, Tangent, Change]):
         base = stage.base
         return np.asarray(stage.outside + stage.border_stiffness @ base.e + stage.rate * (stage.inertia @ base.v))
 
-    def reached(self, state: State, tangent: Tangent | None) -> TravellingSolution[State, Tangent] | None:
+    def reached(
+        self, state: StageState, tangent: HeldTangent | None
+    ) -> TravellingSolution[StageState, HeldTangent] | None:
         """The stage's state near one; None if there is none near it."""
         try:
             self.refuse_closed(state)
@@ -119,7 +121,7 @@ class TravellingStage(ABC, Generic[State, Tangent, Change]):
             current_run().note("stage", outcome=str(e))
         return None
 
-    def settled(self, state: State, tangent: Tangent | None) -> tuple[State, Tangent]:
+    def settled(self, state: StageState, tangent: HeldTangent | None) -> tuple[StageState, HeldTangent]:
         """The state with the contacts as they are, apart from points that meet.
 
         Raises
@@ -155,47 +157,47 @@ class TravellingStage(ABC, Generic[State, Tangent, Change]):
         raise NoPointsError("the corrections of a stage do not contract")
 
     @abstractmethod
-    def refuse_closed(self, state: State) -> None:
+    def refuse_closed(self, state: StageState) -> None:
         """Raise where the film is closed."""
 
     @abstractmethod
-    def revised(self, state: State) -> State | None:
+    def revised(self, state: StageState) -> StageState | None:
         """The state with other contacts, where the signs ask for them; None where they are right."""
 
     @abstractmethod
-    def tangent_at(self, state: State) -> Tangent:
+    def tangent_at(self, state: StageState) -> HeldTangent:
         """The factorised equations at a state."""
 
     @abstractmethod
-    def serving(self, tangent: Tangent, state: State) -> Tangent | None:
+    def serving(self, tangent: HeldTangent, state: StageState) -> HeldTangent | None:
         """A tangent at hand as it serves the contacts of a state; None where it does not."""
 
     @abstractmethod
-    def serves(self, tangent: Tangent, state: State) -> bool:
+    def serves(self, tangent: HeldTangent, state: StageState) -> bool:
         """Whether a tangent still does after a correction with it."""
 
     @abstractmethod
-    def correction(self, state: State, tangent: Tangent) -> tuple[Change, State]:
+    def correction(self, state: StageState, tangent: HeldTangent) -> tuple[StageChange, StageState]:
         """A step of Newton's method, and the state it belongs to."""
 
     @abstractmethod
-    def size(self, change: Change) -> float:
+    def size(self, change: StageChange) -> float:
         """Size of a correction [reference films, ambient pressures]."""
 
     @abstractmethod
-    def stepped(self, state: State, tangent: Tangent, change: Change) -> State:
+    def stepped(self, state: StageState, tangent: HeldTangent, change: StageChange) -> StageState:
         """The state after a correction."""
 
     @abstractmethod
-    def asked_for(self, tangent: Tangent, state: State) -> float:
+    def asked_for(self, tangent: HeldTangent, state: StageState) -> float:
         """Correction that what is left of the film's rows asks for, as far as the tangent has been seen to answer."""
 
     @abstractmethod
-    def residual(self, state: State) -> float:
+    def residual(self, state: StageState) -> float:
         """Largest scaled residual."""
 
     @abstractmethod
-    def moving(self, state: State) -> TimeState:
+    def moving(self, state: StageState) -> TimeState:
         """Gas, position and velocity of a state of this stage."""
 
 

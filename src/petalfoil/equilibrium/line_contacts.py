@@ -240,7 +240,7 @@ class LineContacts:
         return stepped(there, LineTangent.of(self, self.motion.growing(0.0, current_run().probe_solver)))
 
 
-Contacts = TypeVar("Contacts", bound=LineContacts)
+StateOnLines = TypeVar("StateOnLines", bound=LineContacts)
 """A state, at rest or in a step in time."""
 
 
@@ -265,7 +265,7 @@ def step_of(state: LineContacts, tangent: LineTangent) -> LineChange:
     return tangent.correction(state, LineResiduals.of(state), way)
 
 
-def changed(state: Contacts, tangent: LineTangent, change: LineChange, trust: float) -> Contacts:
+def changed(state: StateOnLines, tangent: LineTangent, change: LineChange, trust: float) -> StateOnLines:
     """The state after a change by a tangent, shortened where pressures would vanish.
 
     Points travel `trust` cells at most.

@@ -18,7 +18,7 @@ from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
 from petalfoil.equilibrium.line_signs import freed_near_ends, parted, revised
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.equilibrium.travelling_contacts import placed_points
+from petalfoil.equilibrium.travelling_contacts import NodalContacts, placed_points
 from petalfoil.physics.line_points import LinePoints
 from petalfoil.solvers.constraints import constrain
 
@@ -88,7 +88,7 @@ def between_nodes(solution: Solution) -> LineContacts | None:
     return None
 
 
-def start_at(solution: Solution) -> LineContacts:
+def start_at(solution: NodalContacts) -> LineContacts:
     """The state of an equilibrium with contacts at nodes, its isolated ones at the points where they are (K8)."""
     problem = solution.problem
     placed = placed_points(solution, problem.linearize(solution.x))

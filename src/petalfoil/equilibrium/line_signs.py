@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.line_contacts import Contacts, LineContacts
+from petalfoil.equilibrium.line_contacts import LineContacts, StateOnLines
 from petalfoil.physics.contact_points import MARGIN, POINT_NODES
 from petalfoil.physics.line_points import LinePoints
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
@@ -34,7 +34,7 @@ EARLY_PULL = 1e-6
 """A reaction this far below zero leaves such a state, in ambient pressure on a node."""
 
 
-def parted(state: Contacts) -> Contacts:
+def parted(state: StateOnLines) -> StateOnLines:
     """With the nodes beside each point at which the gap does not curve upward in its place."""
     held = state.held.copy()
     held[state.points.beside[state.doubled].ravel()] = True
@@ -44,18 +44,19 @@ def parted(state: Contacts) -> Contacts:
     return replace(state, points=points, reaction=reaction, held=held, held_reaction=shared[held])
 
 
-def revised(state: Contacts) -> Contacts | None:
+def revised(state: StateOnLines, pull: float = RESIDUAL_TOLERANCE) -> StateOnLines | None:
     """Other contacts, where the signs ask for them; None where they are right.
 
     Reactions that pull leave. A point at which the gap does not curve upward is two contacts within a cell, at the
     nodes beside it. Of nodes whose gaps are below zero the lowest of each run gains a point, unless there is one beside
     it: all of them would be more contacts than the petal has freedom to meet. A gap that is below zero between nodes
-    alone gains one where it is least.
+    alone gains one where it is least. Reactions that pull by no more than
+    `pull`, in ambient pressure on a node, are rounding.
     """
     if np.any(state.doubled):
         return parted(state)
-    bears = state.held_reaction > -RESIDUAL_TOLERANCE * state.problem.weight[state.held]
-    pushes = state.reaction > -RESIDUAL_TOLERANCE
+    bears = state.held_reaction > -pull * state.problem.weight[state.held]
+    pushes = state.reaction > -pull
     fresh = lowest_of_runs(state, (state.gaps < -PENETRATION) & ~covered(state))
     between = dips(state, fresh)
     if bears.all() and pushes.all() and not len(fresh) and not len(between.phi):
@@ -65,7 +66,20 @@ def revised(state: Contacts) -> Contacts | None:
     return replace(gained, points=gained.points.joined(between), reaction=np.concatenate([gained.reaction, none_yet]))
 
 
-def corrected_early(state: Contacts, *, frees: bool) -> Contacts:
+def revised_in_time(state: StateOnLines, pull: float) -> StateOnLines | None:
+    """The same of a state in a step in time.
+
+    A single node beside a gap that has closed becomes a point: what was a stretch of contacts has receded to it, and
+    goes on.
+    """
+    if not np.any(state.doubled):
+        freer = freed_beside(state, state.gaps < -PENETRATION)
+        if freer is not state:
+            return freer
+    return revised(state, pull)
+
+
+def corrected_early(state: StateOnLines, *, frees: bool) -> StateOnLines:
     """Other contacts before Newton's method has converged, where the signs ask for them; the state itself where not.
 
     As long as it `frees` contacts, single nodes become points, and points at which the gap does not curve upward may
@@ -81,7 +95,7 @@ def corrected_early(state: Contacts, *, frees: bool) -> Contacts:
     return gaining(freed(left) if frees else left, fresh)
 
 
-def gaining(state: Contacts, fresh: Index) -> Contacts:
+def gaining(state: StateOnLines, fresh: Index) -> StateOnLines:
     """The state with contacts at the nodes of some gaps: points, but at the ends of lines, where nothing travels."""
     ends = np.concatenate([lines.number[:, [0, -1]].ravel() for lines in state.points.lines])
     at_ends = np.isin(fresh, ends)
@@ -93,13 +107,13 @@ def gaining(state: Contacts, fresh: Index) -> Contacts:
     return replace(state, points=points, reaction=reaction, held=held, held_reaction=carried[held])
 
 
-def bearing_alone(state: Contacts) -> Contacts:
+def bearing_alone(state: StateOnLines) -> StateOnLines:
     """The state without contacts whose reactions are below zero, foretold ones: they would leave a tangent later."""
     pulls, also = state.held_reaction < 0.0, state.reaction < 0.0
     return without(state, pulls, also) if pulls.any() or also.any() else state
 
 
-def without(state: Contacts, nodes: Mask, points: Mask) -> Contacts:
+def without(state: StateOnLines, nodes: Mask, points: Mask) -> StateOnLines:
     """The state without some of its contacts, `nodes` (j,) and `points` (k,)."""
     held = state.held.copy()
     held[np.flatnonzero(held)] = ~nodes
@@ -112,10 +126,19 @@ def without(state: Contacts, nodes: Mask, points: Mask) -> Contacts:
     )
 
 
-def freed(state: Contacts) -> Contacts:
+def freed(state: StateOnLines) -> StateOnLines:
     """With points in place of contacts at single nodes away from the ends of their lines: they are free to travel."""
     alone = single_nodes(state)
     return with_points_at(state, alone, reactions_at_nodes(state), alone)
+
+
+def freed_beside(state: StateOnLines, below: Mask) -> StateOnLines:
+    """The same of single nodes with a gap `below` (m,) beside them alone: that is where their contact travels to."""
+    alone, beside = single_nodes(state), np.zeros_like(below)
+    for lines in state.points.lines:
+        low = np.pad(below[lines.number], ((0, 0), (1, 1)))
+        beside[lines.number] = low[:, :-2] | low[:, 2:]
+    return with_points_at(state, alone & beside, reactions_at_nodes(state), alone & beside)
 
 
 def single_nodes(state: LineContacts) -> Mask:
@@ -130,7 +153,7 @@ def single_nodes(state: LineContacts) -> Mask:
     return alone
 
 
-def freed_near_ends(state: Contacts) -> Contacts:
+def freed_near_ends(state: StateOnLines) -> StateOnLines:
     """With points in place of short runs of nodes beside the ends of their lines, where a petal lies near a root.
 
     Curvatures of the nodal gap cannot be read there on both sides, so that (K8) does not place these points: they begin
@@ -157,7 +180,7 @@ def reactions_at_nodes(state: LineContacts) -> Array:
     return out
 
 
-def with_points_at(state: Contacts, begins: Mask, reaction: Array, runs: Mask) -> Contacts:
+def with_points_at(state: StateOnLines, begins: Mask, reaction: Array, runs: Mask) -> StateOnLines:
     """The state with points at the nodes `begins` in place of contacts at the nodes `runs`; reactions at all (m,)."""
     if not begins.any():
         return state

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from petalfoil.equilibrium.line_exchange import CurveRows, FactorAnswers, LineExchange, Turning
 from petalfoil.equilibrium.linear_response import LinearResponse
 from petalfoil.solvers.constraints import places_among
+from petalfoil.solvers.tangent import SeenTangent
 from petalfoil.sparsity import SparseRows
 
 if TYPE_CHECKING:
@@ -71,13 +72,13 @@ class LineChange:
     phi: Array
 
 
-@dataclass(frozen=True)
-class LineTangent:
-    """A tangent and the contacts that it serves.
+@dataclass(frozen=True, kw_only=True)
+class LineTangent(SeenTangent):
+    """A tangent and the contacts that it serves; residuals that it is seen to answer are those of the film's rows.
 
     Attributes
     ----------
-    response : LinearResponse
+    linear : LinearResponse
         The factorised tangent of a state.
     answers : FactorAnswers
         What it has been asked for, by whatever contacts it served.
@@ -89,18 +90,21 @@ class LineTangent:
         How many of them are at nodes, `j`.
     by_e : (j + k, n_position) array
         Derivative of their gaps by the position of the journal [1].
+    springs : (n_position, n_position) array
+        Stiffness of what holds the journal beside film and contacts [1].
     exchange : LineExchange or None
         How they differ; None where they are the same.
     turning : (c,) int array
         Points of the exchange that turn with another stiffness; -1 of those that have ended.
     """
 
-    response: LinearResponse
+    linear: LinearResponse
     answers: FactorAnswers
     nodes: Mask
     place: Index
     at_nodes: int
     by_e: Array
+    springs: Array
     exchange: LineExchange | None = None
     turning: Index = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
 
@@ -109,14 +113,22 @@ class LineTangent:
         """That of a state itself."""
         contacts = response.motion.contacts
         by_e, answers = contacts.gap_by_e, FactorAnswers(response.factorised, contacts.slope_by_x)
-        return cls(response, answers, state.held, np.arange(len(by_e)), len(state.held_reaction), by_e)
+        return cls(
+            linear=response,
+            answers=answers,
+            nodes=state.held,
+            place=np.arange(len(by_e)),
+            at_nodes=len(state.held_reaction),
+            by_e=by_e,
+            springs=state.springs,
+        )
 
     def on(self, state: LineContacts) -> LineTangent | None:
         """The same for the contacts of a later state; None where a factorisation is better."""
         place = self._places(state)
         if place is None:
             return None
-        contacts, known = self.response.motion.contacts, place >= 0
+        contacts, known = self.linear.motion.contacts, place >= 0
         opened = np.ones(contacts.constraints.G.shape[0], dtype=np.bool_)
         opened[place[known]] = False
         added, (turning, number) = np.flatnonzero(~known), self._turning(state, place)
@@ -139,7 +151,7 @@ class LineTangent:
 
     def _turning(self, state: LineContacts, place: Index) -> tuple[Turning, Index]:
         """Points whose travel stiffness is another, and their numbers among those of the state, (c,) (-1: ended)."""
-        contacts, points = self.response.motion.contacts, place[len(state.held_reaction) :] - self._first_point
+        contacts, points = self.linear.motion.contacts, place[len(state.held_reaction) :] - self._first_point
         own, before = state.travel_stiffness, contacts.travel_stiffness
         here = np.full(len(before), -1)
         here[points[points >= 0]] = np.flatnonzero(points >= 0)
@@ -169,7 +181,7 @@ class LineTangent:
     @cached_property
     def _turns(self) -> SparseRows:
         """`n'` of the points of the factor, (k, n)."""
-        return SparseRows(self.response.motion.contacts.slope_by_x)
+        return SparseRows(self.linear.motion.contacts.slope_by_x)
 
     @cached_property
     def _first_point(self) -> int:
@@ -181,7 +193,14 @@ class LineTangent:
         The journal goes a given `way` (n_position,), as in (C14); where that is None, its position follows under the
         load.
         """
-        contacts, number = self.response.motion.contacts, self.numbers
+        dx, dlam, way = self.moved(left, way)
+        by_e = state.problem.layout.wall.contacts.by_e
+        after = left.slopes + state.points.along(state.problem.G @ dx + by_e @ way)[1]
+        return LineChange(dx, dlam, way, -after / state.bending)
+
+    def moved(self, left: LineResiduals, way: Array | None) -> tuple[Array, Array, Array]:
+        """The same of unknowns (n,), reactions (j + k,) and position (n_position,)."""
+        contacts, number = self.linear.motion.contacts, self.numbers
         slopes = np.zeros(len(contacts.travel_stiffness))
         slopes[number[number >= 0]] = left.slopes[number >= 0]
         travel, turned = contacts.travel_stiffness * slopes, np.append(left.slopes, 0.0)[self.turning]
@@ -192,16 +211,14 @@ class LineTangent:
         if np.any(way):
             units, reactions, _ = self.units
             dx, dlam = dx + units @ way, dlam + reactions @ way
-        by_e = state.problem.layout.wall.contacts.by_e
-        after = left.slopes + state.points.along(state.problem.G @ dx + by_e @ way)[1]
-        return LineChange(dx, dlam, way, -after / state.bending)
+        return dx, dlam, way
 
     def respond(self, rows: Array, closed: Array, turned: Array) -> tuple[Array, Array, Array]:
         """Change of the unknowns (n,) and of the reactions (j + k,), and moments at points `turning` (c,).
 
         Against `rows` (n,), gaps `closed` (j + k,), and slopes `turned` (c,) of these points.
         """
-        tangent, known = self.response.factorised, self.place >= 0
+        tangent, known = self.linear.factorised, self.place >= 0
         own = np.zeros(tangent.constraints.G.shape[0])
         own[self.place[known]] = closed[known]
         return self._amended(*tangent.respond(rows, own), closed, turned)
@@ -217,7 +234,7 @@ class LineTangent:
     @cached_property
     def units(self) -> tuple[Array, Array, Array]:
         """The same by a unit of each coordinate of the journal, (n, d), (j + k, d) and (c, d)."""
-        own = self.response.tangent
+        own = self.linear.tangent
         slopes = np.zeros((0, self.by_e.shape[1])) if self.exchange is None else self.exchange.turning.slopes.by_e
         each = zip(own.units.T, own.reaction_units.T, self.by_e.T, slopes.T, strict=True)
         dx, dlam, moments = zip(*(self._amended(*one) for one in each), strict=True)
@@ -225,13 +242,14 @@ class LineTangent:
 
     @cached_property
     def gradient(self) -> Array:
-        """`dF/de` on the journal, (n_position, n_position)."""
+        """`dF/de` on the journal less its `springs`, (n_position, n_position)."""
         columns = zip(*(part.T for part in self.units), strict=True)
-        return np.column_stack([self.border_rows(*one) for one in columns]) - self.response.motion.contacts.gradient
+        by_e = np.column_stack([self.border_rows(*one) for one in columns])
+        return by_e - self.linear.motion.contacts.gradient - self.springs
 
     def border_rows(self, dx: Array, dlam: Array, moments: Array) -> Array:
         """Force on the journal by changes of the unknowns (n,), reactions (j + k,) and their travel (E13)."""
-        border = self.response.tangent.border
+        border = self.linear.tangent.border
         force = border.row_derivative @ dx[border.columns] + self.by_e.T @ dlam
         return np.asarray(force if self.exchange is None else force - self.exchange.turning.slopes.by_e.T @ moments)
 

@@ -28,7 +28,7 @@ from petalfoil.solvers.constraints import constrain
 from petalfoil.solvers.point_constraints import PointConstraints, constrain_points
 from petalfoil.solvers.tangent import GapRows
 from petalfoil.sparsity import SparseRows
-from petalfoil.system.coupled import Linearization
+from petalfoil.system.coupled import CoupledProblem, Linearization
 
 Array = NDArray[np.float64]
 
@@ -51,6 +51,30 @@ class PlacedPoints(Protocol):
     @property
     def travel_stiffness(self) -> Array:
         """`lam / p''` of (E12), in units of reaction over gap, (k,) [rad^2]."""
+
+
+class NodalContacts(Protocol):
+    """A state with contacts at nodes."""
+
+    @property
+    def problem(self) -> CoupledProblem:
+        """Speed and position."""
+
+    @property
+    def x(self) -> Array:
+        """Unknowns, (n,) [1]."""
+
+    @property
+    def lam(self) -> Array:
+        """Reactions, (m,) [1]."""
+
+    @property
+    def active(self) -> NDArray[np.bool_]:
+        """Contacts that carry load, (m,)."""
+
+    @property
+    def load(self) -> Array | None:
+        """Load that it balances over the unit of force, (n_position,) [1]; None at a fixed position."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +141,7 @@ class TravellingContacts:
         return np.asarray(self.slope_by_e.T @ (self.travel_stiffness[:, None] * self.slope_by_e))
 
 
-def placed_points(solution: Solution, linearized: Linearization) -> IsolatedContacts:
+def placed_points(solution: NodalContacts, linearized: Linearization) -> IsolatedContacts:
     """Contact points of an equilibrium whose contacts determine it, where they are (K8): one factorisation."""
     problem, active = solution.problem, solution.active
     points = IsolatedContacts.of(problem.layout.wall.contacts, problem.gaps(solution.x), solution.lam, active)

@@ -74,6 +74,9 @@ COORDINATES: dict[str, Variable] = {
     "point_number": Variable(
         ("point_number",), "1", "number in the list of contact points", "q", DataType.INT, Role.GEOMETRY
     ),
+    "line_number": Variable(
+        ("line_number",), "1", "number in the list of contact lines", "q", DataType.INT, Role.GEOMETRY
+    ),
     "slide": Variable(("slide",), "1", "number of a place where petals slide", "i", DataType.INT, Role.GEOMETRY),
     "axis": Variable(("axis",), "1", "direction: 0 along x, 1 along y", "i", DataType.INT, Role.GEOMETRY),
 }
@@ -171,6 +174,12 @@ HISTORIES: dict[str, Variable] = {
         ("point_number",),
         "1",
         "contact points at the end: how many travel, curves, positions, points in stretches, reactions",
+        "t",
+    ),
+    "last_lines": Variable(
+        ("line_number",),
+        "1",
+        "contact lines at the end: how many points, their kinds, lines, angles and reactions, then nodes and theirs",
         "t",
     ),
     "last_position": Variable(("axis",), "m", "displacement of the journal's centre at the end", "e"),
