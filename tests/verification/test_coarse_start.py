@@ -7,9 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import petalfoil
-from petalfoil.analysis.operating_point import begins_with_lines
 from petalfoil.case import Case
-from petalfoil.equilibrium.coarse_start import by_coarse_grid, coarser, settled_early
+from petalfoil.equilibrium.coarse_start import begins_with_lines, by_coarse_grid, coarser, settled_early
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
 from petalfoil.equilibrium.line_sets import between_nodes, settled, with_lines
@@ -187,11 +186,11 @@ def test_where_petals_lie_along_each_other_others_are_looked_for() -> None:
 
 
 def test_heat_friction_and_nodes_begin_on_their_own_grid() -> None:
-    assert begins_with_lines(bearing())
-    assert not begins_with_lines(bearing(**{"model.contacts": "nodes"}))
-    assert not begins_with_lines(bearing(**{"operation.speed": 0.0}))
-    assert not begins_with_lines(bearing(**{"surface.petal_friction": 0.1}))
-    assert not begins_with_lines(case("paper_n8"))
+    assert begins_with_lines(bearing(), None)
+    assert not begins_with_lines(bearing(**{"model.contacts": "nodes"}), None)
+    assert not begins_with_lines(bearing(**{"operation.speed": 0.0}), None)
+    assert not begins_with_lines(bearing(**{"surface.petal_friction": 0.1}), None)
+    assert not begins_with_lines(case("paper_n8"), None)
 
 
 @pytest.mark.slow

@@ -95,12 +95,8 @@ def position_point(case: Case, problem: CoupledProblem | None = None) -> Operati
     ConvergenceError
         None was found.
     """
-    if begins_with_lines(case) and case.operation.moment is None:
-        problem = problem or build_problem(case)
-        found = from_coarse_grid(problem, None)
-        if found is not None:
-            return found
-    return with_reported(case, at_position(case, problem))
+    problem = problem or build_problem(case)
+    return from_coarse_grid(problem, None) or with_reported(case, at_position(case, problem))
 
 
 def loaded_point(case: Case, load: Vector) -> OperatingPoint:
@@ -111,8 +107,9 @@ def loaded_point(case: Case, load: Vector) -> OperatingPoint:
     ConvergenceError
         No position was found.
     """
-    found = from_coarse_grid(build_problem(case), load) if begins_with_lines(case) else None
-    return found or with_reported(case, OperatingPoint(*under_load(case, load)))
+    problem = build_problem(case) if case.shares_evenly else None
+    found = None if problem is None else from_coarse_grid(problem, load)
+    return found or with_reported(case, OperatingPoint(*under_load(case, load, problem)))
 
 
 def from_coarse_grid(problem: CoupledProblem, load: Vector | None) -> OperatingPoint | None:
@@ -129,12 +126,6 @@ def from_coarse_grid(problem: CoupledProblem, load: Vector | None) -> OperatingP
         return None
     keep(found, alone=False)
     return OperatingPoint(found, branch(rate, case, 1 if load is None else None, found.solution_path))
-
-
-def begins_with_lines(case: Case) -> bool:
-    """Whether a coarser grid may lead to its equilibrium: one with contact lines, no temperatures or friction."""
-    slides = case.surface.petal_friction == 0.0
-    return case.has_contact_lines and slides and case.heat is None and case.shares_evenly and case.operation.speed > 0.0
 
 
 def with_reported(case: Case, found: OperatingPoint) -> OperatingPoint:
@@ -166,10 +157,11 @@ def applied_load(case: Case, load: Vector | None) -> Vector:
     return wanted
 
 
-def under_load(case: Case, load: Vector) -> tuple[Solution, Branch]:
+def under_load(case: Case, load: Vector, problem: CoupledProblem | None = None) -> tuple[Solution, Branch]:
     """The balance to report: if the first one found is unstable, the one that is followed from rest under the load.
 
-    The load is that of the whole rotor: two bearings carry half of it each.
+    The load is that of the whole rotor: two bearings carry half of it each. `problem` is that of the case, if it is at
+    hand.
 
     Raises
     ------
@@ -181,8 +173,7 @@ def under_load(case: Case, load: Vector) -> tuple[Solution, Branch]:
     if follows_path(case):
         found = SpeedLine(case, load, leads=False).climb(case.operation.speed)
         return found, Branch(solution_path=found.solution_path)
-    problem = build_problem(case)
-    found, rate = begun_under_load(problem, load)
+    found, rate = begun_under_load(problem or build_problem(case), load)
     if case.heat is not None:
         found = in_heat(case, found, load)
         rate = leading_eigenvalue(found)

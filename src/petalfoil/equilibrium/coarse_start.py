@@ -52,14 +52,13 @@ FREES = 3
 def by_coarse_grid(problem: CoupledProblem, load: Array | None) -> Solution | None:
     """The equilibrium at the position of `problem`, or under a `load` (n_position,), by way of a coarser grid.
 
-    None where no coarser grid is worth it, where it has no contact lines or may have other equilibria, or where its
-    lines do not lead to some on the grid of `problem`.
+    None for a case that does not begin so (`begins_with_lines`), where no coarser grid is worth it, where it has no
+    contact lines or may have other equilibria, or where its lines do not lead to some on the grid of `problem`.
     """
-    coarse = coarser(problem.layout.case)
-    if coarse is None or problem.layout.fields:
-        return None
-    known = on_coarse_grid(problem, coarse, load)
-    if known is None or not isinstance(known.lines, LineContacts):
+    case = problem.layout.case
+    coarse = coarser(case) if begins_with_lines(case, load) and not problem.layout.fields else None
+    known = None if coarse is None else on_coarse_grid(problem, coarse, load)
+    if coarse is None or known is None or not isinstance(known.lines, LineContacts):
         return None
     here = problem if load is None else problem.at(displacement=known.lines.problem.displacement)
     try:
@@ -72,6 +71,16 @@ def by_coarse_grid(problem: CoupledProblem, load: Array | None) -> Solution | No
     path = f"from the equilibrium on {coarse.cells_per_pitch} × {coarse.axial_cells} cells"
     answer = replace(sampled_lines(found, load), solution_path=path, shortest_step=known.shortest_step)
     return None if doubtful(answer) else answer
+
+
+def begins_with_lines(case: Case, load: Array | None) -> bool:
+    """Whether a coarser grid may lead to its equilibrium: one with contact lines, no temperatures or friction.
+
+    A moment is balanced under a load only.
+    """
+    slides, balances = case.surface.petal_friction == 0.0, load is not None or case.operation.moment is None
+    has_lines = case.has_contact_lines and case.heat is None and case.shares_evenly
+    return has_lines and slides and balances and case.operation.speed > 0.0
 
 
 def coarser(case: Case) -> Case | None:
