@@ -7,7 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import petalfoil
+from petalfoil.analysis.operating_point import position_point, rate_on_few_cells
 from petalfoil.case import Case
+from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.equilibrium.coarse_start import begins_with_lines, by_coarse_grid, coarser, settled_early
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
@@ -76,6 +78,21 @@ def test_it_leads_to_the_equilibrium_that_is_found_from_nothing() -> None:
     assert 0 < run.film.factorizations < 0.4 * cold.film.factorizations
     assert run.pack.factorizations == 0
     assert run.coarse.factorizations > 10
+
+
+@pytest.mark.slow
+def test_growth_rates_seen_from_near_that_on_few_cells_are_those_seen_from_zero() -> None:
+    """In fewer solves than from zero, which shows as a rate that differs in its last digits."""
+    case = bearing(48, 16)
+    found = position_point(case)
+    rate = leading_eigenvalue(found.answer)
+    assert found.answer.solution_path == "from the equilibrium on 16 × 16 cells"
+    assert found.answer.on_few_cells is None
+    assert found.branch.growth_rate == pytest.approx(rate.real * case.operation.speed, rel=1e-6)
+    assert found.branch.growth_rate != rate.real * case.operation.speed
+    with running() as run:
+        assert rate_on_few_cells(found.answer) == 0.0
+    assert run.coarse.factorizations == 0
 
 
 @pytest.mark.slow

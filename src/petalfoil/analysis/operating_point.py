@@ -25,7 +25,7 @@ from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.equilibrium.branches import different, pressing_least
 from petalfoil.equilibrium.coarse_start import by_coarse_grid
 from petalfoil.equilibrium.heated import ThermalRunawayError
-from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.run_context import current_run, running
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold
 from petalfoil.equilibrium.whole_length import balance_from_nothing, first_attempt
@@ -121,11 +121,23 @@ def from_coarse_grid(problem: CoupledProblem, load: Vector | None) -> OperatingP
     found = by_coarse_grid(problem, None if load is None else load_of(case, load, problem.layout))
     if found is None:
         return None
-    rate = leading_eigenvalue(found)
+    rate = leading_eigenvalue(found, rate_on_few_cells(found))
     if rate.real > 0.0:
         return None
+    found = replace(found, on_few_cells=None)
     keep(found, alone=False)
     return OperatingPoint(found, branch(rate, case, 1 if load is None else None, found.solution_path))
+
+
+def rate_on_few_cells(found: Solution) -> float:
+    """Growth rate of the equilibrium on few cells that led to the one `found`, 0 where none did [1]."""
+    below, outer = found.on_few_cells, current_run()
+    if below is None or below.contacts is None:
+        return 0.0
+    with running() as run:
+        rate = leading_eigenvalue(below).real
+    outer.coarse.factorizations += run.probes.factorizations
+    return rate
 
 
 def with_reported(case: Case, found: OperatingPoint) -> OperatingPoint:

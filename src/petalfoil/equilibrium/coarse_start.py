@@ -70,6 +70,7 @@ def by_coarse_grid(problem: CoupledProblem, load: Array | None) -> Solution | No
     current_run().note("contact lines", points=len(found.reaction), nodes=int(found.held.sum()))
     path = f"from the equilibrium on {coarse.cells_per_pitch} × {coarse.axial_cells} cells"
     answer = replace(sampled_lines(found, load), solution_path=path, shortest_step=known.shortest_step)
+    answer = replace(answer, on_few_cells=known.on_few_cells or known)
     return None if doubtful(answer) else answer
 
 

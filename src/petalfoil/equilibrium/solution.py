@@ -116,6 +116,8 @@ class Solution:
         What its state at the nodes is sampled from; None of an equilibrium with contacts at nodes.
     shortest_step : float or None
         Shortest step of the interior point that led to it, over Newton's [1]; None of solutions reached otherwise.
+    on_few_cells : Solution or None
+        The equilibrium on few cells that led to it.
     """
 
     problem: CoupledProblem
@@ -133,6 +135,7 @@ class Solution:
     friction: FrictionPath | None = field(default=None, repr=False)
     shortest_step: float | None = None
     sampled: ElementEquilibrium | None = field(default=None, repr=False)
+    on_few_cells: Solution | None = field(default=None, repr=False)
 
     @property
     def position(self) -> Array:
