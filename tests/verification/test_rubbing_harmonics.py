@@ -16,11 +16,12 @@ from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
 from petalfoil.analysis.stability import harmonics_told, stability
 from petalfoil.case import Case
 from petalfoil.dynamics.critical_mass import Whirl
+from petalfoil.dynamics.eigenpairs import Eigenpair
 from petalfoil.dynamics.more_harmonics import bettered
 from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.dynamics.rotor_motion import Inertia
 from petalfoil.dynamics.rubbing_cycle import CHANGE, ONE_HARMONIC, HarmonicsTold, RubbingCycle
-from petalfoil.dynamics.rubbing_modes import Eigenpair, RubbingMode, RubbingNeutral, RubbingRotor
+from petalfoil.dynamics.rubbing_modes import NeutralWhirls, RubbingMode, RubbingNeutral, RubbingRotor
 from petalfoil.dynamics.rubbing_whirl import RubbingResponse, RubbingWhirl
 from petalfoil.equilibrium.run_context import current_run, running
 from petalfoil.results.record import Record
@@ -32,31 +33,37 @@ LOAD, MASS, RUBS, SPEED = (0.0, -20.0), 2.0, 10e-6, 8000.0
 """Under the rotor, its mass [kg], an amplitude at which contacts stick and slip in turn [m], speed [rad/s]."""
 
 
-def bearing() -> Case:
+def bearing(*, spatial: bool = False) -> Case:
     """Eight petals with friction on a coarse grid."""
-    return case("paper_n8", **{"surface.petal_friction": 0.3, "model.cells_per_pitch": 12, "operation.speed": SPEED})
+    rubs = {"surface.petal_friction": 0.3, "operation.speed": SPEED}
+    if spatial:
+        grid = {"model.cells_per_pitch": 8, "model.axial_cells": 4}
+        return case("paper_n8_spatial", **rubs, **grid, **{"petals.theory": "shell"})
+    return case("paper_n8", **rubs, **{"model.cells_per_pitch": 12})
 
 
 @cache
-def stuck() -> Impedance:
+def stuck(*, spatial: bool = False) -> Impedance:
     """The impedance of petals that stick."""
+    of = bearing(spatial=spatial)
     with running():
-        return RotorOnBearings(bearing(), MASS).impedance(operating_point(bearing(), LOAD).answer)
+        return RotorOnBearings(of, MASS).impedance(operating_point(of, LOAD).answer)
 
 
-def rubbing() -> RubbingWhirl:
+def rubbing(*, spatial: bool = False) -> RubbingWhirl:
     """The bearing at the amplitude."""
-    return RubbingWhirl.of(stuck().motion, RUBS)
+    return RubbingWhirl.of(stuck(spatial=spatial).motion, RUBS)
 
 
-def along_x() -> RubbingRotor:
+def along_x(*, spatial: bool = False) -> RubbingRotor:
     """A rotor that is a billion times as heavy across, so that it moves along x alone."""
-    return RubbingRotor(rubbing(), replace(Inertia.of_mass(MASS), mass=np.diag([MASS, 1e9 * MASS])), SPEED)
+    inertia = replace(Inertia.of_mass(MASS), mass=np.diag([MASS, 1e9 * MASS]))
+    return RubbingRotor(rubbing(spatial=spatial), inertia, SPEED)
 
 
-def mode_along_x() -> tuple[Eigenpair, HarmonicsTold, Eigenpair]:
+def mode_along_x(*, spatial: bool = False) -> tuple[Eigenpair, HarmonicsTold, Eigenpair]:
     """Its mode with as many harmonics as it needs, how many, and with one."""
-    rotor = along_x()
+    rotor = along_x(spatial=spatial)
     one = rotor.near((-0.02 + 0.065j, np.array([1.0, 0.0], dtype=complex)))
     assert one is not None
     return *bettered(rotor.whirl, one, rotor.near_in), one
@@ -82,22 +89,42 @@ def test_the_resistance_to_a_motion_along_an_axis_is_a_column_of_stiffness_and_d
 
 
 @pytest.mark.slow
-def test_a_mode_along_a_line_solves_its_equation_with_the_cycle_of_coefficients() -> None:
+@pytest.mark.parametrize("spatial", [False, True], ids=["2d", "3d"])
+def test_a_mode_along_a_line_solves_its_equation_with_the_cycle_of_coefficients(spatial: bool) -> None:
     """(E19) at its complex frequency, formed anew and with as many harmonics as that finds enough, to 1e-6."""
     with running():
-        several, told, one = mode_along_x()
-        bearing_ = rubbing().bearings[0]
+        several, told, one = mode_along_x(spatial=spatial)
+        bearing_ = rubbing(spatial=spatial).bearings[0]
         assert bearing_.sliding is not None
         left = []
         for found in (several, one):
-            cycle = RubbingCycle.of(bearing_.sliding, bearing_.motion, found.number, rubbing().amplitude)
+            whirl = rubbing(spatial=spatial)
+            cycle = RubbingCycle.of(bearing_.sliding, bearing_.motion, found.number, whirl.amplitude)
             gradient = cycle.force_gradient()
             inert = MASS * (SPEED * found.number) ** 2
-            left.append(abs(inert - rubbing().stiffness_unit * gradient.force[0, 0]) / abs(inert))
+            left.append(abs(inert - whirl.stiffness_unit * gradient.force[0, 0]) / abs(inert))
     assert told.friction_harmonics == gradient.told.friction_harmonics >= 8
     assert told.friction_harmonics_change <= CHANGE
     assert left[0] < 1e-6
     assert left[1] > 1e-2
+
+
+@pytest.mark.slow
+def test_a_neutral_whirl_is_a_mode_that_neither_grows_nor_dies_out() -> None:
+    """With the harmonics that it needs at 2 um: of a rotor of its mass, whose mode with one harmonic is another."""
+    with running():
+        whirl = RubbingWhirl.of(stuck().motion, 2e-6)
+        neutral = NeutralWhirls(whirl, Inertia.of_mass(MASS), SPEED)
+        one = neutral.near(0.1, next(neutral.shapes(0.1)))
+        assert one is not None
+        several, told = bettered(whirl, one, neutral.near_in)
+        assert told.friction_harmonics >= 8
+        inertia = Inertia.of_mass(several.mass)
+        mode = RubbingRotor(whirl.with_enough(several.motion), inertia, SPEED).near(several.motion)
+        same = RubbingRotor(whirl, inertia, SPEED).near(several.motion)
+    assert mode is not None
+    assert mode.number == pytest.approx(1j * several.ratio, abs=1e-6)
+    assert same is None or abs(same.number - mode.number) > 1e-3
 
 
 @pytest.mark.slow
@@ -152,7 +179,7 @@ def test_a_mode_that_is_not_found_again_has_ended_in_a_fold(monkeypatch: pytest.
 def test_the_fewest_harmonics_are_told() -> None:
     """Of the critical whirl and the modes; one that kept one harmonic is not hidden by the others."""
     v = np.array([1.0, 0.0], dtype=complex)
-    eight = RubbingNeutral(1.0, 0.5, v, HarmonicsTold(8, 1e-3))
+    eight = RubbingNeutral(1.0, 0.5, v, HarmonicsTold(8, 1e-3), np.eye(4))
     assert harmonics_told(eight, None) == HarmonicsTold(8, 1e-3)
     assert harmonics_told(Whirl(np.inf, np.nan), None).friction_harmonics == 1
     kept = harmonics_told(eight, [mode_with(ONE_HARMONIC), mode_with(HarmonicsTold(16, 2e-3))])

@@ -12,6 +12,7 @@
 `harmonic_tangent.py`      their steps of Newton
 `rubbing_cycle.py`         force of either on the journal, with as many harmonics as it needs
 `rubbing_whirl.py`         the bearing in such a whirl, on an ellipse of any shape
+`eigenpairs.py`            a number and a shape that solve equations
 `rubbing_modes.py`         natural modes and neutral whirls at that amplitude
 `more_harmonics.py`        those with as many harmonics of the slips as they need
 `speed_schedule.py`        speed and angle of the shaft over time

@@ -32,9 +32,6 @@ CHANGE = 5e-3
 LARGEST = 2048
 """Most slips, one or two of each contact, with several harmonics: the step of Newton takes time in their cube."""
 
-LARGEST_IN_WHIRLS = 64
-"""Most slips with several harmonics where a free whirl is solved for, along lines: it does so at every evaluation."""
-
 
 @dataclass(frozen=True)
 class HarmonicsTold:
@@ -72,11 +69,6 @@ ONE_HARMONIC = HarmonicsTold(1, np.nan)
 def takes_several(sliding: SlidingContacts) -> bool:
     """Whether slips have several harmonics: of contacts that are not too many."""
     return len(sliding.limit) <= LARGEST
-
-
-def solves_several(sliding: SlidingContacts) -> bool:
-    """Whether they have several in free whirls: of few contacts, each along a line."""
-    return sliding.friction.directions == 1 and len(sliding.limit) <= LARGEST_IN_WHIRLS
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
 from petalfoil.dynamics.critical_mass import SCAN, Whirl, whirl_impedance, whirls_at_any_mass
+from petalfoil.dynamics.eigenpairs import Eigenpair, solved, solved_from
 from petalfoil.dynamics.more_harmonics import bettered
 from petalfoil.dynamics.natural_modes import APART, Mode, natural_modes, orbit, same, shows, tilt_of, upper
 from petalfoil.dynamics.reduced_impedance import Impedance
@@ -31,15 +31,6 @@ from petalfoil.equilibrium.run_context import current_run
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-PRECISION = 1e-12
-"""Relative change of the unknowns after which a solution is found."""
-
-SOLVED = 1e-8
-"""Residual over the stiffness of the bearing below which it is one."""
-
-EVALUATIONS = 60
-"""Most evaluations for one solution: ten to forty are typical."""
-
 RAISED = 2.0
 """Factor between amplitudes that a mode is led through."""
 
@@ -48,45 +39,6 @@ FAR = 20.0
 
 LOOKS = (0.1, 0.25, 0.5, 0.9)
 """Whirl ratios near which neutral whirls are looked for: those of gas bearings are at a half and below."""
-
-
-def packed(first: complex, v: Complex, pivot: int) -> Array:
-    """Real unknowns: a complex number, then the shape, whose coordinate `pivot` is 1 and left out."""
-    z = np.append(first, np.delete(v / v[pivot], pivot))
-    return np.concatenate([z.real, z.imag])
-
-
-def unpacked(z: Array, pivot: int) -> tuple[complex, Complex]:
-    """The number and the shape."""
-    both = z[: len(z) // 2] + 1j * z[len(z) // 2 :]
-    return complex(both[0]), np.insert(both[1:], pivot, 1.0)
-
-
-@dataclass(frozen=True)
-class Eigenpair:
-    """A number and a shape that solve their equations.
-
-    Attributes
-    ----------
-    number : complex
-        `s`, or an eigenvalue.
-    v : (d,) array
-        The shape.
-    slope : (2 d, 2 d) array
-        Derivative of the real residual by real unknowns, the number over `unit` among them.
-    unit : float
-        Unit of the number.
-    """
-
-    number: complex
-    v: Complex
-    slope: Array
-    unit: float
-
-    @property
-    def motion(self) -> tuple[complex, Complex]:
-        """`s` and `v` of a mode."""
-        return self.number, self.v
 
 
 @dataclass(frozen=True)
@@ -112,36 +64,18 @@ class RubbingNeutral(Whirl):
         Its shape.
     told : HarmonicsTold
         Harmonics of its slips.
+    slope : (2 d, 2 d) array
+        Derivative of the real residual by the logarithms of ratio and mass, and by the shape.
     """
 
     v: Complex
     told: HarmonicsTold
+    slope: Array
 
     @property
     def motion(self) -> tuple[complex, Complex]:
         """`s` and `v`."""
         return 1j * self.ratio, self.v
-
-
-def solved(
-    residual: Callable[[complex, Complex], Complex], start: tuple[complex, Complex], size: float
-) -> Eigenpair | None:
-    """Solution near `start`, the residual below `SOLVED` times `size`; None if none is found."""
-    pivot, unit = int(np.argmax(np.abs(start[1]))), abs(start[0]) or 1.0
-
-    def real(z: Array) -> Array:
-        number, v = unpacked(z, pivot)
-        left = residual(unit * number, v) / size
-        return np.concatenate([left.real, left.imag])
-
-    begin = packed(start[0] / unit, start[1], pivot)
-    found = least_squares(
-        real, begin, method="lm", max_nfev=EVALUATIONS, xtol=PRECISION, ftol=PRECISION, gtol=PRECISION
-    )
-    if not np.max(np.abs(found.fun)) <= SOLVED:
-        return None
-    number, v = unpacked(found.x, pivot)
-    return Eigenpair(unit * number, v, size * found.jac, unit)
 
 
 # ------------------------------------------------------------------------------------------ natural modes
@@ -192,7 +126,8 @@ class RubbingRotor:
 
     def near_in(self, whirl: RubbingWhirl, known: Eigenpair) -> Eigenpair | None:
         """The mode near a known one, with other harmonics."""
-        return replace(self, whirl=whirl).near(known.motion)
+        other = replace(self, whirl=whirl)
+        return solved_from(other.residual, known, float(np.linalg.norm(self.inert(known.number))))
 
     def starts(self, impedance: Impedance) -> Iterator[tuple[complex, Complex]]:
         """Eigenvalues and shapes of the modes on a linear bearing."""
@@ -206,12 +141,12 @@ class RubbingRotor:
 
     def near(self, start: tuple[complex, Complex]) -> Eigenpair | None:
         """The mode near `start`; None if none is found."""
+        return solved(self.residual, start, float(np.linalg.norm(self.inert(start[0]))))
 
-        def residual(s: complex, v: Complex) -> Complex:
-            left: Complex = self.inert(s) @ v + self.whirl.resistance(self.whirl.at(s), v)
-            return left
-
-        return solved(residual, start, float(np.linalg.norm(self.inert(start[0]))))
+    def residual(self, s: complex, v: Complex) -> Complex:
+        """What is left of (E19) [N/m], (d,)."""
+        left: Complex = self.inert(s) @ v + self.whirl.resistance(self.whirl.at(s), v)
+        return left
 
     def led(self, start: tuple[complex, Complex]) -> Eigenpair | None:
         """The mode at the amplitude, from one in which petals stick; None where it is lost."""
@@ -282,7 +217,10 @@ class NeutralWhirls:
 
     def near_in(self, whirl: RubbingWhirl, known: RubbingNeutral) -> RubbingNeutral | None:
         """The neutral whirl near a known one, with other harmonics."""
-        return replace(self, whirl=whirl).near(known.ratio, known.v)
+        other, resists = replace(self, whirl=whirl), known.mass * (known.ratio * self.speed) ** 2
+        pair = Eigenpair(0.0, known.v, known.slope, 1.0, int(np.flatnonzero(known.v == 1.0)[0]))
+        found = solved_from(other.residual_near(known.ratio, resists), pair, resists * float(np.linalg.norm(known.v)))
+        return other.neutral(found, known.ratio, resists)
 
     def shapes(self, nu: float) -> Iterator[Complex]:
         """Shapes to begin with at a whirl ratio."""
@@ -304,22 +242,29 @@ class NeutralWhirls:
         if not value > 0.0:
             return None
 
+        found = solved(self.residual_near(nu, value), (0.0, v), value * float(np.linalg.norm(v)))
+        return self.neutral(found, nu, value)
+
+    def residual_near(self, nu: float, value: float) -> Callable[[complex, Complex], Complex]:
+        """Residual by the logarithms of the ratio over `nu` and of the inertia over `value`, and by the shape."""
+
         def residual(logarithms: complex, v: Complex) -> Complex:
             by_ratio, by_size = np.clip([logarithms.real, logarithms.imag], -FAR, FAR)
             ratio, size = within(nu * math.exp(by_ratio)), value * math.exp(by_size)
             left: Complex = self.whirl.resistance(self.whirl.at(1j * ratio), v) - size * (self.shape(ratio) @ v)
             return left
 
-        found = solved(residual, (0.0, v), value * float(np.linalg.norm(v)))
-        if found is None:
-            return None
-        if max(abs(found.number.real), abs(found.number.imag)) >= FAR:
+        return residual
+
+    def neutral(self, found: Eigenpair | None, nu: float, value: float) -> RubbingNeutral | None:
+        """A solution of these as a neutral whirl; None where it went astray."""
+        if found is None or max(abs(found.number.real), abs(found.number.imag)) >= FAR:
             return None
         ratio = nu * math.exp(found.number.real)
         if within(ratio) != ratio:
             return None
         mass = value * math.exp(found.number.imag) / (ratio * self.speed) ** 2
-        return RubbingNeutral(mass, ratio, found.v, ONE_HARMONIC)
+        return RubbingNeutral(mass, ratio, found.v, ONE_HARMONIC, found.slope)
 
 
 def alike(one: Whirl, other: Whirl) -> bool:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from petalfoil.dynamics.harmonic_balance import FrictionCycle, SlidingContacts
 from petalfoil.dynamics.joint_motion import JointMotion
-from petalfoil.dynamics.rubbing_cycle import ONE_HARMONIC, FollowedSlips, HarmonicsTold, RubbingCycle, solves_several
+from petalfoil.dynamics.rubbing_cycle import ONE_HARMONIC, FollowedSlips, HarmonicsTold, RubbingCycle, takes_several
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import JournalMotion, Motion, Response
 from petalfoil.system.friction import against_slip, slips
@@ -228,7 +228,7 @@ class RubbingWhirl:
     @property
     def takes_several(self) -> bool:
         """Whether slips of all bearings have several harmonics."""
-        each = [solves_several(one.sliding) for one in self.bearings if one.sliding is not None]
+        each = [takes_several(one.sliding) for one in self.bearings if one.sliding is not None]
         return bool(each) and all(each)
 
     def sticks(self, motion: tuple[complex, Complex]) -> float:
