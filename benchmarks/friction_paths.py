@@ -1,14 +1,18 @@
 """What friction along a path at rest gives over the grid, with contact points and with contacts at nodes.
 
     python -m benchmarks.friction_paths
+    python -m benchmarks.friction_paths 3d
 
 Starting moment of the assembled pack and at the end, force at the largest displacement, width of the loop in its
-middle, energy of a cycle: the rig down to 10 um and the paper's eight petals down to 100 um and back. Writes the table
-of `docs/decisions/033-friction-paths.md`; some two minutes.
+middle, energy of a cycle: the rig down to 10 um and the paper's eight petals down to 100 um and back. Writes the tables
+of `docs/decisions/033-friction-paths.md`: two minutes in 2-D. In 3-D contacts are at nodes; `3d rig nodes 32` is one
+row, of which those of 32 x 12 cells take a minute.
 """
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -24,9 +28,15 @@ PLACES = 5
 """Displacements on each leg."""
 
 
-def row(name: str, friction: float, contacts: str, cells: int) -> str:
+AXIAL = {16: 6, 24: 8, 32: 12}
+"""Cells along the shaft by those per pitch, in 3-D."""
+
+
+def row(name: str, friction: float, contacts: str, cells: int, kind: str = "2d") -> str:
     """One loop as a row of the table."""
     changes = {"model.cells_per_pitch": cells, "surface.petal_friction": friction, "model.contacts": contacts}
+    if kind == "3d":
+        changes |= {"model.kind": kind, "model.axial_cells": AXIAL[cells]}
     bearing = Case.load(EXAMPLES / f"{name}.toml").replace(**changes)
     points = [record.scalars for record in static.records(bearing, np.linspace(0.0, DEEPEST[name], PLACES), loop=True)]
     force, work, moment = (
@@ -42,16 +52,27 @@ def row(name: str, friction: float, contacts: str, cells: int) -> str:
     return " | ".join([f"| {name}, {friction:g}", contacts, str(cells), *values]) + " |"
 
 
+def asked_rows(asked: list[str]) -> Iterator[str]:
+    """The rows that are asked for."""
+    kind, names, models, grids = "2d", list(DEEPEST), ["nodes", "points"], [24, 48, 96]
+    if asked:
+        kind, models, grids = asked[0], ["nodes"], list(AXIAL)
+    if asked[1:]:
+        names, models, grids = [asked[1]], [asked[2]], [int(asked[3])]
+    for name in names:
+        for friction in (0.1, 0.3) if kind == "2d" else (0.1,):
+            for contacts in models:
+                for cells in grids:
+                    yield row(name, friction, contacts, cells, kind)
+
+
 def main() -> None:
     """Print the table."""
     print("| bearing, friction | contacts | cells | moment | moment at the end | force | width | energy of a cycle |")
     print("|---|---|---:|" + "---:|" * 5)
     with one_thread():
-        for name in DEEPEST:
-            for friction in (0.1, 0.3):
-                for contacts in ("nodes", "points"):
-                    for cells in (24, 48, 96):
-                        print(row(name, friction, contacts, cells), flush=True)
+        for line in asked_rows(sys.argv[1:]):
+            print(line, flush=True)
 
 
 if __name__ == "__main__":

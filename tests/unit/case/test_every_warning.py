@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from petalfoil.analysis.friction_told import ASSEMBLED
 from petalfoil.case import implausible_answers, plausibility, warnings_of, warnings_of_errors
 from petalfoil.case.plausibility import CLEARANCE_RATIO, SLENDERNESS, USUAL
 from tests.cases import case
@@ -17,6 +18,7 @@ from tests.unit.case.test_plausibility import bumps, measured, rows_of
 
 PETALS, PLAIN = "paper_n8", "plain_journal"
 STILL = {"operation.speed": "110 rpm", "operation.eccentricity": (0, 0), "surface.contact_film_thickness": "0.1 um"}
+PATH_AT_NODES = {"contact_model": "contacts at nodes", "friction_path": ASSEMBLED, "point_share": 0.0}
 Told = list[str]
 
 
@@ -184,6 +186,13 @@ EVERY: dict[str, tuple[str, Callable[[], Told], Callable[[], Told]]] = {
         lambda: of(
             scalars={"contact_model": "contacts at nodes", "contact_normal_force": 0.0},
             **{"model.kind": "3d", "surface.journal_rubbing": "force"},
+        ),
+    ),
+    "_path_at_nodes contact_model": (
+        "contact_model",
+        lambda: of("rig", PATH_AT_NODES, **{"model.kind": "3d", "surface.petal_friction": 0.1}),
+        lambda: of(
+            "rig", PATH_AT_NODES, **{"model.kind": "3d", "surface.petal_friction": 0.1, "model.contacts": "nodes"}
         ),
     ),
     "_short_lines model.cells_per_pitch": (
