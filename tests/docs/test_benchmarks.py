@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import json
 import os
 import re
@@ -11,9 +12,11 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from petalfoil.physics.reynolds import circumferential_flux
 from tests.docs.texts import DOCS, ROOT, text
 
 FOLDER = ROOT / "benchmarks"
@@ -72,3 +75,23 @@ def test_the_page_speaks_of_every_group() -> None:
     (listed,) = re.findall(r"^GROUPS = (\(.*\))$", text(FOLDER / "run.py"), re.MULTILINE)
     for group in ast.literal_eval(listed):
         assert f"`{group}`" in page
+
+
+def test_the_least_flux_of_a_floor_is_the_flux(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a floor takes for a film is (F2) to rounding, not something less."""
+    monkeypatch.syspath_prepend(str(FOLDER))
+    floors = importlib.import_module("floors")
+    rng = np.random.default_rng(1)
+    P, H = 1.0 + 0.2 * rng.random((2, 3, 9, 1))
+    sides = [np.ascontiguousarray(side) for nodes in (P, H) for side in (nodes[:, :-1], nodes[:, 1:])]
+    expected = circumferential_flux(P, H, 10.0, np.full((8, 1), 0.01)).value
+    assert_allclose(floors.Flux(*sides).through(10.0, 0.01), expected, rtol=1e-12, atol=1e-13 * np.abs(expected).max())
+
+
+@pytest.mark.slow
+def test_a_floor_is_below_what_a_task_takes() -> None:
+    """Libraries take some of the profiled time, the films have been counted."""
+    parts = json.loads(run("benchmarks/floors.py", "designs", "--inside").stdout)
+    assert parts["count"] > 100
+    assert parts["films"] == parts["count"] * parts["film"]
+    assert 0.0 < parts["films"] < parts["libraries"] < parts["seconds"]
