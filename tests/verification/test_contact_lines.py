@@ -156,7 +156,10 @@ def test_results_are_those_of_the_lines(nodal: Solution, lines: LineContacts) ->
 
 @pytest.mark.slow
 def test_contact_fraction_of_the_rig_converges() -> None:
-    """0.0284, 0.0289, 0.0293; with contacts at nodes it moves from grid to grid by a tenth, up and down."""
+    """0.0287, 0.0290, 0.0293, about of first order, which would halve what is missing from 64 to 96 cells of 192.
+
+    With contacts at nodes it moves from grid to grid by a tenth, up and down.
+    """
     rig = Case.load(EXAMPLES / "rig.toml").replace(
         **{"model.kind": "3d", "model.axial_cells": 24, "petals.theory": "inextensible"}
     )
@@ -167,7 +170,8 @@ def test_contact_fraction_of_the_rig_converges() -> None:
         return float(record.scalars["contact_fraction"])
 
     coarse, middle, fine = (fraction(cells) for cells in (64, 96, 192))
-    assert abs(middle - fine) < abs(coarse - middle) < 0.06 * fine
+    assert abs(coarse - fine) < 0.025 * fine
+    assert abs(middle - fine) < 0.6 * abs(coarse - fine)
 
 
 def test_the_result_tells_how_far_the_force_is_from_that_with_contacts_at_nodes(
