@@ -258,14 +258,16 @@ def estimate(
     still = np.zeros_like(instants[0].e)
     nothing = TimeState(np.zeros_like(instants[0].moving.stored), still, still)
     wrong = nothing.plus(step, *zip(ERROR, (instant.change for instant in instants), strict=True))
+    end, unknowns = instants[2].tau, bearing.problem.layout.unknowns
     if isinstance(tangent, ElementTangent):
-        pressures, de = response_at_points(bearing.rotor, wrong, (instants[2].tau, step), tangent)
+        pressures, de = response_at_points(rotor_errors(bearing.rotor, wrong, end, step), wrong.stored, tangent)
     elif isinstance(tangent, LineTangent):
-        change, de = response_on_lines(bearing, wrong, (instants[2].tau, step), tangent)
-        pressures = change[bearing.problem.layout.unknowns[PRESSURE]]
+        rows = bearing.problem.rows_of(wrong.stored)
+        change, de = response_on_lines(rotor_errors(bearing.rotor, wrong, end, step), rows, tangent)
+        pressures = change[unknowns[PRESSURE]]
     else:
-        base, unknowns = TimeState(wrong.stored, -wrong.e, -wrong.v), bearing.problem.layout.unknowns
-        stage = replace(bearing.stage(base, instants[2].tau, step, instants[0], StageOptions()), outside=still)
+        base = TimeState(wrong.stored, -wrong.e, -wrong.v)
+        stage = replace(bearing.stage(base, end, step, instants[0], StageOptions()), outside=still)
         residual, ambient = stage.rate * stage.problem.rows_of(wrong.stored), np.ones(unknowns.n)
         settled, de, _ = border_change(stage, residual, (ambient, still), tangent)
         pressures = (settled + tangent.units @ de)[unknowns[PRESSURE]]
@@ -273,33 +275,27 @@ def estimate(
     return max(float(np.linalg.norm(de)), spread)
 
 
-def response_at_points(
-    rotor: RotorMotion, wrong: TimeState, at: tuple[float, float], tangent: ElementTangent
-) -> tuple[Array, Array]:
-    """Change of pressures (n_film,) and displacement (d,) by errors in what is stored, in position and velocity.
+def rotor_errors(rotor: RotorMotion, wrong: TimeState, tau: float, step: float) -> tuple[float, Array]:
+    """Rate of a step that ends at `tau`, and the force (d,) that errors in position and velocity stand for in it."""
+    rate = 1.0 / (IMPLICIT * step)
+    return rate, rotor.resistance(tau, rate) @ wrong.e + rate * (rotor.inertia @ wrong.v)
 
-    `at` are the time and the length of the step that ends there.
+
+def response_at_points(errors: tuple[float, Array], stored: Array, tangent: ElementTangent) -> tuple[Array, Array]:
+    """Change of pressures (n_film,) and displacement (d,) by errors `stored` (n_film,) and in position and velocity.
+
+    `errors` are the rate of the step and the force of the rotor's errors.
     """
-    whole, (tau, step) = tangent.equations.whole, at
-    film, rate, residual = (
-        slice(whole.n_wall, whole.n_wall + whole.n_film),
-        1.0 / (IMPLICIT * step),
-        np.zeros(tangent.n),
-    )
-    residual[film] = rate * wrong.stored
-    pull = rotor.resistance(tau, rate) @ wrong.e + rate * (rotor.inertia @ wrong.v)
+    (rate, pull), whole = errors, tangent.equations.whole
+    film, residual = slice(whole.n_wall, whole.n_wall + whole.n_film), np.zeros(tangent.n)
+    residual[film] = rate * stored
     change, de = tangent.correction(residual, -pull)
     return change[film], de
 
 
-def response_on_lines(
-    bearing: RotorBearing, wrong: TimeState, at: tuple[float, float], tangent: LineTangent
-) -> tuple[Array, Array]:
-    """Change of the unknowns (n,) and displacement (d,), as `response_at_points` for contact lines."""
-    tau, step = at
-    rate, rotor = 1.0 / (IMPLICIT * step), bearing.rotor
-    pull = rotor.resistance(tau, rate) @ wrong.e + rate * (rotor.inertia @ wrong.v)
-    rows = rate * bearing.problem.rows_of(wrong.stored)
+def response_on_lines(errors: tuple[float, Array], rows: Array, tangent: LineTangent) -> tuple[Array, Array]:
+    """Change of all unknowns (n,) and displacement (d,) for contact lines; errors in what is stored are `rows` (n,)."""
+    rate, pull = errors
     closed, slopes = np.zeros(len(tangent.place)), np.zeros(len(tangent.numbers))
-    change, _, de = tangent.moved(LineResiduals(rows, closed, slopes, -pull), None)
+    change, _, de = tangent.moved(LineResiduals(rate * rows, closed, slopes, -pull), None)
     return change, de
