@@ -93,3 +93,18 @@ def test_contact_lines_take_the_steps_and_factorisations_of_contacts_at_nodes() 
     assert lines["failed_steps"] == 0
     assert lines["steps"] <= nodes["steps"]
     assert lines["factorisations"] <= nodes["factorisations"]
+
+
+@pytest.mark.slow
+def test_points_that_split_and_meet_again_stay_points() -> None:
+    """From turn 26 to 34 light contacts travel over several elements: points in 94 % of the steps, 247 factorisations.
+
+    Where they split each time that a gap closed beside them, points were lost for ten turns after 500.
+    """
+    orbit = Orbit.begin(case("orbit_n8"), OrbitRequest(revolutions=34.0))
+    before = orbit.run.film.factorizations
+    for _ in orbit.advance():
+        pass
+    told = orbit.record().scalars
+    assert told["point_share"] >= 0.9
+    assert orbit.run.film.factorizations - before <= 350

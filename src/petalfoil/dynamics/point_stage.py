@@ -28,6 +28,9 @@ from petalfoil.system.time_step import StepProblem
 
 Array = NDArray[np.float64]
 
+SPLITTING = 1
+"""Sets of contacts of a stage after which points no longer split: halves that meet again would split without end."""
+
 PointChange = tuple[Array, Array]
 """Changes of the unknowns and of the position."""
 
@@ -72,9 +75,9 @@ class PointStage(TravellingStage[PointStepEquations, ElementTangent, PointChange
         """Raise where the film is closed."""
         refuse_closed(state)
 
-    def revised(self, state: PointStepEquations) -> PointStepEquations | None:
+    def revised(self, state: PointStepEquations, number: int) -> PointStepEquations | None:
         """The equations with other contacts, where the signs ask for them; None where they are right."""
-        points = revised(state, self.stage.options.accuracy)
+        points = revised(state, self.stage.options.accuracy, splitting=number < SPLITTING)
         if points is None:
             return None
         return with_contacts(state, replace(state, state=replace(state.state, points=points)))
