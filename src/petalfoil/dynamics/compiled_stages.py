@@ -51,8 +51,9 @@ def worth_compiling(bearing: RotorBearing, steps: float) -> bool:
     return False
 
 
+@cache
 def compiled_before() -> bool:
-    """Whether what has been compiled of the loops is younger than all sources."""
+    """Whether what has been compiled of the loops is younger than all sources; looked at once in a process."""
     package = Path(__file__).parents[1]
     return is_on_disk(package / "system" / "compiled_points.py", "point_rows", package)
 
