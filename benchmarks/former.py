@@ -29,6 +29,8 @@ LIMITS = {
     "orbit_2d": 0.2,
     "orbit_fifth": 0.2,
     "orbit_3d": 0.4,
+    "orbit_turn_2d": 0.2,
+    "orbit_turn_3d": 0.4,
     "designs": 1.0 / 3.0,
 }
 """Ratios that are wanted."""

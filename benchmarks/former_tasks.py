@@ -10,6 +10,7 @@ of the results.
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import sys
 import time
@@ -106,15 +107,45 @@ def orbit_fifth(quick: bool) -> float:
     return time.process_time() - begin
 
 
-def orbit_3d(quick: bool) -> None:
-    """Three turns in 3-D."""
+def spatial_orbit(quick: bool) -> Case:
+    """The rotor of the motions in 3-D."""
     case = pack("orbit_n8", *((8, 4) if quick else (24, 16)))
     spatial = pack("paper_n8_spatial", 8, 4)
     changes: dict[str, object] = {"model.kind": spatial.model.kind}
     if hasattr(spatial.petals, "theory"):  # petals that bend only, the only ones of the earlier state
         changes["petals.theory"] = spatial.petals.theory
-    case = case.replace(**changes)
-    petalfoil.orbit(case, revolutions=1.0 if quick else 3.0)
+    return case.replace(**changes)
+
+
+def orbit_3d(quick: bool) -> None:
+    """Three turns in 3-D."""
+    petalfoil.orbit(spatial_orbit(quick), revolutions=1.0 if quick else 3.0)
+
+
+def per_turn(case: Case, few: float, many: float) -> float:
+    """A further turn of a motion: `many` turns less a `few`, each over their difference [s].
+
+    A first turn is not counted: with numba it loads the loops, of which a motion of many turns pays for.
+    """
+    compiled = "petalfoil.system.compiled_points"
+    if importlib.util.find_spec("numba") and importlib.util.find_spec(compiled.rpartition(".")[0]):
+        importlib.import_module(compiled)
+    spent = []
+    for turns in (1.0, few, many):
+        begin = time.process_time()
+        petalfoil.orbit(case, revolutions=turns)
+        spent.append(time.process_time() - begin)
+    return (spent[2] - spent[1]) / (many - few)
+
+
+def orbit_turn_2d(quick: bool) -> float:
+    """A turn in 2-D, without the start of the motion [s]."""
+    return per_turn(pack("orbit_n8", 24 if quick else 0), *((1.0, 2.0) if quick else (6.0, 46.0)))
+
+
+def orbit_turn_3d(quick: bool) -> float:
+    """A turn in 3-D, without the start of the motion [s]."""
+    return per_turn(spatial_orbit(quick), *((1.0, 2.0) if quick else (2.0, 8.0)))
 
 
 def designs(quick: bool) -> None:
@@ -136,6 +167,8 @@ ASKED = (
     orbit_2d,
     orbit_fifth,
     orbit_3d,
+    orbit_turn_2d,
+    orbit_turn_3d,
     designs,
 )
 TASKS: dict[str, Callable[[bool], float | None]] = {task.__name__: task for task in ASKED}
