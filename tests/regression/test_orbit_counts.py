@@ -96,6 +96,20 @@ def test_contact_lines_take_the_steps_and_factorisations_of_contacts_at_nodes() 
 
 
 @pytest.mark.slow
+def test_contact_lines_that_come_and_go_take_the_factorisations_of_contacts_at_nodes() -> None:
+    """Eight thinner petals: contacts begin and end in a third of the steps; 5 factorisations with either.
+
+    Where each that began had a factorisation, and another one as it took up load, it was 27.
+    """
+    grid = {"model.cells_per_pitch": 32, "model.axial_cells": 8, "petals.thickness": 0.15e-3}
+    thin = case("paper_n8_spatial", rotor={"mass": 3.0, "unbalance": 2e-6}, **grid)
+    lines, nodes = (counted(thin.replace(**{"model.contacts": at}), 2.0) for at in ("points", "nodes"))
+    assert lines["failed_steps"] == 0
+    assert lines["steps"] <= nodes["steps"]
+    assert lines["factorisations"] <= nodes["factorisations"] + 2
+
+
+@pytest.mark.slow
 def test_points_that_split_and_meet_again_stay_points() -> None:
     """From turn 26 to 34 light contacts travel over several elements: points in 94 % of the steps, 247 factorisations.
 

@@ -17,7 +17,7 @@ from petalfoil.equilibrium.followed_lines import followed_lines, foretold
 from petalfoil.equilibrium.led_points import led, with_nodal_contacts
 from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
 from petalfoil.equilibrium.line_sets import between_nodes, settled, with_lines
-from petalfoil.equilibrium.line_signs import bearing_alone, covered, dips, freed, gaining, parted, revised, without
+from petalfoil.equilibrium.line_signs import bearing_alone, covered, dips, freed, gaining, met, parted, revised, without
 from petalfoil.equilibrium.run_context import current_run, running
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.under_load import balance_cold
@@ -276,6 +276,20 @@ def test_contacts_foretold_to_pull_leave(lines: LineContacts) -> None:
     left = bearing_alone(pulling)
     assert len(left.reaction) == len(lines.reaction) - 1
     assert left.held.sum() == lines.held.sum()
+
+
+def test_points_that_meet_are_one_at_the_centroid_of_their_reactions(lines: LineContacts) -> None:
+    assert met(lines) is lines
+    points, cell = lines.points, lines.points.cell_length
+    twin = replace(points.kept(np.arange(len(points.phi)) == 2), before=None)
+    beside = replace(lines, points=points.joined(replace(twin, phi=twin.phi + 0.01 * cell[2])))
+    beside = replace(beside, reaction=np.append(lines.reaction, 3.0 * lines.reaction[2]))
+    one = met(beside)
+    assert len(one.reaction) == len(lines.reaction)
+    assert_allclose(one.reaction[-1], 4.0 * lines.reaction[2])
+    assert_allclose(one.points.phi[-1], points.phi[2] + 0.0075 * cell[2])
+    apart = replace(beside, points=points.joined(replace(twin, phi=twin.phi + 0.1 * cell[2])))
+    assert met(apart) is apart
 
 
 def test_a_contact_at_a_single_node_becomes_a_point_that_travels(lines: LineContacts) -> None:

@@ -20,14 +20,17 @@ from petalfoil.dynamics.stage import Stage, told
 from petalfoil.dynamics.time_state import TimeState
 from petalfoil.dynamics.travelling_stage import TravellingSolution, TravellingStage
 from petalfoil.equilibrium.line_contacts import TRUST, LineContacts, NoLinesError, changed
-from petalfoil.equilibrium.line_signs import EARLY_PULL, revised_in_time
-from petalfoil.equilibrium.line_tangent import LineChange, LineResiduals, LineTangent
+from petalfoil.equilibrium.line_signs import EARLY_PULL, bearing_alone, met, parted, revised_in_time
+from petalfoil.equilibrium.line_tangent import STIFFER, LineChange, LineResiduals, LineTangent
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.solvers.sparse_lu import SingularMatrixError
 from petalfoil.system.time_step import StepProblem
 from petalfoil.system.unknowns import DEFLECTION, PRESSURE
 
 Array = NDArray[np.float64]
+
+CLOSELY = 0.05
+"""Change of a point's travel stiffness past which a factor is amended for it where its corrections do not contract."""
 
 
 @dataclass(frozen=True)
@@ -108,7 +111,7 @@ class LineStage(TravellingStage[LineStepContacts, LineTangent, LineChange]):
 
         `tangent` is the one that led to what `start` is foretold from.
         """
-        return self.reached(self.at(start, tangent), tangent)
+        return self.reached(bearing_alone(self.at(start, tangent)), tangent)
 
     def refuse_closed(self, state: LineStepContacts) -> None:
         """Raise where the film is closed."""
@@ -134,13 +137,17 @@ class LineStage(TravellingStage[LineStepContacts, LineTangent, LineChange]):
         except SingularMatrixError:
             raise NoLinesError("the contacts do not determine the petals") from None
 
-    def serving(self, tangent: LineTangent, state: LineStepContacts) -> LineTangent | None:
+    def serving(self, tangent: LineTangent, state: LineStepContacts, *, closely: bool) -> LineTangent | None:
         """The tangent as it serves the contacts of the state; None where a factorisation is better."""
-        return tangent.on(state)
+        return tangent.on(state, CLOSELY if closely else STIFFER)
+
+    def untangled(self, state: LineStepContacts) -> LineStepContacts:
+        """With the nodes beside each point at which the gap does not curve upward in its place: it has nowhere to go."""
+        return parted(state) if np.any(state.doubled) else state
 
     def serves(self, tangent: LineTangent, state: LineStepContacts) -> bool:
-        """A correction keeps the contacts."""
-        return True
+        """Whether no points have met in a correction."""
+        return len(tangent.numbers) == len(state.reaction)
 
     def correction(self, state: LineStepContacts, tangent: LineTangent) -> tuple[LineChange, LineStepContacts]:
         """A step of Newton's method from the state."""
@@ -151,8 +158,8 @@ class LineStage(TravellingStage[LineStepContacts, LineTangent, LineChange]):
         return float(max(np.max(np.abs(change.x)), np.max(np.abs(change.displacement))))
 
     def stepped(self, state: LineStepContacts, tangent: LineTangent, change: LineChange) -> LineStepContacts:
-        """The state after a correction."""
-        return changed(state, tangent, change, TRUST)
+        """The state after a correction; points that meet are one."""
+        return met(changed(state, tangent, change, TRUST))
 
     def asked_for(self, tangent: LineTangent, state: LineStepContacts) -> float:
         """Correction that what is left of the film's rows asks for, as far as the tangent has been seen to answer."""

@@ -27,11 +27,31 @@ DEEPER = 2.0
 """How much deeper a gap may be below a node than the parabola through it and the nodes beside it, where it is looked
 for."""
 
+MEETING = 0.03
+"""Points this near to each other on a line become one, in cells."""
+
 EARLY_PENETRATION = 1e-3
 """The same of a state that has not converged (10 nm)."""
 
 EARLY_PULL = 1e-6
 """A reaction this far below zero leaves such a state, in ambient pressure on a node."""
+
+
+def met(state: StateOnLines) -> StateOnLines:
+    """The state with points that have met on their lines as one, at the centroid of their reactions."""
+    points = state.points
+    order = np.lexsort((points.phi, points.line, points.kind))
+    here, ahead = order[:-1], order[1:]
+    on_one = (points.kind[here] == points.kind[ahead]) & (points.line[here] == points.line[ahead])
+    near = on_one & (points.phi[ahead] - points.phi[here] < MEETING * points.cell_length[here])
+    if not near.any():
+        return state
+    phi, reaction, left = points.phi.copy(), state.reaction.copy(), np.ones(len(order), dtype=np.bool_)
+    for a, b in zip(here[near], ahead[near], strict=True):
+        both = reaction[a] + reaction[b]
+        share = float(np.clip(reaction[b] / both, 0.0, 1.0)) if both > 0.0 else 0.5
+        phi[b], reaction[b], left[a] = phi[a] + share * (phi[b] - phi[a]), both, False
+    return replace(state, points=replace(points, phi=phi).kept(left), reaction=reaction[left])
 
 
 def parted(state: StateOnLines) -> StateOnLines:

@@ -123,15 +123,18 @@ class LineTangent(SeenTangent):
             springs=state.springs,
         )
 
-    def on(self, state: LineContacts) -> LineTangent | None:
-        """The same for the contacts of a later state; None where a factorisation is better."""
+    def on(self, state: LineContacts, stiffer: float = STIFFER) -> LineTangent | None:
+        """The same for the contacts of a later state; None where a factorisation is better.
+
+        Points are corrected whose travel stiffness has changed by more than the part `stiffer` of the larger one.
+        """
         place = self._places(state)
         if place is None:
             return None
         contacts, known = self.linear.motion.contacts, place >= 0
         opened = np.ones(contacts.constraints.G.shape[0], dtype=np.bool_)
         opened[place[known]] = False
-        added, (turning, number) = np.flatnonzero(~known), self._turning(state, place)
+        added, (turning, number) = np.flatnonzero(~known), self._turning(state, place, stiffer)
         count = np.count_nonzero(opened) + len(added) + len(turning.stiffer)
         if count > MOST_CHANGES:
             return None
@@ -149,21 +152,21 @@ class LineTangent(SeenTangent):
             self, place=place, at_nodes=len(state.held_reaction), by_e=by_e, exchange=exchange, turning=number
         )
 
-    def _turning(self, state: LineContacts, place: Index) -> tuple[Turning, Index]:
+    def _turning(self, state: LineContacts, place: Index, stiffer: float) -> tuple[Turning, Index]:
         """Points whose travel stiffness is another, and their numbers among those of the state, (c,) (-1: ended)."""
         contacts, points = self.linear.motion.contacts, place[len(state.held_reaction) :] - self._first_point
         own, before = state.travel_stiffness, contacts.travel_stiffness
         here = np.full(len(before), -1)
         here[points[points >= 0]] = np.flatnonzero(points >= 0)
         now = np.where(here >= 0, np.append(own, 0.0)[here], 0.0)
-        other = np.flatnonzero(np.abs(now - before) > STIFFER * np.maximum(now, before))
+        other = np.flatnonzero(np.abs(now - before) > stiffer * np.maximum(now, before))
         fresh = np.flatnonzero((points < 0) & (own > 0.0))
         slopes = sp.csr_array(state.points.slope[fresh] @ state.problem.G) if len(fresh) else contacts.slope_by_x[:0]
         by_x = sp.csr_array(sp.vstack([contacts.slope_by_x[other], slopes], format="csr"))
         by_e = state.points.slope[fresh] @ state.problem.layout.wall.contacts.by_e
         rows = CurveRows(by_x, np.concatenate([contacts.slope_by_e[other], by_e]))
-        stiffer = np.concatenate([now[other] - before[other], own[fresh]])
-        return Turning(other, rows, stiffer), np.concatenate([here[other], fresh])
+        added = np.concatenate([now[other] - before[other], own[fresh]])
+        return Turning(other, rows, added), np.concatenate([here[other], fresh])
 
     def _places(self, state: LineContacts) -> Index | None:
         """Places of the contacts of a state among those of the factor, -1 of others; None where that is not known."""
