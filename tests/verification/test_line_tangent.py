@@ -53,16 +53,15 @@ def others(state: LineContacts) -> LineContacts:
 
 
 @pytest.mark.parametrize("load", [None, np.array([0.1, -3.0])])
-def test_a_factor_serves_other_contacts_as_their_own_would(
-    lines: LineContacts, load: np.ndarray | None, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_factor_serves_other_contacts_as_their_own_would(lines: LineContacts, load: np.ndarray | None) -> None:
     """At a position and under a load: contacts end and begin, reactions change (E12), (E13)."""
-    monkeypatch.setattr(line_tangent, "STIFFER", 1e-12)
     state = others(marked(replace(lines, load=load)))
     assert state.tangent is not None
-    served = state.tangent.on(state)
+    served = state.tangent.on(state, stiffer=1e-12)
     assert served is not None
     assert served.exchange is not None
+    assert served.serves(state)
+    assert not state.tangent.serves(state)
     rng = np.random.default_rng(3)
     left = LineResiduals(*(rng.standard_normal(np.shape(part)) for part in vars(LineResiduals.of(state)).values()))
     way = rng.standard_normal(2) if load is None else None
@@ -78,18 +77,21 @@ def test_the_same_contacts_need_no_exchange(lines: LineContacts) -> None:
     served = state.tangent.on(state)
     assert served is not None
     assert served.exchange is None
+    assert served.serves(state)
+    stiffer = replace(state, reaction=np.where(np.arange(len(state.reaction)) < 2, 3.0, 1.0) * state.reaction)
+    assert not served.serves(stiffer)
+    amended = served.on(stiffer)
+    assert amended is not None
+    assert amended.serves(stiffer)
 
 
-def test_what_a_factor_has_answered_once_is_not_solved_for_again(
-    lines: LineContacts, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_a_factor_has_answered_once_is_not_solved_for_again(lines: LineContacts) -> None:
     """A node and three points have ended, two have begun, reactions are others: of these those that have begun are."""
-    monkeypatch.setattr(line_tangent, "STIFFER", 1e-12)
     state = others(marked(lines))
     assert state.tangent is not None
     solves = [state.tangent.linear.factorised.factor.counter.solves]
     for _ in range(2):
-        served = state.tangent.on(state)
+        served = state.tangent.on(state, stiffer=1e-12)
         assert served is not None
         assert served.exchange is not None
         solves.append(state.tangent.linear.factorised.factor.counter.solves)

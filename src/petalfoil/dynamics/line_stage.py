@@ -139,10 +139,12 @@ class LineStage(TravellingStage[LineStepContacts, LineTangent, LineChange]):
 
     def serving(self, tangent: LineTangent, state: LineStepContacts, *, closely: bool) -> LineTangent | None:
         """The tangent as it serves the contacts of the state; None where a factorisation is better."""
+        if not closely and tangent.serves(state):
+            return tangent
         return tangent.on(state, CLOSELY if closely else STIFFER)
 
     def untangled(self, state: LineStepContacts) -> LineStepContacts:
-        """With the nodes beside each point at which the gap does not curve upward in its place: it has nowhere to go."""
+        """With contacts at the nodes beside each point at which the gap does not curve upward."""
         return parted(state) if np.any(state.doubled) else state
 
     def serves(self, tangent: LineTangent, state: LineStepContacts) -> bool:

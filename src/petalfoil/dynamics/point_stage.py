@@ -95,9 +95,7 @@ class PointStage(TravellingStage[PointStepEquations, ElementTangent, PointChange
             return RubbingTangent.about(state, self.load, solver)
         return ElementTangent.at(state, self.load, solver)
 
-    def serving(
-        self, tangent: ElementTangent, state: PointStepEquations, *, closely: bool
-    ) -> ElementTangent | None:
+    def serving(self, tangent: ElementTangent, state: PointStepEquations, *, closely: bool) -> ElementTangent | None:
         """The tangent where it is that of the contacts of the state; None where not, or where it is to serve `closely`.
 
         A factorisation costs as much as six corrections here.

@@ -46,8 +46,9 @@ TOUCHING = 1e-4
 """Largest gap, and slope by the place in an element or a cell, at the points of a stage's state, in reference films."""
 
 BALANCED = 1e-3
-"""Largest residual of the petals' rows, over ambient pressure on a node: where points travel far, corrections of films
-and pressures alone do not tell whether they are there. Contacts at nodes leave up to 5e-4."""
+"""Largest residual of the petals' rows, over ambient pressure on a node, and of the film's over the flows of a cell:
+where points travel far, corrections of films and pressures alone do not tell whether they are there. Contacts at nodes
+leave up to 5e-4."""
 
 GROWING = 2.0
 """Growth of the correction past which a tangent no longer serves."""
@@ -230,5 +231,5 @@ class TravellingStage(ABC, Generic[StageState, HeldTangent, StageChange]):
 
 
 def balanced(state: StageEquations) -> bool:
-    """Whether gaps and slopes vanish at the contact points, and the petals are in equilibrium."""
-    return state.opening <= TOUCHING and state.wall_imbalance <= BALANCED
+    """Whether gaps and slopes vanish at the contact points, and petals and film are in balance."""
+    return state.opening <= TOUCHING and max(state.wall_imbalance, state.film_imbalance) <= BALANCED

@@ -92,8 +92,9 @@ def revised_in_time(state: StateOnLines, pull: float) -> StateOnLines | None:
     A single node beside a gap that has closed becomes a point: what was a stretch of contacts has receded to it, and
     goes on.
     """
-    if not np.any(state.doubled):
-        freer = freed_beside(state, state.gaps < -PENETRATION)
+    below = state.gaps < -PENETRATION
+    if np.any(below) and not np.any(state.doubled):
+        freer = freed_beside(state, below)
         if freer is not state:
             return freer
     return revised(state, pull)
@@ -242,5 +243,8 @@ def dips(state: LineContacts, fresh: Index) -> LinePoints:
         deepest = gaps[:, 1:-1] - DEEPER * (after - before) ** 2 / (8.0 * rise)
         low = lowest & (deepest < -PENETRATION) & ~taken[lines.number[:, 1:-1]]
         nodes.append(lines.number[:, 1:-1][low])
-    there = state.points.at_nodes(np.concatenate(nodes)).lowest(state.gaps)
+    found = np.concatenate(nodes)
+    if not len(found):
+        return state.points.at_nodes(found)
+    there = state.points.at_nodes(found).lowest(state.gaps)
     return there.kept((there.along(state.gaps)[0] < -PENETRATION) & ~np.any(taken[there.beside], axis=1))

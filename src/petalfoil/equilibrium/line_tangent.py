@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from petalfoil.equilibrium.line_exchange import CurveRows, FactorAnswers, LineExchange, Turning
 from petalfoil.equilibrium.linear_response import LinearResponse
+from petalfoil.physics.line_points import LinePoints
 from petalfoil.solvers.constraints import places_among
 from petalfoil.solvers.tangent import SeenTangent
 from petalfoil.sparsity import SparseRows
@@ -96,6 +97,12 @@ class LineTangent(SeenTangent):
         How they differ; None where they are the same.
     turning : (c,) int array
         Points of the exchange that turn with another stiffness; -1 of those that have ended.
+    points : LinePoints
+        Points that are served.
+    held : (m,) bool array
+        Contacts at nodes that are.
+    travel_stiffness : (k,) array
+        `lam / p''` with which points are served [rad^2].
     """
 
     linear: LinearResponse
@@ -105,6 +112,9 @@ class LineTangent(SeenTangent):
     at_nodes: int
     by_e: Array
     springs: Array
+    points: LinePoints
+    held: Mask
+    travel_stiffness: Array
     exchange: LineExchange | None = None
     turning: Index = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
 
@@ -121,7 +131,23 @@ class LineTangent(SeenTangent):
             at_nodes=len(state.held_reaction),
             by_e=by_e,
             springs=state.springs,
+            points=state.points,
+            held=state.held,
+            travel_stiffness=state.travel_stiffness,
         )
+
+    def serves(self, state: LineContacts) -> bool:
+        """Whether a state has the contacts that are served, with about the same travel stiffnesses.
+
+        One that has begun may be taken for another on the same line, which a correction that does not contract tells.
+        """
+        points, served, place = state.points, self.points, self._places(state)
+        alike = np.array_equal(points.line, served.line) and np.array_equal(points.kind, served.kind)
+        if place is None or not alike or not np.array_equal(state.held, self.held):
+            return False
+        own, before = state.travel_stiffness, self.travel_stiffness
+        near = np.abs(own - before) <= STIFFER * np.maximum(own, before)
+        return np.array_equal(place, self.place) and bool(near.all())
 
     def on(self, state: LineContacts, stiffer: float = STIFFER) -> LineTangent | None:
         """The same for the contacts of a later state; None where a factorisation is better.
@@ -148,8 +174,19 @@ class LineTangent(SeenTangent):
             exchange = LineExchange.of(self.answers, np.flatnonzero(opened), gaps, turning)
             if exchange is None:
                 return None
+        points, served = place[len(state.held_reaction) :] - self._first_point, state.travel_stiffness.copy()
+        as_before = (points >= 0) & ~np.isin(points, turning.of_factor)
+        served[as_before] = contacts.travel_stiffness[points[as_before]]
         return replace(
-            self, place=place, at_nodes=len(state.held_reaction), by_e=by_e, exchange=exchange, turning=number
+            self,
+            place=place,
+            at_nodes=len(state.held_reaction),
+            by_e=by_e,
+            exchange=exchange,
+            turning=number,
+            points=state.points,
+            held=state.held,
+            travel_stiffness=served,
         )
 
     def _turning(self, state: LineContacts, place: Index, stiffer: float) -> tuple[Turning, Index]:

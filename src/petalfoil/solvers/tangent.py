@@ -7,7 +7,8 @@ follows a contact set that changes by a few gaps without a new factorisation (O4
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from copy import copy
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Self
 
@@ -168,8 +169,12 @@ class SeenTangent:
     response: float = 0.0
 
     def seen(self, correction: float, residual: float) -> Self:
-        """The same after a correction of this size has answered what another one left."""
-        return replace(self, response=max(self.response, correction / residual)) if residual > 0.0 else self
+        """The same after a correction of this size has answered what another one left; what it has computed is kept."""
+        if residual <= 0.0 or correction <= self.response * residual:
+            return self
+        seen = copy(self)
+        vars(seen)["response"] = correction / residual
+        return seen
 
 
 @dataclass(frozen=True)
