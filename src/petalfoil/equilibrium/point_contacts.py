@@ -63,7 +63,7 @@ class Search(NamedTuple):
     creeping: int
 
 
-FIRST, SECOND = Search(48, 4), Search(24, 2)
+FIRST, SECOND = Search(48, 3), Search(24, 2)
 """A search that takes all its factorisations begins again and takes whole steps sooner. Long searches hang on rounding:
 one took 23 or more than 48 by the order of a sum, and 17 so. In vain it is 24 more for a seventh of random packs."""
 
