@@ -17,6 +17,7 @@ from petalfoil.case import Case
 from petalfoil.dynamics.film_stability import leading_eigenvalue
 from petalfoil.equilibrium.branches import (
     CHANCE,
+    RESTLESS,
     SLOW,
     STRETCH,
     different,
@@ -160,13 +161,15 @@ def test_others_are_looked_for_where_an_answer_comes_back_slowly() -> None:
     assert rates[0].real < -SLOW < rates[1].real < 0.0
 
 
-def test_an_answer_by_chance_is_one_of_a_hardly_possible_step() -> None:
+def test_an_answer_by_chance_is_one_of_a_hardly_possible_step_or_of_many_steps() -> None:
     """One that a neighbour led to was not found by chance."""
     first = attempt(build_problem(drawn(2)), BARRIERS[0])
     assert first is not None
     steps = (first.shortest_step, 0.1, 2.0 * CHANCE, 0.5 * CHANCE, None)
     asked = [replace(first, shortest_step=length) for length in steps]
     assert [found_by_chance(answer) for answer in (*asked, None)] == [False, False, False, True, False, True]
+    counted = [replace(first, step_count=count) for count in (first.step_count, RESTLESS, RESTLESS + 1, None)]
+    assert [found_by_chance(answer) for answer in counted] == [False, False, True, False]
 
 
 def test_the_equilibrium_that_presses_least_comes_first() -> None:

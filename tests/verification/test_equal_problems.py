@@ -122,6 +122,21 @@ def test_a_bearing_that_most_starts_do_not_answer(change: Callable[[Case], tuple
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("contacts", ["nodes", "points"])
+def test_a_bearing_that_takes_many_steps(contacts: str) -> None:
+    """Of bearing 103 rounding decides whether the first start leads anywhere, after 77 steps; no other start does."""
+    case = drawn(103)[0].replace(**{"model.contacts": contacts})
+    records = [
+        solved(case.replace(**{"petals.youngs_modulus": (1.0 + share) * case.petals.youngs_modulus}))
+        for share in (0.0, 1e-13, -1e-13, 1e-12)
+    ]
+    first, *rest = [record for record in records if record is not None]
+    assert len(rest) == 3
+    assert all(names_branches(record) for record in (first, *rest))
+    assert [difference(first, record, 1.0) <= EQUAL for record in rest] == [True, True, True]
+
+
+@pytest.mark.slow
 def test_a_point_past_a_jump_says_that_there_are_several() -> None:
     """Bearing 38: the curve ends on another equilibrium than `solve` finds, which knows of one."""
     case, one = drawn(38)

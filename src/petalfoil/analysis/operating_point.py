@@ -22,7 +22,7 @@ from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.analysis.thermal_limit import beyond_thermal_limit
 from petalfoil.case import Case
 from petalfoil.dynamics.film_stability import leading_eigenvalue
-from petalfoil.equilibrium.branches import different, pressing_least
+from petalfoil.equilibrium.branches import different, found_by_chance, pressing_least
 from petalfoil.equilibrium.coarse_start import by_coarse_grid
 from petalfoil.equilibrium.heated import ThermalRunawayError
 from petalfoil.equilibrium.run_context import current_run, running
@@ -284,9 +284,9 @@ def beyond_capacity(problem: CoupledProblem, load: Vector, failure: ConvergenceE
 def at_position(case: Case, problem: CoupledProblem | None = None) -> OperatingPoint:
     """The equilibrium to report at the case's eccentricity; `problem` is that of the case, if it is at hand.
 
-    That of the cold start, if it was found at the first barrier, is stable and the only one known; else the one to
-    which the pack is followed from zero speed, as long as it is stable. Where that branch is lost it is the stable one
-    that presses least on the journal.
+    That of the cold start, if it was found at the first barrier and not by chance, is stable and the only one known;
+    else the one to which the pack is followed from zero speed, as long as it is stable. Where that branch is lost it is
+    the stable one that presses least on the journal.
 
     Raises
     ------
@@ -300,7 +300,7 @@ def at_position(case: Case, problem: CoupledProblem | None = None) -> OperatingP
     problem = problem or build_problem(case)
     first, rate = begun(problem, None, lambda: first_attempt(problem))
     known, found = others(case, problem, first, rate)
-    alone = known == 1 and first is not None and not rate.real > 0.0
+    alone = known == 1 and first is not None and not found_by_chance(first) and not rate.real > 0.0
     if first is not None:
         keep(first, alone=alone)
     path, rates = "", [rate]

@@ -69,8 +69,8 @@ def by_coarse_grid(problem: CoupledProblem, load: Array | None) -> Solution | No
         return None
     current_run().note("contact lines", points=len(found.reaction), nodes=int(found.held.sum()))
     path = f"from the equilibrium on {coarse.cells_per_pitch} × {coarse.axial_cells} cells"
-    answer = replace(sampled_lines(found, load), solution_path=path, shortest_step=known.shortest_step)
-    answer = replace(answer, on_few_cells=known.on_few_cells or known)
+    answer = replace(sampled_lines(found, load), solution_path=path, on_few_cells=known.on_few_cells or known)
+    answer = replace(answer, shortest_step=known.shortest_step, step_count=known.step_count)
     return None if doubtful(answer) else answer
 
 

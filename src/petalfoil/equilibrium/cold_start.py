@@ -204,7 +204,7 @@ def finish(
             break
     else:
         answer = from_point(problem, point, path)
-    return None if answer is None else replace(answer, shortest_step=min(lengths))
+    return None if answer is None else replace(answer, shortest_step=min(lengths), step_count=len(lengths))
 
 
 def without_pulls(problem: CoupledProblem, contacts: ActiveContacts | None, path: str) -> Solution | None:

@@ -69,7 +69,7 @@ def by_other_grids(problem: CoupledProblem) -> Solution | None:
         points = points_from(problem, lambda damping: DampedWall.of(problem, damping), carried(known, problem))
         found = first_answer(problem, ((point, path_told(known)) for point in points))
         if found is not None:
-            return replace(found, shortest_step=None)
+            return replace(found, shortest_step=None, step_count=None)
     return None
 
 

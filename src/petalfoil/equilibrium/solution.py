@@ -116,6 +116,8 @@ class Solution:
         What its state at the nodes is sampled from; None of an equilibrium with contacts at nodes.
     shortest_step : float or None
         Shortest step of the interior point that led to it, over Newton's [1]; None of solutions reached otherwise.
+    step_count : int or None
+        Number of these steps; None likewise.
     on_few_cells : Solution or None
         The equilibrium on few cells that led to it.
     """
@@ -134,6 +136,7 @@ class Solution:
     lines: LineEquilibrium | None = field(default=None, repr=False)
     friction: FrictionPath | None = field(default=None, repr=False)
     shortest_step: float | None = None
+    step_count: int | None = None
     sampled: ElementEquilibrium | None = field(default=None, repr=False)
     on_few_cells: Solution | None = field(default=None, repr=False)
 

@@ -46,7 +46,7 @@ def first_attempt(problem: CoupledProblem) -> Solution | None:
     found = None if known is None else from_half(known, problem)
     if known is None or found is None:
         return attempt(problem, BARRIERS[0])
-    return replace(found, shortest_step=known.shortest_step)
+    return replace(found, shortest_step=known.shortest_step, step_count=known.step_count)
 
 
 def from_half(known: Solution, problem: CoupledProblem) -> Solution | None:
