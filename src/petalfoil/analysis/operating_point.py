@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from petalfoil.analysis.adapted_stations import with_stations
 from petalfoil.analysis.branch_choice import from_rest, others
 from petalfoil.analysis.classic_method import by_classic, newton_only
 from petalfoil.analysis.contact_model import reported
@@ -74,11 +75,14 @@ class OperatingPoint:
 def operating_point(case: Case, load: Vector | None) -> OperatingPoint:
     """The equilibrium under a load [N] where one is given, else at the case's eccentricity.
 
+    Its stations are those that every analysis of the case has (`with_stations`): those of the case of its answer.
+
     Raises
     ------
     ConvergenceError
         None was found.
     """
+    case = with_stations(case)
     if load is None and case.operation.load is None:
         return position_point(case)
     wanted = applied_load(case, load)
