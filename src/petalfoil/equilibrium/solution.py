@@ -203,6 +203,8 @@ class Solution:
         on_journal[contacts.journal] = True
         first, last = G.indices[G.indptr[rows]], G.indices[G.indptr[rows + 1] - 1]
         other = np.where(first != last, last, np.where(on_journal[rows], journal, bushing))
+        if not (np.any(other == journal) and np.any(other == bushing)):
+            return False
         chains = sp.coo_array((np.ones(len(rows)), (first, other)), shape=(bushing + 1, bushing + 1))
         _, label = sp.csgraph.connected_components(chains, directed=False)
         return bool(label[journal] == label[bushing])

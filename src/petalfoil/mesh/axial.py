@@ -12,10 +12,13 @@ from scipy.interpolate import PchipInterpolator
 
 from petalfoil.mesh.quadrature import cubic_weights, trapezoid
 
+GRIDS = 64
+"""Grids that are remembered: each result of each point of a curve asks for the same."""
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, eq=False)
 class AxialGrid:
-    """Axial nodes and the length that each node represents.
+    """Axial nodes and the length that each node represents. Grids of the same numbers are the same object.
 
     Attributes
     ----------
@@ -76,6 +79,7 @@ class AxialGrid:
         return np.concatenate([self.z, self.length - self.z[-2::-1]]) if self.half else self.z
 
 
+@lru_cache(maxsize=GRIDS)
 def axis_2d(length: float) -> AxialGrid:
     """The axis of the 2-D model: one station with the weight `length` [m]."""
     return AxialGrid(np.array([0.5 * length]), np.array([length]), length, half=False)
@@ -88,21 +92,15 @@ def axis_3d(length: float, cells: int, *, half: bool, grading: float = 0.0, dens
     ends. The largest cell is about `(1 + grading) / (1 - grading)` times the smallest. A `density` at equal distances
     from an end to the middle places the stations instead.
     """
-    cells += cells % 2 if half else 0
-    if len(density):
-        z = length * remembered(tuple(density), cells, half)
-    else:
-        s = np.arange(cells // 2 + 1 if half else cells + 1) / cells
-        z = length * (s - grading / (2.0 * np.pi) * np.sin(2.0 * np.pi * s))
+    return _axis(length, cells + (cells % 2 if half else 0), half, grading, tuple(density))
+
+
+@lru_cache(maxsize=GRIDS)
+def _axis(length: float, cells: int, half: bool, grading: float, density: tuple[float, ...]) -> AxialGrid:
+    """The same, `cells` even on a half model."""
+    s = np.arange(cells // 2 + 1 if half else cells + 1) / cells
+    z = length * (equidistributed(density, s) if density else s - grading / (2.0 * np.pi) * np.sin(2.0 * np.pi * s))
     return AxialGrid(z, trapezoid(z) * (2.0 if half else 1.0), length, half)
-
-
-@lru_cache(maxsize=64)
-def remembered(density: tuple[float, ...], cells: int, half: bool) -> NDArray[np.float64]:
-    """Places of the stations of `axis_3d`: each result of each point of a curve asks for the same."""
-    places = equidistributed(density, np.arange(cells // 2 + 1 if half else cells + 1) / cells)
-    places.setflags(write=False)
-    return places
 
 
 def equidistributed(density: Sequence[float], s: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.mesh.axial import AxialGrid
+from petalfoil.mesh.axial import GRIDS, AxialGrid
 from petalfoil.mesh.pitch import petal_angles
 from petalfoil.mesh.quadrature import trapezoid
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class PackMesh:
     """Nodes of `n` equal petals. The local angle of a node is measured from the root of its petal.
+
+    Meshes of the same numbers are the same object.
 
     Attributes
     ----------
@@ -83,6 +86,7 @@ class PackMesh:
         return np.concatenate([roots, numbers], axis=1)
 
 
+@lru_cache(maxsize=GRIDS)
 def pack_mesh(count: int, overlap: float, first_root: float, cells: int, axial: AxialGrid) -> PackMesh:
     """Grid of a pack with `cells` cells per pitch. Petals are `overlap` pitches long [1]; `first_root` in [rad]."""
     pitch = 2.0 * np.pi / count

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import lru_cache
 from typing import ClassVar, TypeVar
 
 import numpy as np
@@ -35,6 +36,10 @@ from petalfoil.walls.sliding import dragged_faces, membrane_force, over_whole_le
 Array = NDArray[np.float64]
 T = TypeVar("T")
 
+SHELLS = 16
+"""Petals that are remembered with their matrices, some 2 MB each in 3-D: results of each point of a curve, and each
+journal position, ask for the same."""
+
 REFERENCE_FILM = 1e-5
 """Reference film of a petal bearing [m]: its films are some micrometres to some tens thick."""
 
@@ -58,24 +63,27 @@ def build_mesh(case: Case) -> PackMesh:
 def build_shells(case: Case, mesh: PackMesh) -> list[PetalShell]:
     """The petals of `case` on `mesh`, one by one; equal ones are the same object."""
     petals, _ = petals_of(case)
-    made: dict[Petal, PetalShell] = {}
-    for petal, pack in zip(petals.each, case.packs, strict=True):
-        if petal not in made:
-            made[petal] = PetalShell(
-                phi=mesh.phi,
-                axial=mesh.axial,
-                metric_radius=pack.metric_radius,
-                bend_radius=pack.reference_radius,
-                rigidity=petal.bending_stiffness,
-                poisson_ratio=petal.poisson_ratio,
-                clamped=petals.mount is Mount.CLAMPED,
-            )
-    return [made[petal] for petal in petals.each]
+    clamped = petals.mount is Mount.CLAMPED
+    return [shell_of(petal, pack, mesh, clamped) for petal, pack in zip(petals.each, case.packs, strict=True)]
+
+
+@lru_cache(maxsize=SHELLS)
+def shell_of(petal: Petal, pack: PackGeometry, mesh: PackMesh, clamped: bool) -> PetalShell:
+    """A petal on `mesh`."""
+    return PetalShell(
+        phi=mesh.phi,
+        axial=mesh.axial,
+        metric_radius=pack.metric_radius,
+        bend_radius=pack.reference_radius,
+        rigidity=petal.bending_stiffness,
+        poisson_ratio=petal.poisson_ratio,
+        clamped=clamped,
+    )
 
 
 def petal_sizes(case: Case, mesh: PackMesh) -> PetalSizes:
     """Free shapes, metric radii and thicknesses of the petals of `case`."""
-    free = {pack: pack.free_radius(mesh.phi) for pack in case.packs}
+    free = {pack: pack.free_radius(mesh.phi) for pack in dict.fromkeys(case.packs)}
     return PetalSizes(
         np.stack([free[pack] for pack in case.packs]),
         np.array([pack.metric_radius for pack in case.packs]),
