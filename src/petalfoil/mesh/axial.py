@@ -82,7 +82,7 @@ class AxialGrid:
 @lru_cache(maxsize=GRIDS)
 def axis_2d(length: float) -> AxialGrid:
     """The axis of the 2-D model: one station with the weight `length` [m]."""
-    return AxialGrid(np.array([0.5 * length]), np.array([length]), length, half=False)
+    return AxialGrid(fixed(np.array([0.5 * length])), fixed(np.array([length])), length, half=False)
 
 
 def axis_3d(length: float, cells: int, *, half: bool, grading: float = 0.0, density: Sequence[float] = ()) -> AxialGrid:
@@ -100,7 +100,13 @@ def _axis(length: float, cells: int, half: bool, grading: float, density: tuple[
     """The same, `cells` even on a half model."""
     s = np.arange(cells // 2 + 1 if half else cells + 1) / cells
     z = length * (equidistributed(density, s) if density else s - grading / (2.0 * np.pi) * np.sin(2.0 * np.pi * s))
-    return AxialGrid(z, trapezoid(z) * (2.0 if half else 1.0), length, half)
+    return AxialGrid(fixed(z), fixed(trapezoid(z) * (2.0 if half else 1.0)), length, half)
+
+
+def fixed(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The same values, not to be written to: what is remembered has many readers."""
+    values.setflags(write=False)
+    return values
 
 
 def equidistributed(density: Sequence[float], s: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.mesh.axial import GRIDS, AxialGrid
+from petalfoil.mesh.axial import GRIDS, AxialGrid, fixed
 from petalfoil.mesh.pitch import petal_angles
 from petalfoil.mesh.quadrature import trapezoid
 
@@ -91,4 +91,4 @@ def pack_mesh(count: int, overlap: float, first_root: float, cells: int, axial: 
     """Grid of a pack with `cells` cells per pitch. Petals are `overlap` pitches long [1]; `first_root` in [rad]."""
     pitch = 2.0 * np.pi / count
     roots = first_root + pitch * np.arange(count, dtype=np.float64)
-    return PackMesh(count, cells, petal_angles(pitch, overlap, cells), roots, axial)
+    return PackMesh(count, cells, fixed(petal_angles(pitch, overlap, cells)), fixed(roots), axial)
