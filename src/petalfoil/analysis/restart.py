@@ -18,7 +18,7 @@ from petalfoil.case import Case
 from petalfoil.dynamics.speed_schedule import Schedule
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
-from petalfoil.dynamics.travelling_stage import balanced
+from petalfoil.dynamics.travelling_stage import petals_balanced
 from petalfoil.errors import UsageError
 from petalfoil.physics.gap_curves import ContactPoints
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
@@ -143,7 +143,7 @@ def at_points_of(result: xr.Dataset, system: RotorBearing, tau: float, at: tuple
     state = PointState(w, x[whole.layout.unknowns[PRESSURE]], points)
     pulls = None if system.friction is None else _state(result, "last_friction", len(points.reaction))
     equations = equations_at(system, tau, state, e, pulls)
-    if np.min(equations.film_thickness) <= 0.0 or not balanced(equations):
+    if np.min(equations.film_thickness) <= 0.0 or not petals_balanced(equations):
         raise _damaged("petals, loads and contacts are out of balance")
     start = released_at_points(system, tau, state, (e, v), pulls)
     if not np.allclose(start.x, x, rtol=0.0, atol=SAME * float(np.max(np.abs(x)))):
@@ -166,7 +166,7 @@ def on_lines_of(result: xr.Dataset, system: RotorBearing, tau: float, at: tuple[
     if lines is None:
         raise _damaged("last_lines are no contact lines")
     least = min(lines.reaction.min(initial=0.0), lines.held_reaction.min(initial=0.0))
-    if not problem.admits(x) or not balanced(lines) or least < -PULL:
+    if not problem.admits(x) or not petals_balanced(lines) or least < -PULL:
         raise _damaged("petals, loads and contacts are out of balance")
     return released_on_lines(system, tau, lines, (e, v))
 
