@@ -20,7 +20,8 @@ from petalfoil.dynamics.stage import Stage, told
 from petalfoil.dynamics.time_state import TimeState
 from petalfoil.dynamics.travelling_stage import TravellingSolution, TravellingStage
 from petalfoil.equilibrium.line_contacts import TRUST, LineContacts, NoLinesError, changed
-from petalfoil.equilibrium.line_signs import EARLY_PULL, bearing_alone, met, parted, revised_in_time
+from petalfoil.equilibrium.line_signs import EARLY_PULL, bearing_alone, met, parted
+from petalfoil.equilibrium.line_stretches import Stretches, revised_in_time
 from petalfoil.equilibrium.line_tangent import STIFFER, LineChange, LineResiduals, LineTangent
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.solvers.sparse_lu import SingularMatrixError
@@ -88,9 +89,12 @@ class LineStage(TravellingStage[LineStepContacts, LineTangent, LineChange]):
     ----------
     stage : Stage
         Film, speed, rotor and what the stage starts from.
+    before : Stretches
+        Stretches of contacts at nodes at the instant before.
     """
 
     stage: Stage
+    before: Stretches
 
     def at(self, state: LineContacts, tangent: LineTangent | None) -> LineStepContacts:
         """The equations at a state; those of its points that `tangent` serves know their numbers there.
@@ -120,7 +124,7 @@ class LineStage(TravellingStage[LineStepContacts, LineTangent, LineChange]):
 
     def revised(self, state: LineStepContacts, number: int) -> LineStepContacts | None:
         """The state with other contacts, where the signs ask for them; None where they are right."""
-        return revised_in_time(state, EARLY_PULL)
+        return revised_in_time(state, EARLY_PULL, self.before)
 
     def tangent_at(self, state: LineStepContacts) -> LineTangent:
         """The factorised equations at a state.

@@ -30,6 +30,7 @@ from petalfoil.dynamics.rotor_motion import RotorMotion
 from petalfoil.dynamics.stage import Stage, StageOptions, StageSolution, solve_sliding_stage, solve_stage
 from petalfoil.dynamics.time_state import AtNodes, Instant, TimeState
 from petalfoil.equilibrium.element_tangent import ElementTangent
+from petalfoil.equilibrium.line_stretches import Stretches
 from petalfoil.equilibrium.line_tangent import LineResiduals, LineTangent
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.contact_newton import border_change
@@ -181,7 +182,8 @@ def advance(
     if bearing.points is not None:
         return advance_points(PointStage(bearing.points, stage, bearing.compiled), tau, path, tangent)
     if bearing.lines:
-        return advance_lines(LineStage(stage), tau, path, tangent)
+        before = Stretches.of(path[-1].lines, len(path[-1].active))
+        return advance_lines(LineStage(stage, before), tau, path, tangent)
     last = path[-1]
     for x, e in guesses(path, tau):
         at_nodes = tangent if isinstance(tangent, BorderedTangent) else None

@@ -45,6 +45,7 @@
 `line_chords.py`           steps with one factor
 `line_sets.py`             these found from active nodes
 `line_signs.py`            which contacts they have: corrected by signs
+`line_stretches.py`        stretches of contacts at nodes among them, as they grow and recede in time
 `followed_lines.py`        these followed to a neighbouring position, speed or load
 `prolonged_lines.py`       these carried over from a coarse grid to a fine one
 `coarse_start.py`          an equilibrium on a fine grid from that on a coarse one

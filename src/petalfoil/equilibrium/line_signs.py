@@ -23,10 +23,6 @@ Mask = NDArray[np.bool_]
 PENETRATION = 1e-4
 """A gap this far below zero gains a contact, in units of the reference film (1 nm)."""
 
-DEEPER = 2.0
-"""How much deeper a gap may be below a node than the parabola through it and the nodes beside it, where it is looked
-for."""
-
 MEETING = 0.03
 """Points this near to each other on a line become one, in cells."""
 
@@ -64,40 +60,26 @@ def parted(state: StateOnLines) -> StateOnLines:
     return replace(state, points=points, reaction=reaction, held=held, held_reaction=shared[held])
 
 
-def revised(state: StateOnLines, pull: float = RESIDUAL_TOLERANCE) -> StateOnLines | None:
+def revised(state: StateOnLines, pull: float = RESIDUAL_TOLERANCE, known: Mask | None = None) -> StateOnLines | None:
     """Other contacts, where the signs ask for them; None where they are right.
 
     Reactions that pull leave. A point at which the gap does not curve upward is two contacts within a cell, at the
     nodes beside it. Of nodes whose gaps are below zero the lowest of each run gains a point, unless there is one beside
     it: all of them would be more contacts than the petal has freedom to meet. A gap that is below zero between nodes
-    alone gains one where it is least. Reactions that pull by no more than
-    `pull`, in ambient pressure on a node, are rounding.
+    alone gains one where it is least, but beside the nodes `known` (m,). Reactions that pull by no more than `pull`, in
+    ambient pressure on a node, are rounding.
     """
     if np.any(state.doubled):
         return parted(state)
     bears = state.held_reaction > -pull * state.problem.weight[state.held]
     pushes = state.reaction > -pull
     fresh = lowest_of_runs(state, (state.gaps < -PENETRATION) & ~covered(state))
-    between = dips(state, fresh)
+    between = dips(state, fresh, known)
     if bears.all() and pushes.all() and not len(fresh) and not len(between.phi):
         return None
     gained = gaining(without(state, ~bears, ~pushes), fresh)
     none_yet = np.zeros(len(between.phi))
     return replace(gained, points=gained.points.joined(between), reaction=np.concatenate([gained.reaction, none_yet]))
-
-
-def revised_in_time(state: StateOnLines, pull: float) -> StateOnLines | None:
-    """The same of a state in a step in time.
-
-    A single node beside a gap that has closed becomes a point: what was a stretch of contacts has receded to it, and
-    goes on.
-    """
-    below = state.gaps < -PENETRATION
-    if np.any(below) and not np.any(state.doubled):
-        freer = freed_beside(state, below)
-        if freer is not state:
-            return freer
-    return revised(state, pull)
 
 
 def corrected_early(state: StateOnLines, *, frees: bool) -> StateOnLines:
@@ -151,15 +133,6 @@ def freed(state: StateOnLines) -> StateOnLines:
     """With points in place of contacts at single nodes away from the ends of their lines: they are free to travel."""
     alone = single_nodes(state)
     return with_points_at(state, alone, reactions_at_nodes(state), alone)
-
-
-def freed_beside(state: StateOnLines, below: Mask) -> StateOnLines:
-    """The same of single nodes with a gap `below` (m,) beside them alone: that is where their contact travels to."""
-    alone, beside = single_nodes(state), np.zeros_like(below)
-    for lines in state.points.lines:
-        low = np.pad(below[lines.number], ((0, 0), (1, 1)))
-        beside[lines.number] = low[:, :-2] | low[:, 2:]
-    return with_points_at(state, alone & beside, reactions_at_nodes(state), alone & beside)
 
 
 def single_nodes(state: LineContacts) -> Mask:
@@ -228,23 +201,33 @@ def lowest_of_runs(state: LineContacts, below: Mask) -> Index:
     return np.flatnonzero(lowest)
 
 
-def dips(state: LineContacts, fresh: Index) -> LinePoints:
+def dips(state: LineContacts, fresh: Index, known: Mask | None = None) -> LinePoints:
     """Points where gaps are below zero between nodes, away from contacts and from the nodes `fresh`.
 
-    Each lies beside a node whose gap is lower than those at the nodes beside it, where (K15) is least.
+    Those beside nodes `known` (m,) are not looked for.
     """
-    taken, nodes = covered(state), []
+    taken = covered(state)
     taken[fresh] = True
+    there = lowest_between(state, taken if known is None else taken | known)
+    return there.kept(~np.any(taken[there.beside], axis=1))
+
+
+def lowest_between(state: LineContacts, beside: Mask) -> LinePoints:
+    """Places where gaps are below zero between nodes, found from the lower node of a cell but from those `beside` (m,).
+
+    The gap of a cell (K15) is no lower than its Bernstein coefficients: it is looked for where one of the inner two is
+    below zero.
+    """
+    low = np.zeros(len(state.held), dtype=np.bool_)
     for lines in state.points.lines:
-        gaps = state.gaps[lines.number]
-        before, after = gaps[:, :-2] - gaps[:, 1:-1], gaps[:, 2:] - gaps[:, 1:-1]
-        lowest = (before >= 0.0) & (after > 0.0)
-        rise = np.where(lowest, before + after, 1.0)
-        deepest = gaps[:, 1:-1] - DEEPER * (after - before) ** 2 / (8.0 * rise)
-        low = lowest & (deepest < -PENETRATION) & ~taken[lines.number[:, 1:-1]]
-        nodes.append(lines.number[:, 1:-1][low])
-    found = np.concatenate(nodes)
-    if not len(found):
-        return state.points.at_nodes(found)
-    there = state.points.at_nodes(found).lowest(state.gaps)
-    return there.kept((there.along(state.gaps)[0] < -PENETRATION) & ~np.any(taken[there.beside], axis=1))
+        gaps, cells, (node, weight) = state.gaps[lines.number], np.diff(lines.phi), lines.slope_weights
+        slopes = np.einsum("nj,lnj->ln", weight, gaps[:, node])
+        inner = gaps[:, :-1] + slopes[:, :-1] * cells / 3.0, gaps[:, 1:] - slopes[:, 1:] * cells / 3.0
+        may = np.minimum(*inner) < -PENETRATION
+        first = gaps[:, :-1] <= gaps[:, 1:]
+        low[lines.number[:, :-1][may & first]] = low[lines.number[:, 1:][may & ~first]] = True
+    there = state.points.at_nodes(np.flatnonzero(low & ~beside))
+    if not len(there.phi):
+        return there
+    there = there.lowest(state.gaps)
+    return there.kept(there.along(state.gaps)[0] < -PENETRATION)

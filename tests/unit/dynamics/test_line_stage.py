@@ -17,6 +17,7 @@ from petalfoil.dynamics.line_stage import LineStage, LineStepContacts
 from petalfoil.dynamics.stage import StageOptions
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import GAMMA, IMPLICIT, take_step
+from petalfoil.equilibrium.line_stretches import Stretches
 from petalfoil.equilibrium.line_tangent import LineResiduals
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 from petalfoil.system.time_step import StepProblem
@@ -39,7 +40,8 @@ def first_stage(orbit: Orbit, more: tuple[float, float] = (0.0, 0.0), step: floa
     start, bearing = orbit.start, orbit.system
     base = start.moving.plus(step, (IMPLICIT, start.change))
     stage = bearing.stage(base, start.tau + GAMMA * step, step, start, StageOptions(accuracy=1e-10))
-    return LineStage(replace(stage, outside=stage.outside + np.array(more)))
+    before = Stretches.of(start.lines, len(start.active))
+    return LineStage(replace(stage, outside=stage.outside + np.array(more)), before)
 
 
 def begins(stage: LineStage, orbit: Orbit) -> LineStepContacts:
