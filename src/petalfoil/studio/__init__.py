@@ -12,6 +12,7 @@ What is asked and computed, without widgets:
 - ``worker_process`` the server's end of a worker
 - ``worker``        the process that computes
 - ``lifeline``      ends it with the server
+- ``freed_memory``  gives the system back what a task has freed
 - ``tasks``         what it computes: an answer, a file
 - ``study_tasks``   studies: a map, a search
 - ``arrays``        what of an answer the browser draws

@@ -16,6 +16,7 @@ from queue import SimpleQueue
 from typing import BinaryIO
 
 from petalfoil.errors import ConvergenceError, DefinitionError, PetalfoilError
+from petalfoil.studio.freed_memory import give_back
 from petalfoil.studio.protocol import (
     Cancel,
     Cancelled,
@@ -65,6 +66,7 @@ def run(inbox: Inbox, tell: Callable[[Message], None]) -> None:
         task = inbox.tasks.get()
         tell(outcome(task, inbox, tell))
         inbox.cancelled.discard(task.number)
+        give_back()
 
 
 def outcome(task: WorkerTask, inbox: Inbox, tell: Callable[[Message], None]) -> Message:
