@@ -18,6 +18,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.mesh import hermite
 from petalfoil.mesh.pack import PackMesh
 from petalfoil.sparsity import SparseRows
 
@@ -54,6 +55,32 @@ class GapLines:
         parabolas = -after / (before * both), 1.0 / before - 1.0 / after, before / (after * both)
         weight[1:-1] = np.stack(parabolas, axis=1)
         return node, weight
+
+    @cached_property
+    def cell_length(self) -> Array:
+        """Angle between neighbouring nodes, (node - 1,) [rad]."""
+        return np.diff(self.phi)
+
+    @cached_property
+    def mean_cell(self) -> float:
+        """Its mean [rad]."""
+        return float(np.mean(self.cell_length))
+
+    @cached_property
+    def cubics(self) -> tuple[NDArray[np.intp], Array]:
+        """Nodes that the gap in each cell reads (K15), (node - 1, 8), and their weights in powers of `t`, (.., 4, 8).
+
+        The two nodes of the cell, then those that the slopes at both read; some of them twice.
+        """
+        node, weight = self.slope_weights
+        ends = np.arange(len(self.phi) - 1)[:, None] + np.arange(2)
+        read = np.concatenate([ends, node[ends].reshape(-1, 6)], axis=1)
+        slopes = weight[ends] * self.cell_length[:, None, None]  # by `t`
+        of_values, of_slopes = hermite.COEFFICIENTS[::2].T, hermite.COEFFICIENTS[1::2].T
+        weights = np.empty((*read.shape[:1], 4, 8))
+        weights[:, :, :2] = of_values
+        weights[:, :, 2:] = np.einsum("ps,csi->cpsi", of_slopes, slopes).reshape(-1, 4, 6)
+        return read, weights
 
 
 @dataclass(frozen=True)

@@ -33,13 +33,8 @@ Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
 
-EVERY_DERIVATIVE = np.concatenate(
-    [np.pad(powers, ((0, 0), (0, 4 - powers.shape[1]))) for powers in hermite.DERIVATIVES]
-).T
-"""Columns hold the powers of `t` in `H_k`, then those in their first and second derivatives."""
-
-ORDERS = np.arange(3.0)[:, None]
-"""Orders of these derivatives."""
+POWERS = np.arange(1.0, 4.0)
+"""What powers of a place turn to as they are differentiated."""
 
 DESCENTS, FARTHEST_DESCENT = 3, 0.5
 """Steps toward the minimum of a gap, and the farthest of each in cells."""
@@ -80,14 +75,9 @@ class LinePoints:
         for (points, cell, t), lines in zip(self._cells, self.lines, strict=True):
             if not len(points):
                 continue
-            length, (node, weight) = np.diff(lines.phi)[cell], lines.slope_weights
-            ends = cell[:, None] + np.arange(2)
-            read = np.concatenate([ends, node[cell], node[ends[:, 1]]], axis=1)
-            gaps[points] = lines.number[self.line[points][:, None], read]
-            basis = (hermite.powers(t) @ EVERY_DERIVATIVE).reshape(-1, 3, 4) / length[:, None, None] ** ORDERS
-            slopes = weight[ends] * length[:, None, None]
-            weights[:, points, :2] = basis[:, :, ::2].transpose(1, 0, 2)
-            weights[:, points, 2:] = np.einsum("kds,ksi->dksi", basis[:, :, 1::2], slopes).reshape(3, -1, 6)
+            read, cubics = lines.cubics
+            gaps[points] = lines.number[self.line[points][:, None], read[cell]]
+            weights[:, points] = np.matmul(derivatives_at(t, lines.cell_length[cell]), cubics[cell]).transpose(1, 0, 2)
         return gaps, weights
 
     def along(self, gaps: Array) -> Array:
@@ -128,13 +118,13 @@ class LinePoints:
         """Length of the cell of each point, (k,) [rad]."""
         out = np.zeros(len(self.phi))
         for (points, cell, _), lines in zip(self._cells, self.lines, strict=True):
-            out[points] = np.diff(lines.phi)[cell]
+            out[points] = lines.cell_length[cell]
         return out
 
     @property
     def mean_cell(self) -> float:
         """Mean length of the cells of all lines [rad]: the same wherever the points are."""
-        return float(np.mean([(lines.phi[-1] - lines.phi[0]) / (len(lines.phi) - 1) for lines in self.lines]))
+        return sum(lines.mean_cell for lines in self.lines) / len(self.lines)
 
     @cached_property
     def beside(self) -> Index:
@@ -218,7 +208,9 @@ class LinePoints:
         out = []
         for mine, lines in self._kinds():
             points = np.flatnonzero(mine)
-            out.append((points, *hermite.located(self.phi[points], lines.phi)))
+            phi = self.phi[points]
+            cell = np.minimum(np.searchsorted(lines.phi[1:], phi, side="right"), len(lines.phi) - 2)
+            out.append((points, cell, (phi - lines.phi[cell]) / lines.cell_length[cell]))
         return tuple(out)
 
     def _derivative(self, order: int) -> sp.csr_array:
@@ -230,3 +222,12 @@ class LinePoints:
         """Rows over all gaps from those that each point reads and their weights, (k, m)."""
         rows = np.repeat(np.arange(len(self.phi)), read.shape[1])
         return sp.csr_array((weights.ravel(), (rows, read.ravel())), shape=(len(self.phi), self.gaps))
+
+
+def derivatives_at(t: Array, length: Array) -> Array:
+    """Powers of places `t` (k,) in cells of some `length` (k,), and two derivatives by the angle, (k, 3, 4)."""
+    out = np.zeros((len(t), 3, 4))
+    out[:, 0], by_length = hermite.powers(t), 1.0 / length[:, None]
+    out[:, 1, 1:] = POWERS * out[:, 0, :3] * by_length
+    out[:, 2, 2:] = POWERS[1:] * out[:, 1, 1:3] * by_length
+    return out
