@@ -32,6 +32,7 @@
 `point_contacts.py`        equilibria with contact points as unknowns
 `point_prospects.py`       when a search for these is given up
 `followed_points.py`       these followed to a neighbouring position, speed or load
+`settled_points.py`        these with the conditions of contact met along whole curves
 `led_points.py`            from solution to solution so, contacts at nodes left out
 `asperity_contacts.py`     equilibria with contact pressures over low asperities
 `asperity_path.py`         these from nothing, along a central path

@@ -17,6 +17,7 @@ from petalfoil.equilibrium.element_tangent import NoPointsError
 from petalfoil.equilibrium.followed_points import followed
 from petalfoil.equilibrium.point_contacts import PointContacts, with_points
 from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.settled_points import settled_points
 from petalfoil.equilibrium.small_motion import AT_ASPERITIES, AT_POINTS, ElementEquilibrium
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.solvers.constraints import constrain
@@ -119,17 +120,22 @@ def start_at(whole: PointLayout, solution: Solution) -> PointState:
 
 
 def tightened(found: ElementEquilibrium, load: Array | None) -> ElementEquilibrium:
-    """The same equilibrium with contacts wherever gaps are below zero by more than points that are followed allow.
+    """The same equilibrium with contacts that meet (K12b), so that it does not depend on the way that led there.
 
-    So it does not depend on the way that led there. Where contacts do not settle so closely, it stays as it is.
+    Where they do not settle so, wherever gaps are below zero by more than points that are followed allow; where they do
+    not settle so closely either, it stays as it is.
     """
     if not isinstance(found, PointContacts):
         return found
+    settled = settled_points(found, load)
+    if settled is not None and settled is not found:
+        return settled
     try:
-        return followed(found, found.equations.problem, load)
+        close = followed(found, found.equations.problem, load)
     except NoPointsError as failure:
         current_run().note("contact points", outcome=f"kept with contacts 2 nm deep: {failure}")
         return found
+    return close if settled is None else settled_points(close, load) or close
 
 
 def agreeing(found: ElementEquilibrium, solution: Solution, known: Solution | None = None) -> ElementEquilibrium:

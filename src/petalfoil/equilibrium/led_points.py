@@ -16,6 +16,7 @@ from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
 from petalfoil.equilibrium.nodal_state import sampled_lines, sampled_solution
 from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.equilibrium.run_context import current_run
+from petalfoil.equilibrium.settled_points import still_settled
 from petalfoil.equilibrium.solution import Solution, from_contacts
 from petalfoil.equilibrium.under_load import WARM as WARM_UNDER_LOAD
 from petalfoil.equilibrium.under_load import newton
@@ -51,7 +52,7 @@ def led_by_points(near: PointContacts, problem: CoupledProblem, load: Array | No
             for share in np.arange(1, parts) / parts:
                 found = followed(found, placed(on_the_way(start, problem, share), found, load), load)
             found = followed(found, placed(problem, found, load), load)
-            return sampled_solution(clear_of_journal(found), load)
+            return sampled_solution(clear_of_journal(still_settled(found, near, load)), load)
         except NoPointsError as failure:
             current_run().note("followed", parts=parts, outcome=str(failure))
     return None
