@@ -122,7 +122,7 @@ class LineStage(TravellingStage[LineStepContacts, LineTangent, LineChange]):
         if not state.problem.admits(state.x):
             raise NoLinesError("the film closes")
 
-    def revised(self, state: LineStepContacts, number: int) -> LineStepContacts | None:
+    def revised(self, state: LineStepContacts) -> LineStepContacts | None:
         """The state with other contacts, where the signs ask for them; None where they are right."""
         return revised_in_time(state, EARLY_PULL, self.before)
 

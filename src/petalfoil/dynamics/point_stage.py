@@ -28,9 +28,6 @@ from petalfoil.system.time_step import StepProblem
 
 Array = NDArray[np.float64]
 
-SPLITTING = 1
-"""Sets of contacts of a stage after which points no longer split: halves that meet again would split without end."""
-
 PointChange = tuple[Array, Array]
 """Changes of the unknowns and of the position."""
 
@@ -75,9 +72,12 @@ class PointStage(TravellingStage[PointStepEquations, ElementTangent, PointChange
         """Raise where the film is closed."""
         refuse_closed(state)
 
-    def revised(self, state: PointStepEquations, number: int) -> PointStepEquations | None:
-        """The equations with other contacts, where the signs ask for them; None where they are right."""
-        points = revised(state, self.stage.options.accuracy, splitting=number < SPLITTING)
+    def revised(self, state: PointStepEquations) -> PointStepEquations | None:
+        """The equations with other contacts, where the signs ask for them; None where they are right.
+
+        Points do not split: halves that meet again would split without end.
+        """
+        points = revised(state, self.stage.options.accuracy, splitting=False)
         if points is None:
             return None
         return with_contacts(state, replace(state, state=replace(state.state, points=points)))

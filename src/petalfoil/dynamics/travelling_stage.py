@@ -116,9 +116,9 @@ class TravellingStage(ABC, Generic[StageState, HeldTangent, StageChange]):
         """The stage's state near one; None if there is none near it."""
         try:
             self.refuse_closed(state)
-            for number in range(SETS):
+            for _ in range(SETS):
                 state, tangent = self.settled(state, tangent)
-                other = self.revised(state, number)
+                other = self.revised(state)
                 if other is None:
                     return TravellingSolution(state, self.moving(state), tangent, self.residual(state))
                 state = other
@@ -180,11 +180,8 @@ class TravellingStage(ABC, Generic[StageState, HeldTangent, StageChange]):
         """Raise where the film is closed."""
 
     @abstractmethod
-    def revised(self, state: StageState, number: int) -> StageState | None:
-        """The state with other contacts, where the signs ask for them; None where they are right.
-
-        `number` sets of contacts have been revised in this stage before.
-        """
+    def revised(self, state: StageState) -> StageState | None:
+        """The state with other contacts, where the signs ask for them; None where they are right."""
 
     @abstractmethod
     def tangent_at(self, state: StageState) -> HeldTangent:
