@@ -5,8 +5,8 @@
 
 Starting moment of the assembled pack and at the end, force at the largest displacement, width of the loop in its
 middle, energy of a cycle: the rig down to 10 um and the paper's eight petals down to 100 um and back. Writes the tables
-of `docs/decisions/033-friction-paths.md`: two minutes in 2-D. In 3-D contacts are at nodes; `3d rig nodes 32` is one
-row, of which those of 32 x 12 cells take a minute.
+of `docs/decisions/033-friction-paths.md`: two minutes in 2-D. `3d rig nodes 32` is one row in 3-D; with contact lines
+that of 32 x 12 cells takes three minutes.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def asked_rows(asked: list[str]) -> Iterator[str]:
     """The rows that are asked for."""
     kind, names, models, grids = "2d", list(DEEPEST), ["nodes", "points"], [24, 48, 96]
     if asked:
-        kind, models, grids = asked[0], ["nodes"], list(AXIAL)
+        kind, grids = asked[0], list(AXIAL)
     if asked[1:]:
         names, models, grids = [asked[1]], [asked[2]], [int(asked[3])]
     for name in names:

@@ -183,7 +183,7 @@ def tilted(ends: Array) -> tuple[Array, Array]:
         "paper_n8_spatial",
         **{"petals.theory": "shell", "surface.petal_friction": 0.1, "operation.eccentricity": (0.0, 0.0)},
         **{"model.cells_per_pitch": 8, "model.axial_cells": 4, "model.axial_density": "uniform"},
-        **{"operation.moment": (0.0, 0.0)},
+        **{"operation.moment": (0.0, 0.0), "model.contacts": "nodes"},
     )
     forces, lost = [], [0.0]
     with running():

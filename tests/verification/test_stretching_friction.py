@@ -52,7 +52,7 @@ def test_without_lateral_contraction_friction_is_that_of_2d() -> None:
     """Loaded and unloaded: along the shaft all is alike, so that forces and energy lost are those of one station."""
     way = ["0 um", "-10 um", "-5 um"]
     changes = {"petals.poisson_ratio": 0.0, "model.axial_cells": 2}
-    whole = static(rubbing(**changes), way)
+    whole = static(rubbing(**changes, **{"model.contacts": "nodes"}), way)
     plane = static(rubbing(**changes, **PLANE), way)
     assert_allclose(whole.force_y, plane.force_y, rtol=1e-7, atol=1e-7)
     assert_allclose(whole.petal_friction_work, plane.petal_friction_work, rtol=1e-6, atol=1e-12)
@@ -95,7 +95,7 @@ def slips_of_motion(
 ) -> tuple[float, float]:
     """Slip along petals and along the shaft, both weighted with the reactions, as the journal moves from the centre."""
     with running():
-        centred = (build_problem if len(motion) == 2 else build_tilting)(of)
+        centred = (build_problem if len(motion) == 2 else build_tilting)(of.replace(**{"model.contacts": "nodes"}))
         layout, friction = centred.layout, friction_of(of, centred.layout)
         assert friction is not None
         friction = law(friction)

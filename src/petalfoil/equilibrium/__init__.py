@@ -44,6 +44,10 @@
 `line_tangent.py`          the factorised tangent of these, as it serves later states
 `line_exchange.py`         what has changed in their contacts since it was factorised
 `line_chords.py`           steps with one factor
+`rubbing_lines.py`         a state of a path with friction on such lines
+`line_friction_path.py`    the pack with friction on them, a step further along a path
+`line_dips.py`             contacts that split: gaps that close in a cell beside one
+`line_handover.py`         states of a path handed over from nodes to lines, and back
 `line_sets.py`             these found from active nodes
 `line_signs.py`            which contacts they have: corrected by signs
 `line_stretches.py`        stretches of contacts at nodes among them, as they grow and recede in time

@@ -12,8 +12,11 @@ import numpy as np
 from petalfoil.equilibrium.coulomb_path import slide_exactly
 from petalfoil.equilibrium.friction_handover import PathState, at_nodes, at_points
 from petalfoil.equilibrium.friction_path import FrictionResult, slide
+from petalfoil.equilibrium.line_friction_path import slide_on_lines
+from petalfoil.equilibrium.line_handover import on_lines
 from petalfoil.equilibrium.pack_at_rest import at_rest, unloaded
 from petalfoil.equilibrium.point_friction_path import RubbingPoints, slide_at_points
+from petalfoil.equilibrium.rubbing_lines import RubbingLines
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.contact_newton import solve_contacts
@@ -49,7 +52,7 @@ class PathEnd:
 
     Attributes
     ----------
-    state : FrictionResult or RubbingPoints
+    state : FrictionResult, RubbingPoints or RubbingLines
         The state.
     lost : float
         Energy lost on the way, over the units of force and length [1].
@@ -64,7 +67,7 @@ class PathEnd:
 
     def then(self, state: PathState) -> PathEnd:
         """After one more step."""
-        at_points = self.at_points + isinstance(state, RubbingPoints)
+        at_points = self.at_points + (not isinstance(state, FrictionResult))
         return PathEnd(state, self.lost + state.lost, self.steps + 1, at_points)
 
 
@@ -126,7 +129,9 @@ def led(
             done = there
             nodal = slid if points and isinstance(slid, FrictionResult) else None
             way = way.then((None if nodal is None else with_points(friction, at(there), nodal)) or slid)
-        elif isinstance(way.state, RubbingPoints) and (halved == MOST_HALVED or parts[-1] <= shortest * 2.0**AT_NODES):
+        elif not isinstance(way.state, FrictionResult) and (
+            halved == MOST_HALVED or parts[-1] <= shortest * 2.0**AT_NODES
+        ):
             points = points and halved < MOST_HALVED
             current_run().note("friction", share=done, outcome="contact points lost")
             nodal = at_nodes(friction, way.state, at(done))
@@ -143,6 +148,8 @@ def led(
 def slid_to(pack: FoilPackProblem, friction: Friction, before: PathState) -> PathState | None:
     """The pack after a step: exact, or with friction that builds up over a width."""
     solver = current_run().pack_solver
+    if isinstance(before, RubbingLines):
+        return slide_on_lines(pack, before, solver)
     if isinstance(before, RubbingPoints):
         ahead = PackAtPoints.of(before.whole, pack.coupled, before.state, before.force, pack.withdrawn)
         return slide_at_points(ahead, before.law(friction.coefficient), solver)
@@ -151,12 +158,16 @@ def slid_to(pack: FoilPackProblem, friction: Friction, before: PathState) -> Pat
     return slide_exactly(pack, friction, before, pack.layout.wall.contacts.line_numbers, solver)
 
 
-def with_points(friction: Friction, pack: FoilPackProblem, nodal: FrictionResult) -> RubbingPoints | None:
-    """A state with contacts at nodes with contact points that keep its friction forces.
+def with_points(
+    friction: Friction, pack: FoilPackProblem, nodal: FrictionResult
+) -> RubbingPoints | RubbingLines | None:
+    """A state with contacts at nodes with contact points or, in 3-D, lines that keep its friction forces.
 
     None where there are none near it, or none are asked for.
     """
     whole = pack.layout.elements
+    if friction.exact and pack.layout.case.has_contact_lines:
+        return on_lines(friction, pack, nodal)
     if whole is None or not friction.exact:
         return None
     state, force = at_points(whole, friction, nodal)

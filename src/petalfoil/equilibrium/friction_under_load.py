@@ -13,12 +13,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.friction_handover import PathState, at_points, shared_friction
+from petalfoil.equilibrium.friction_handover import at_points, shared_friction
 from petalfoil.equilibrium.friction_history import LONGEST_MOVE, assembled
 from petalfoil.equilibrium.friction_path import FrictionResult
 from petalfoil.equilibrium.nodal_state import sampled_solution, shared_reactions, unknowns_at_nodes
 from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.equilibrium.point_friction_path import RubbingPoints, reached, slide_at_points
+from petalfoil.equilibrium.rubbing_lines import RubbingLines
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.sinking import Medium, SinkingEquations
 from petalfoil.equilibrium.sliding_newton import SlidingNewton, SlidingOptions
@@ -33,6 +34,9 @@ from petalfoil.system.point_friction import RubbingEquations
 from petalfoil.system.sinking_points import SinkingPoints
 
 Array = NDArray[np.float64]
+
+StateUnderLoad = FrictionResult | RubbingPoints
+"""A state of a path under a load: its contacts are at nodes in 3-D."""
 
 BALANCE = SlidingOptions(accuracy=1e-10, first=0.2, slow=0.2, tangents=12)
 """A state ends by residual and force: corrections go on until they are rounding."""
@@ -78,9 +82,9 @@ class LoadedPath:
         With contact points if they lead there, else with contacts at nodes.
         """
         still = problem.at(bearing_number=0.0, displacement=np.zeros(problem.layout.n_position))
-        for points in (True, False):
+        for points in (True, False) if problem.layout.elements is not None else (False,):
             pack = assembled(self.friction, still, points=points)
-            start = None if pack is None else in_film(pack.state, still)
+            start = None if pack is None or isinstance(pack.state, RubbingLines) else in_film(pack.state, still)
             if start is None or (points and not isinstance(start, RubbingPoints)):
                 continue
             found = self.sunk(still, start) if np.any(self.load) else self.solution(still, start)
@@ -106,7 +110,9 @@ class LoadedPath:
                 found = self.at_speed((known.problem, sampled(self.friction, start)), number, PARTS)
         return found
 
-    def at_speed(self, known: tuple[CoupledProblem, PathState], bearing_number: float, parts: int) -> Solution | None:
+    def at_speed(
+        self, known: tuple[CoupledProblem, StateUnderLoad], bearing_number: float, parts: int
+    ) -> Solution | None:
         """The state at another bearing number; half the way first where that is too far. None if it fails."""
         before, start = known
         there = before.at(bearing_number=bearing_number)
@@ -119,7 +125,7 @@ class LoadedPath:
                 found = self.at_speed((half.problem, path_of(half)), bearing_number, parts - 1)
         return found
 
-    def sunk(self, problem: CoupledProblem, before: PathState) -> Solution | None:
+    def sunk(self, problem: CoupledProblem, before: StateUnderLoad) -> Solution | None:
         """The journal released where `problem` has it (M7), until it balances; None if it does not come to rest."""
         longest, thicker = longest_step(problem), 0
         unbalanced = load_scale(self.load)
@@ -140,7 +146,7 @@ class LoadedPath:
             thicker = max(thicker - 1, 0)
         return None
 
-    def balanced(self, problem: CoupledProblem, before: PathState) -> Solution | None:
+    def balanced(self, problem: CoupledProblem, before: StateUnderLoad) -> Solution | None:
         """The balance no farther than a step from where `problem` has the journal; None if there is none."""
         step = self.stepped(problem, before, Medium())
         if step is None:
@@ -151,8 +157,8 @@ class LoadedPath:
         return found if good and moved <= longest_step(problem) else None
 
     def stepped(
-        self, problem: CoupledProblem, before: PathState, medium: Medium
-    ) -> tuple[CoupledProblem, PathState] | None:
+        self, problem: CoupledProblem, before: StateUnderLoad, medium: Medium
+    ) -> tuple[CoupledProblem, StateUnderLoad] | None:
         """The state after a step in a `medium`; None if it is not found."""
         if isinstance(before, RubbingPoints):
             found = self.points_after(problem, before, medium)
@@ -163,7 +169,7 @@ class LoadedPath:
 
     def points_after(
         self, problem: CoupledProblem, before: RubbingPoints, medium: Medium
-    ) -> tuple[CoupledProblem, PathState] | None:
+    ) -> tuple[CoupledProblem, StateUnderLoad] | None:
         """The same of contact points."""
         own, at = before.equations, (problem.displacement, before.state.w)
         ahead = SinkingPoints(
@@ -177,7 +183,7 @@ class LoadedPath:
 
     def nodes_after(
         self, problem: CoupledProblem, before: FrictionResult, medium: Medium
-    ) -> tuple[CoupledProblem, PathState] | None:
+    ) -> tuple[CoupledProblem, StateUnderLoad] | None:
         """The same of contacts at nodes."""
         equations = SinkingEquations(problem, self.load, before.x, medium)
         newton = SlidingNewton(equations, self.friction, before.friction, BALANCE)
@@ -189,7 +195,7 @@ class LoadedPath:
         reached = FrictionResult(state.x, state.lam, state.active, state.residual, after, lost)
         return problem.at(displacement=state.b), reached
 
-    def with_points(self, problem: CoupledProblem, nodal: PathState) -> RubbingPoints | None:
+    def with_points(self, problem: CoupledProblem, nodal: StateUnderLoad) -> RubbingPoints | None:
         """A state with contacts at nodes with contact points and its friction forces, near it under the load.
 
         None where there are none, or none are looked for.
@@ -202,7 +208,7 @@ class LoadedPath:
         found = slide_at_points(ahead, None, current_run().film_solver, self.load)
         return None if found is None else replace(found, lost=nodal.lost)
 
-    def solution(self, problem: CoupledProblem, reached: PathState) -> Solution:
+    def solution(self, problem: CoupledProblem, reached: StateUnderLoad) -> Solution:
         """A state as a solution that knows its path."""
         if isinstance(reached, RubbingPoints):
             found = PointContacts(plain(reached.equations), reached.residual)
@@ -220,7 +226,7 @@ def longest_step(problem: CoupledProblem) -> float:
     return LONGEST_MOVE / problem.layout.scales.length
 
 
-def path_of(known: Solution) -> PathState:
+def path_of(known: Solution) -> StateUnderLoad:
     """A known state, to go on from."""
     path, found = known.friction, known.elements
     if path is None:
@@ -237,14 +243,14 @@ def plain(equations: RubbingEquations) -> RubbingEquations:
     )
 
 
-def force_of(problem: CoupledProblem, reached: PathState) -> Array:
+def force_of(problem: CoupledProblem, reached: StateUnderLoad) -> Array:
     """Force of film and contacts on the journal over the unit of force, (d,) [1]."""
     if isinstance(reached, RubbingPoints):
         return reached.equations.journal_force
     return problem.journal_force(reached.x, reached.lam)
 
 
-def in_film(state: PathState, problem: CoupledProblem) -> PathState:
+def in_film(state: StateUnderLoad, problem: CoupledProblem) -> StateUnderLoad:
     """A pack that was moved without film under one at ambient pressure, nothing lost so far."""
     if isinstance(state, RubbingPoints):
         return replace(state, equations=plain(state.equations), lost=0.0)
