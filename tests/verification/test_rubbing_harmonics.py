@@ -166,7 +166,7 @@ def test_a_mode_that_is_not_found_again_has_ended_in_a_fold(monkeypatch: pytest.
         several = replace(rotor, whirl=rotor.whirl.with_enough(found.motion))
         monkeypatch.setattr(RubbingResponse, "friction", mixed)
         regular = []
-        for part in (0.25, 0.5, 0.65, 0.75, 0.765, 0.77):
+        for part in (0.5, 0.77, 0.8, 0.83, 0.86):
             mixing["several"] = part
             found = several.near(found.motion)
             assert found is not None
