@@ -13,6 +13,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.sparsity import compressed
+
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
@@ -55,7 +57,8 @@ def rows(element: Index, t: Array, length: Array, derivative: int = 0) -> sp.csr
     """
     columns, weights = entries(element, t, length, derivative)
     starts = np.arange(0, weights.size + 1, weights.shape[1])
-    return sp.csr_array((weights.ravel(), columns.ravel(), starts), shape=(len(element), 2 * len(length) + 2))
+    shape = (len(element), 2 * len(length) + 2)
+    return compressed(sp.csr_array, weights.ravel(), columns.ravel(), starts, shape)
 
 
 def entries(element: Index, t: Array, length: Array, derivative: int = 0) -> tuple[Index, Array]:

@@ -24,7 +24,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.mesh.pack import PackMesh
-from petalfoil.sparsity import at_stations, block_diagonal, repeated
+from petalfoil.sparsity import at_stations, block_diagonal, compressed, repeated
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -150,15 +150,22 @@ def petal_slip(mesh: PackMesh, arm: Array, first: int) -> tuple[sp.csr_array, sp
 
 def slopes(phi: Array) -> sp.csr_array:
     """Derivative in the cells between the nodes `phi` (n,), shape (n - 1, n)."""
-    n, each = len(phi), 1.0 / np.diff(phi)
-    return sp.csr_array(sp.diags_array([-each, each], offsets=[0, 1], shape=(n - 1, n)))
+    each = 1.0 / np.diff(phi)
+    return beside_cells(-each, each)
 
 
 def halves(n: int) -> sp.csr_array:
     """Parts of `n` nodal reactions in the cells between the nodes, shape (n - 1, n): halves, at the ends the whole."""
     own, next_one = np.full(n - 1, 0.5), np.full(n - 1, 0.5)
     own[0], next_one[-1] = 1.0, 1.0
-    return sp.csr_array(sp.diags_array([own, next_one], offsets=[0, 1], shape=(n - 1, n)))
+    return beside_cells(own, next_one)
+
+
+def beside_cells(behind: Array, ahead: Array) -> sp.csr_array:
+    """Weights (n - 1,) of the nodes behind and ahead of each cell between `n` nodes, shape (n - 1, n)."""
+    n, data = len(behind) + 1, np.stack([behind, ahead], axis=1).ravel()
+    cols = (np.arange(n - 1)[:, None] + np.arange(2)).ravel()
+    return compressed(sp.csr_array, data, cols, np.arange(0, 2 * n, 2), (n - 1, n))
 
 
 def equivalent_stiffness(stiffness: Array, limit: Array, amplitude: Array) -> tuple[Complex, Complex]:

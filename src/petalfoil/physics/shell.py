@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 import scipy.sparse as sp
@@ -24,9 +24,12 @@ from numpy.typing import NDArray
 
 from petalfoil.mesh.axial import AxialGrid
 from petalfoil.mesh.quadrature import trapezoid
-from petalfoil.sparsity import at_stations, repeated
+from petalfoil.sparsity import Triplets, at_stations, compressed, repeated, rows_of_blocks
 
 Array = NDArray[np.float64]
+
+REMEMBERED = 8
+"""Grids whose differences are remembered: packs of a parameter study share them."""
 
 
 @dataclass(frozen=True)
@@ -68,12 +71,15 @@ class PetalShell:
         """Moments from curvatures and twist, quadrature weights included [N m^3]."""
         D, nu, r_m = self.rigidity, self.poisson_ratio, self.metric_radius
         full, along_phi, along_z = self._weights
-        bending_phi = sp.diags_array(full + (1.0 - nu**2) * along_phi)
-        bending_z = sp.diags_array(full + (1.0 - nu**2) * along_z)
-        coupling = nu * sp.diags_array(full)
-        twist = 2.0 * (1.0 - nu) * sp.diags_array(self._cell_weight)
-        blocks = [[bending_phi, coupling, None], [coupling, bending_z, None], [None, None, twist]]
-        return sp.csr_array(D * r_m * sp.block_array(blocks, format="csr"))
+        n, twist, coupling = len(full), 2.0 * (1.0 - nu) * self._cell_weight, Triplets.diagonal(D * r_m * (nu * full))
+        blocks = [
+            (0, 0, Triplets.diagonal(D * r_m * (full + (1.0 - nu**2) * along_phi))),
+            (0, n, coupling),
+            (n, 0, coupling),
+            (n, n, Triplets.diagonal(D * r_m * (full + (1.0 - nu**2) * along_z))),
+            (2 * n, 2 * n, Triplets.diagonal(D * r_m * twist)),
+        ]
+        return rows_of_blocks(blocks, (2 * n + len(twist),) * 2)
 
     @cached_property
     def difference(self) -> sp.csr_array:
@@ -82,10 +88,7 @@ class PetalShell:
         Its entries are +-1. Neighbouring deflections differ little, and their difference is exact in floating point.
         Curvatures from these differences keep digits that second differences of `W` would lose.
         """
-        n, n_z = len(self.phi), len(self.axial.z)
-        d_phi, d_z = neighbour_differences(n), neighbour_differences(n_z)
-        along, across = at_stations(d_phi, n_z), repeated(d_z, n)
-        return sp.csr_array(sp.vstack([along, across, sp.kron(d_phi, d_z), sp.eye_array(n * n_z)], format="csr"))
+        return grid_differences(len(self.phi), len(self.axial.z))
 
     @cached_property
     def strain(self) -> sp.csr_array:
@@ -94,12 +97,18 @@ class PetalShell:
         Rows are empty where a curvature follows from another one (free edges) or is zero (hinged root).
         """
         n, n_z = len(self.phi), len(self.axial.z)
-        in_place = at_stations(sp.diags_array(self._bent / self.bend_radius**2), n_z)
+        in_place = np.repeat(self._bent / self.bend_radius**2, n_z)
         chi_phi = at_stations(self._second_phi / self.metric_radius**2, n_z)
-        chi_z = repeated(self._second_z, n)
-        cells = self._twist_scale
-        blocks = [[chi_phi, None, None, in_place], [None, chi_z, None, None], [None, None, sp.diags_array(cells), None]]
-        return sp.csr_array(sp.block_array(blocks, format="csr"))
+        chi_z, cells = repeated(self._second_z, n), self._twist_scale
+        nodes, after_phi = n * n_z, chi_phi.shape[1]
+        after_z = after_phi + chi_z.shape[1]
+        blocks = [
+            (0, 0, chi_phi),
+            (0, after_z + len(cells), Triplets.diagonal(in_place)),
+            (nodes, after_phi, chi_z),
+            (2 * nodes, after_z, Triplets.diagonal(cells)),
+        ]
+        return rows_of_blocks(blocks, (2 * nodes + len(cells), after_z + len(cells) + nodes))
 
     @property
     def _bent(self) -> Array:
@@ -205,12 +214,20 @@ def _along(matrix: sp.csr_array, values: Array, axis: int) -> Array:
     return np.moveaxis(applied.reshape(matrix.shape[0], *first.shape[1:]), 0, axis)
 
 
+@lru_cache(maxsize=REMEMBERED)
+def grid_differences(n: int, n_z: int) -> sp.csr_array:
+    """`PetalShell.difference` of `n` nodes along the arc at `n_z` stations: the same for all petals."""
+    d_phi, d_z = neighbour_differences(n), neighbour_differences(n_z)
+    along, across = at_stations(d_phi, n_z), repeated(d_z, n)
+    return sp.csr_array(sp.vstack([along, across, sp.kron(d_phi, d_z), sp.eye_array(n * n_z)], format="csr"))
+
+
 def neighbour_differences(n: int) -> sp.csr_array:
     """Matrix of differences of neighbours among `n` values, shape (n - 1, n), of none (0, 0)."""
     if n == 0:
         return sp.csr_array((0, 0))
-    one = np.ones(n - 1)
-    return sp.csr_array(sp.diags_array([-one, one], offsets=[0, 1], shape=(n - 1, n)))
+    data, starts = np.tile([-1.0, 1.0], n - 1), np.arange(0, 2 * n, 2)
+    return compressed(sp.csr_array, data, (np.arange(n - 1)[:, None] + np.arange(2)).ravel(), starts, (n - 1, n))
 
 
 def _second_derivative(nodes: Array, first: float | None = None, last: float | None = None) -> sp.csr_array:

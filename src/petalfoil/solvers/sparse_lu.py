@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.sparse import _sparsetools  # the loops behind `@`; SciPy has no public way to them
 from scipy.sparse.csgraph import connected_components
 
-from petalfoil.sparsity import Elimination, Order, postorder
+from petalfoil.sparsity import Elimination, Order, compressed, postorder
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -178,7 +178,7 @@ class Columns:
     @property
     def matrix(self) -> sp.csc_array:
         """As an array of SciPy's, in canonical format as long as no entry stands twice."""
-        return sp.csc_array((self.data, self.indices, self.indptr), shape=(self.n, self.n))
+        return compressed(sp.csc_array, self.data, self.indices, self.indptr, (self.n, self.n))
 
     @property
     def magnitude(self) -> Columns:

@@ -8,6 +8,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.sparsity.compressed import compressed
+
 Index = NDArray[np.intp]
 
 
@@ -41,4 +43,4 @@ class Pattern:
     def assemble(self, values: NDArray[np.float64]) -> sp.csc_array:
         """The matrix with `values` (n_entry,) at the places, in their order."""
         data = add_up(self.slot, values, len(self.indices))
-        return sp.csc_array((data, self.indices, self.indptr), shape=(self.n, self.n))
+        return compressed(sp.csc_array, data, self.indices, self.indptr, (self.n, self.n))

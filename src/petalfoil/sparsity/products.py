@@ -16,6 +16,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse import _sparsetools  # the loops behind `@`; SciPy has no public way to them
 
+from petalfoil.sparsity.compressed import compressed
+
 Array = NDArray[np.float64]
 Index = NDArray[np.integer[Any]]
 
@@ -45,12 +47,15 @@ class SparseRows(sp.csr_array):  # type: ignore[misc]
     @cached_property
     def T(self) -> SparseRows:
         """The transpose, by rows."""
-        return SparseRows(self.transpose())
+        (rows, columns), data, indices = self._size, np.empty_like(self.data), np.empty_like(self.indices)
+        indptr = np.empty(columns + 1, self.indptr.dtype)
+        _sparsetools.csr_tocsc(rows, columns, self.indptr, self.indices, self.data, indptr, indices, data)
+        return compressed(SparseRows, data, indices, indptr, (columns, rows))
 
     @cached_property
     def magnitude(self) -> SparseRows:
         """Magnitudes of the entries."""
-        return SparseRows(abs(self))
+        return compressed(SparseRows, np.abs(self.data), self.indices, self.indptr, self._size)
 
 
 class Triplets(NamedTuple):
@@ -69,6 +74,12 @@ class Triplets(NamedTuple):
         major = np.repeat(np.arange(len(matrix.indptr) - 1, dtype=matrix.indices.dtype), np.diff(matrix.indptr))
         rows, cols = (major, matrix.indices) if matrix.format == "csr" else (matrix.indices, major)
         return cls(rows, cols, matrix.data)
+
+    @classmethod
+    def diagonal(cls, values: Array) -> Triplets:
+        """Those of a diagonal (n,), zeros left out."""
+        at = np.flatnonzero(values)
+        return cls(at, at, values[at])
 
     @property
     def T(self) -> Triplets:
@@ -130,11 +141,27 @@ def added_blocks(blocks: Sequence[tuple[int, int, sp.sparray | Triplets]], diago
     """
     size, on_diagonal = len(diagonal), np.flatnonzero(diagonal)
     parts = [(row, col, part if isinstance(part, Triplets) else Triplets.of(part)) for row, col, part in blocks]
-    rows = np.concatenate([*(row + part.rows for row, _, part in parts), on_diagonal], dtype=np.int32)
-    cols = np.concatenate([*(col + part.cols for _, col, part in parts), on_diagonal], dtype=np.int32)
-    data = np.concatenate([*(part.data for _, _, part in parts), diagonal[on_diagonal]])
-    indptr, indices, sorted_data = np.empty(size + 1, np.int32), np.empty_like(rows), np.empty_like(data)
-    _sparsetools.coo_tocsr(size, size, len(data), cols, rows, data, indptr, indices, sorted_data)
-    matrix = sp.csc_array((sorted_data, indices, indptr), shape=(size, size))
+    whole = placed([*parts, (0, 0, Triplets(on_diagonal, on_diagonal, diagonal[on_diagonal]))])
+    matrix = compressed(sp.csc_array, *_sorted(whole.cols, whole.rows, whole.data, size), (size, size))
     matrix.sum_duplicates()
     return matrix
+
+
+def rows_of_blocks(blocks: Sequence[tuple[int, int, sp.sparray | Triplets]], shape: tuple[int, int]) -> sp.csr_array:
+    """A matrix by rows from blocks that do not overlap, each with its first row and column."""
+    whole = placed([(row, col, part if isinstance(part, Triplets) else Triplets.of(part)) for row, col, part in blocks])
+    return compressed(sp.csr_array, *_sorted(whole.rows, whole.cols, whole.data, shape[0]), shape)
+
+
+def placed(parts: Sequence[tuple[int, int, Triplets]]) -> Triplets:
+    """All entries of blocks, each with its first row and column."""
+    rows = np.concatenate([row + part.rows for row, _, part in parts], dtype=np.int32)
+    cols = np.concatenate([col + part.cols for _, col, part in parts], dtype=np.int32)
+    return Triplets(rows, cols, np.concatenate([part.data for _, _, part in parts]))
+
+
+def _sorted(major: Index, minor: Index, data: Array, size: int) -> tuple[Array, Index, Index]:
+    """Entries sorted by `major`: data, places along the other, and first entry of each of `size`."""
+    indptr, indices, sorted_data = np.empty(size + 1, np.int32), np.empty_like(minor), np.empty_like(data)
+    _sparsetools.coo_tocsr(size, size, len(data), major, minor, data, indptr, indices, sorted_data)
+    return sorted_data, indices, indptr

@@ -22,7 +22,7 @@ from petalfoil.physics.gap_curves import ContactPoints, Facing, GapCurves
 from petalfoil.physics.petal_elements import PetalElements, clamped_beam
 from petalfoil.physics.petal_sliding import Faces
 from petalfoil.physics.shell import PetalShell
-from petalfoil.sparsity import SparseRows, block_diagonal, repeated
+from petalfoil.sparsity import SparseRows, block_diagonal, compressed, repeated
 from petalfoil.walls.base import Wall
 
 Array = NDArray[np.float64]
@@ -176,7 +176,8 @@ class ElementPack:
         element, t = self.node_places
         at, load = np.nonzero(element[:, None] == element)
         bend, shape = clamped_beam(t[at], t[load]), (len(t), len(t))
-        parts = [sp.csr_array((C[element][at] * bend, (at, load)), shape=shape) for C in self.compliance]
+        starts = np.searchsorted(at, np.arange(len(t) + 1))
+        parts = [compressed(sp.csr_array, C[element[at]] * bend, load, starts, shape) for C in self.compliance]
         return SparseRows(block_diagonal(parts))
 
     @cached_property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import ClassVar, TypeVar
@@ -122,7 +122,7 @@ def pack_elasticity(shells: list[PetalShell], mesh: PackMesh) -> Elasticity:
     """Elastic energy of all petals, their roots held."""
     free = slice(mesh.n_z, None)
     return Elasticity(
-        diagonal([shell.difference[:, free] for shell in shells]),
+        diagonal(of_each(shells, lambda shell: shell.difference[:, free])),
         diagonal([shell.strain for shell in shells]),
         diagonal([shell.rigidity_matrix for shell in shells]),
     )
@@ -137,7 +137,13 @@ def of_each(shells: list[PetalShell], function: Callable[[PetalShell], T]) -> li
     return [found[id(shell)] for shell in shells]
 
 
-def diagonal(parts: list[sp.csr_array] | list[Array]) -> sp.csr_array:
+def released(shell: PetalShell, mesh: PackMesh) -> tuple[sp.csr_array, sp.csr_array]:
+    """Motions of a petal without bending energy and the root force in each (S4), the root's own row left out."""
+    motions, support = shell.free_motions()
+    return sp.csr_array(motions[mesh.n_z :]), sp.csr_array(support[:, mesh.n_z :])
+
+
+def diagonal(parts: Sequence[sp.csr_array]) -> sp.csr_array:
     """The matrix with a block for each petal."""
     return block_diagonal(parts)
 
@@ -154,12 +160,8 @@ class PetalWall(WallKind):
         """Discretise the pack of `case`."""
         mesh = build_mesh(case)
         film = exposed_strips(mesh, continuous=case.model.edges is Edges.CONTINUOUS)
-        shells, sizes, free = (
-            build_shells(case, mesh),
-            petal_sizes(case, mesh),
-            slice(mesh.n_z, None),
-        )  # the root row does not move
-        motions, support = zip(*of_each(shells, PetalShell.free_motions), strict=True)
+        shells, sizes = build_shells(case, mesh), petal_sizes(case, mesh)
+        motions, support = zip(*of_each(shells, lambda shell: released(shell, mesh)), strict=True)
         R_j, h_c, r_m = case.bearing.journal_radius, case.surface.contact_film_thickness, sizes.mean_radius
         slip, reaction_share = petal_slip(mesh, 0.5 * sizes.thickness / sizes.metric_radius, film.unknown.size)
         rest = sizes.free_radius[:, mesh.exposed] - 0.5 * sizes.thickness[:, None] - R_j
@@ -172,8 +174,8 @@ class PetalWall(WallKind):
             contacts=pack_contacts(mesh, sizes, (R_j, h_c)),
             node_area=r_m * 2.0 * np.pi / mesh.count / mesh.cells * float(mesh.axial.weight.max()),
             reference_film=REFERENCE_FILM,
-            free_motions=diagonal([motion[free] for motion in motions]),
-            support=diagonal([force[:, free] for force in support]),
+            free_motions=diagonal(motions),
+            support=diagonal(support),
             slip=slip,
             reaction_share=reaction_share,
         )
