@@ -63,9 +63,9 @@ class Search(NamedTuple):
     creeping: int
 
 
-FIRST, SECOND = Search(48, 3), Search(24, 2)
-"""A search that takes all its factorisations begins again and takes whole steps sooner. Long searches hang on rounding:
-one took 23 or more than 48 by the order of a sum, and 17 so. In vain it is 24 more for a seventh of random packs."""
+FIRST, SECOND = Search(48, 3), Search(48, 4)
+"""A search that takes all its factorisations begins again and creeps once more before a whole step: some packs are
+found by either alone. In vain it is 48 more for a seventh of random packs."""
 
 FARTHEST_MOVE = 0.5
 """Longest move of the journal under a load in a step, in units of the reference film (5 um)."""
