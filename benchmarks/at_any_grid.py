@@ -2,8 +2,9 @@
 
 A position from nothing on every grid (32 to 1024 cells per pitch, or those given), then four more of a load
 characteristic, half a micrometre apart. Counted are factorisations of the pack, of film and pack with contact points,
-and those of growth rates and other equilibria. Beside them the contacts, the bearing force, and how far stiffness is
-from that on the grid before, over its largest entry.
+and those of growth rates and other equilibria; then all under the coarse film that leads there, plainly, and all
+together with these by their share of cells. Beside them the contacts, the bearing force, and how far stiffness is from
+that on the grid before, over its largest entry.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 
 import petalfoil
 from petalfoil.case import Case
+from petalfoil.equilibrium.coarse_film import COARSE_FILM_CELLS
 from petalfoil.errors import ConvergenceError
 from petalfoil.results.record import Record
 
@@ -29,14 +31,19 @@ STEP, POINTS = 5e-7, 5
 """Distance of the followed positions [m], and how many they are with the first."""
 
 HEAD = (
-    "| bearing | cells | pack + film + probe | followed, median | contacts | force, N | change of stiffness |\n"
-    "|---|---:|---:|---:|---|---:|---:|"
+    "| bearing | cells | pack + film + probe | coarse film | by cells | followed, median | contacts | force, N | "
+    "change of stiffness |\n|---|---:|---:|---:|---:|---:|---|---:|---:|"
 )
 
 
 def parts(record: Record) -> list[int]:
     """Factorisations of the pack, of film and pack, and of growth rates and other equilibria."""
     return [int(str(record.scalars[name])) for name in ("pack_iterations", "factorizations", "probe_factorizations")]
+
+
+def under_coarse_film(record: Record) -> int:
+    """Factorisations under the coarse film."""
+    return int(str(record.scalars["coarse_factorizations"]))
 
 
 def followed(case: Case, found: Record) -> float:
@@ -78,8 +85,11 @@ def main() -> None:
             change = "" if before is None else f"{100.0 * np.max(np.abs(K - before)) / np.max(np.abs(K)):.2g} %"
             kind = str(found.scalars["contact_model"]).split(" on ")[0].split(" of ")[0]
             counts = " + ".join(map(str, parts(found)))
-            force = record_value(found, "bearing_force")
-            print(f"| {name} | {cells} | {counts} | {warm:g} | {kind} | {force:.5g} | {change} |", flush=True)
+            force, coarse = record_value(found, "bearing_force"), under_coarse_film(found)
+            weighed = f"{coarse} | {sum(parts(found)) + coarse * COARSE_FILM_CELLS / cells:.3g}"
+            print(
+                f"| {name} | {cells} | {counts} | {weighed} | {warm:g} | {kind} | {force:.5g} | {change} |", flush=True
+            )
             before = K
 
 

@@ -156,7 +156,9 @@ def walk(bearing: Case, steps: int, step: float) -> list[Solution]:
     """Equilibria on the way of the journal downward by `steps` of `step` [m], each from the one before."""
     with running():
         answer = operating_point(bearing, None).answer
-        found, de = [answer], np.array([0.0, -step / answer.problem.layout.scales.length])
+        first = follow(answer, answer.problem.at(displacement=answer.problem.displacement))  # with contacts at nodes
+        assert first is not None
+        found, de = [first], np.array([0.0, -step / answer.problem.layout.scales.length])
         for _ in range(steps):
             near = follow(found[-1], found[-1].problem.at(displacement=found[-1].problem.displacement + de))
             assert near is not None

@@ -36,6 +36,7 @@ What they share:
 =====================  ===================================================================
 `operating_point.py`   the equilibrium that an analysis is about
 `branch_choice.py`     which of several equilibria that is
+`by_coarse_film.py`    a 2-D equilibrium by way of a coarse film
 `neighbours.py`        equilibria that begin at the solution of a similar case of a study
 `displacements.py`     the journal displaced point by point
 `hysteresis.py`        the same at rest, with friction between petals

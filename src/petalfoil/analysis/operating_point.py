@@ -11,6 +11,7 @@ import numpy as np
 
 from petalfoil.analysis.adapted_stations import with_stations
 from petalfoil.analysis.branch_choice import from_rest, others
+from petalfoil.analysis.by_coarse_film import by_coarse_film
 from petalfoil.analysis.classic_method import by_classic, newton_only
 from petalfoil.analysis.contact_model import reported
 from petalfoil.analysis.evaluation import Evaluation
@@ -117,12 +118,13 @@ def loaded_point(case: Case, load: Vector) -> OperatingPoint:
 
 
 def from_coarse_grid(problem: CoupledProblem, load: Vector | None) -> OperatingPoint | None:
-    """The equilibrium with contact lines that one on a coarser grid leads to, at its position or under a load [N].
+    """The equilibrium with contacts between nodes that a coarser grid leads to, at its position or under a load [N].
 
     None where that leads nowhere, or where there may be others: `at_position` and `under_load` then tell which it is.
     """
     case = problem.layout.case
-    found = by_coarse_grid(problem, None if load is None else load_of(case, load, problem.layout))
+    wanted = None if load is None else load_of(case, load, problem.layout)
+    found = by_coarse_grid(problem, wanted) or by_coarse_film(problem, wanted)
     if found is None:
         return None
     rate = leading_eigenvalue(found, rate_on_few_cells(found))

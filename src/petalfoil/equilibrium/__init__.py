@@ -54,6 +54,7 @@
 `followed_lines.py`        these followed to a neighbouring position, speed or load
 `prolonged_lines.py`       these carried over from a coarse grid to a fine one
 `coarse_start.py`          an equilibrium on a fine grid from that on a coarse one
+`coarse_film.py`           2-D contact points under a fine film from those under a coarse one
 `line_rates.py`            how such an equilibrium follows a parameter of its case
 `nodal_state.py`           film, deflections and reactions at nodes, wherever contacts are
 `element_response.py`      the response about these

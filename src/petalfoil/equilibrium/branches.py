@@ -60,9 +60,14 @@ def found_by_chance(answer: Solution | None) -> bool:
     return (shortest is not None and shortest < CHANCE) or (count is not None and count > RESTLESS)
 
 
+def by_short_steps(answer: Solution) -> bool:
+    """Whether the interior point took a step on the way to an answer that points to a fold."""
+    return answer.shortest_step is not None and answer.shortest_step < InteriorOptions.short
+
+
 def off_path(answer: Solution) -> bool:
     """Whether the path to an answer is not the central one: by a short step, or not by the interior point."""
-    return answer.shortest_step is None or answer.shortest_step < InteriorOptions.short
+    return answer.shortest_step is None or by_short_steps(answer)
 
 
 def may_have_others(answer: Solution, rate: complex) -> bool:

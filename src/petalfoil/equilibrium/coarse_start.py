@@ -20,7 +20,7 @@ from petalfoil.equilibrium.line_sets import with_lines
 from petalfoil.equilibrium.line_signs import corrected_early, freed, revised
 from petalfoil.equilibrium.nodal_state import sampled_lines
 from petalfoil.equilibrium.prolonged_lines import prolonged
-from petalfoil.equilibrium.run_context import current_run, running
+from petalfoil.equilibrium.run_context import counted_as_coarse, current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.whole_length import balance_from_nothing, first_attempt
 from petalfoil.errors import ConvergenceError
@@ -105,16 +105,10 @@ def on_coarse_grid(problem: CoupledProblem, case: Case, load: Array | None) -> S
     if coarse.layout.n_position != problem.layout.n_position:  # free to tilt by itself, not by its case
         return None
     coarse = coarse.at(bearing_number=problem.bearing_number, displacement=problem.displacement)
-    outer = current_run()
-    with running() as run:
-        run.tell = outer.tell  # who asked is told of each step, and may end it
+    with counted_as_coarse():
         if load is not None:
             load = load * problem.layout.scales.force / coarse.layout.scales.force
-        found = found_there(coarse, load) if coarser(case) is None else by_coarse_grid(coarse, load)
-    outer.coarse.factorizations += sum(
-        counter.factorizations for counter in (run.film, run.pack, run.probes, run.coarse)
-    )
-    return found
+        return found_there(coarse, load) if coarser(case) is None else by_coarse_grid(coarse, load)
 
 
 def found_there(problem: CoupledProblem, load: Array | None) -> Solution | None:

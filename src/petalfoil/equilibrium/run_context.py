@@ -176,3 +176,19 @@ def running(progress: Progress | None = None, text: str = "", typical: float = T
     """Open a run for a `with` block; arguments as in `new_run`."""
     with new_run(progress, text, typical).active() as run:
         yield run
+
+
+@contextmanager
+def counted_as_coarse() -> Iterator[RunContext]:
+    """Open a run on a coarser grid for a `with` block: its factorisations are those of the `coarse` of the current one.
+
+    Who asked is told of each step, and may end it.
+    """
+    outer = current_run()
+    with running() as run:
+        run.tell = outer.tell
+        try:
+            yield run
+        finally:
+            counters = run.film, run.pack, run.probes, run.coarse
+            outer.coarse.factorizations += sum(counter.factorizations for counter in counters)
