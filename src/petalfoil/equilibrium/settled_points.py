@@ -91,11 +91,19 @@ def still_settled(found: PointContacts, near: PointContacts, load: Array | None)
 
 def corrected(equations: PointEquations, tangent: ElementTangent | None) -> ContactPoints | None:
     """Other points where gaps along the curves ask for them, or None: stretches, then points, then needless ones."""
-    gaps = sampled(equations.whole.curves, equations.state.points, equations.nodal_gaps, FINE)
-    for points in (without_short_stretches(equations, gaps), with_split_points(equations, gaps)):
-        if points is not None:
-            return points
+    gaps = below_zero(equations)
+    if len(gaps[0]):
+        for points in (without_short_stretches(equations, gaps), with_split_points(equations, gaps)):
+            if points is not None:
+                return points
     return without_needless(equations, tangent)
+
+
+def below_zero(equations: PointEquations) -> Gaps:
+    """Curves, places and gaps of the samples that lie deeper than `DEPTH`, (s,) each: none in most states."""
+    curve, place, gap = sampled(equations.whole.curves, equations.state.points, equations.nodal_gaps, FINE)
+    deep = gap < -DEPTH
+    return curve[deep], place[deep], gap[deep]
 
 
 def without_short_stretches(equations: PointEquations, gaps: Gaps) -> ContactPoints | None:
@@ -172,9 +180,9 @@ def stiffness_at(equations: PointEquations, tangent: ElementTangent, number: int
 
 
 def lowest_gap(gaps: Gaps, curve: int, begin: float, end: float) -> float | None:
-    """Where the lowest gap between two places on a curve is, if it is below zero."""
+    """Where the lowest of the gaps below zero between two places on a curve is; None if none is there."""
     on, position, gap = gaps
-    between = np.flatnonzero((on == curve) & (position > begin) & (position < end) & (gap < -DEPTH))
+    between = np.flatnonzero((on == curve) & (position > begin) & (position < end))
     return float(position[between[np.argmin(gap[between])]]) if len(between) else None
 
 
