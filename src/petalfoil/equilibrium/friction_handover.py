@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from petalfoil.equilibrium.contact_runs import at_nearest_points, from_active_nodes
 from petalfoil.equilibrium.friction_path import FrictionResult
-from petalfoil.equilibrium.line_handover import lines_at_nodes
+from petalfoil.equilibrium.line_handover import forces_at_nodes
 from petalfoil.equilibrium.nodal_state import shared_reactions
 from petalfoil.equilibrium.pack_at_rest import resting
 from petalfoil.equilibrium.point_contacts import PointContacts
@@ -37,8 +37,9 @@ def at_nodes(friction: Friction, reached: RubbingPoints | RubbingLines, pack: Fo
     Forces are shared by the nodes beside each point as reactions are.
     """
     if isinstance(reached, RubbingLines):
-        return lines_at_nodes(friction, reached, pack)
-    force = shared_friction(friction, reached)
+        force = forces_at_nodes(friction, reached)
+    else:
+        force = shared_friction(friction, reached)
     contacts = resting(replace(pack, load=-against_slip(friction, force, pack.layout.n_wall)))
     if contacts is None:
         return None

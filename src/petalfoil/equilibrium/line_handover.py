@@ -12,16 +12,14 @@ from numpy.typing import NDArray
 
 from petalfoil.equilibrium.friction_path import FrictionResult
 from petalfoil.equilibrium.line_friction_path import slide_on_lines
-from petalfoil.equilibrium.pack_at_rest import resting
-from petalfoil.equilibrium.rubbing_lines import RubbingLines, places
+from petalfoil.equilibrium.line_sets import points_on_lines
+from petalfoil.equilibrium.rubbing_lines import RubbingLines, distances, places
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.travelling_contacts import turning_compliance
 from petalfoil.physics.contact_points import IsolatedContacts
 from petalfoil.physics.dry_friction import Friction
-from petalfoil.physics.line_points import LinePoints
 from petalfoil.solvers.constraints import constrain
 from petalfoil.system.foil_pack import FoilPackProblem
-from petalfoil.system.friction import FrictionState, against_slip, slips
 
 Array = NDArray[np.float64]
 
@@ -37,19 +35,11 @@ def on_lines(friction: Friction, pack: FoilPackProblem, nodal: FrictionResult) -
 
 def placed_on_lines(friction: Friction, pack: FoilPackProblem, nodal: FrictionResult) -> RubbingLines:
     """A state with contacts at nodes, its isolated ones at the points where they are (K8)."""
-    contacts, none = pack.layout.wall.contacts, np.zeros(0, dtype=np.intp)
+    contacts = pack.layout.wall.contacts
     isolated = IsolatedContacts.of(contacts, pack.gaps(nodal.x), nodal.lam, nodal.active)
     matrix = pack.linearize(nodal.x).matrix(np.zeros(len(nodal.active)))
     placed = isolated.placed(turning_compliance(pack.G, matrix, isolated, pack.elimination_key))
-    groups, held = list(enumerate(placed.groups)), placed.at_nodes
-    points = LinePoints(
-        contacts.lines,
-        len(contacts.rest),
-        np.concatenate([none, *(np.full(len(group.line), kind) for kind, group in groups)]),
-        np.concatenate([none, *(group.line for _, group in groups)]),
-        np.concatenate([np.zeros(0), *(group.position for _, group in groups)]),
-    )
-    reaction = np.concatenate([np.zeros(0), *(group.reaction for _, group in groups)])
+    (points, reaction), held = points_on_lines(contacts, placed), placed.at_nodes
     force = np.zeros((friction.directions, np.count_nonzero(held) + len(reaction)))
     own = nodal.x, points, reaction, held, nodal.lam[held]
     state = RubbingLines(pack.coupled, *own, load=None, pack=pack, friction=friction, force=force)
@@ -68,12 +58,11 @@ def at_nearest_contacts(state: RubbingLines, forces: Array) -> Array:
     pulled = np.any(forces != 0.0, axis=0)
     count = np.count_nonzero(pulled)
     every, (own, place) = places(replace(state, held=pulled, held_reaction=np.zeros(count))), places(state)
-    line, phi = (part[:count] for part in every)
+    line, phi = every[0][:count], every[1][:count]
     out = np.zeros((len(forces), len(own)))
     if not len(own) or not count:
         return out
-    apart = np.abs(phi[:, None] - place)
-    apart[line[:, None] != own] = np.inf
+    apart = distances((line, phi), (own, place))
     near = np.argmin(apart, axis=1)
     known = np.isfinite(apart[np.arange(count), near])
     for each, force in zip(out, forces[:, pulled], strict=True):
@@ -81,13 +70,7 @@ def at_nearest_contacts(state: RubbingLines, forces: Array) -> Array:
     return out
 
 
-def lines_at_nodes(friction: Friction, state: RubbingLines, pack: FoilPackProblem) -> FrictionResult | None:
-    """A state on contact lines at the nodes of its `pack`, under the same friction forces; None if none was found."""
+def forces_at_nodes(friction: Friction, state: RubbingLines) -> Array:
+    """Friction forces of contacts on lines, each shared by the nodes beside it as its reaction is, (k,) [1]."""
     share = friction.reaction_share[: friction.reaction_share.shape[0] // friction.directions]
-    force = np.concatenate([share @ state.at_gaps(part) for part in state.force])
-    contacts = resting(replace(pack, load=-against_slip(friction, force, pack.layout.n_wall)))
-    if contacts is None:
-        return None
-    x, lam = contacts.x, contacts.lam
-    kept = FrictionState(slips(friction, x), force, friction.coefficient * friction.normal(lam))
-    return FrictionResult(x, lam, contacts.active, contacts.state.residual, kept, state.lost)
+    return np.concatenate([share @ state.at_gaps(part) for part in state.force])

@@ -19,6 +19,8 @@ from petalfoil.equilibrium.line_signs import freed_near_ends, parted, revised
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.travelling_contacts import NodalContacts, placed_points
+from petalfoil.physics.contact import Contacts
+from petalfoil.physics.contact_points import IsolatedContacts
 from petalfoil.physics.line_points import LinePoints
 from petalfoil.solvers.constraints import constrain
 
@@ -92,9 +94,14 @@ def start_at(solution: NodalContacts) -> LineContacts:
     """The state of an equilibrium with contacts at nodes, its isolated ones at the points where they are (K8)."""
     problem = solution.problem
     placed = placed_points(solution, problem.linearize(solution.x))
-    contacts = problem.layout.wall.contacts
-    groups = list(enumerate(placed.groups))
-    none = np.zeros(0, dtype=np.intp)
+    points, reaction = points_on_lines(problem.layout.wall.contacts, placed)
+    held = placed.at_nodes
+    return LineContacts(problem, solution.x, points, reaction, held, solution.lam[held], solution.load)
+
+
+def points_on_lines(contacts: Contacts, placed: IsolatedContacts) -> tuple[LinePoints, Array]:
+    """Isolated contacts of a pack at their places on its lines, and their reactions (k,)."""
+    groups, none = list(enumerate(placed.groups)), np.zeros(0, dtype=np.intp)
     points = LinePoints(
         contacts.lines,
         len(contacts.rest),
@@ -102,9 +109,7 @@ def start_at(solution: NodalContacts) -> LineContacts:
         np.concatenate([none, *(group.line for _, group in groups)]),
         np.concatenate([np.zeros(0), *(group.position for _, group in groups)]),
     )
-    reaction = np.concatenate([np.zeros(0), *(group.reaction for _, group in groups)])
-    held = placed.at_nodes
-    return LineContacts(problem, solution.x, points, reaction, held, solution.lam[held], solution.load)
+    return points, np.concatenate([np.zeros(0), *(group.reaction for _, group in groups)])
 
 
 def settled(state: LineContacts, steps: int = STEPS, *, plain: bool = False) -> LineContacts:

@@ -151,13 +151,18 @@ def places(state: LineContacts) -> tuple[Index, Array]:
     return np.concatenate([own[state.held], at_points]), np.concatenate([phi[state.held], state.points.phi])
 
 
+def distances(some: tuple[Index, Array], others: tuple[Index, Array]) -> Array:
+    """Angles between contacts by their `places`, (i, j) [rad]; infinite between those on other lines."""
+    (line, phi), (other, place) = some, others
+    return np.where(line[:, None] == other, np.abs(phi[:, None] - place), np.inf)
+
+
 def matched(now: LineContacts, then: LineContacts) -> Index:
     """Number of each contact among those of `then`, the nearest on its line, and that to it; -1: none within a cell."""
     (line, phi), (before, place) = places(now), places(then)
     if not len(line) or not len(before):
         return np.full(len(line), -1)
-    apart = np.abs(phi[:, None] - place)
-    apart[line[:, None] != before] = np.inf
+    apart = distances((line, phi), (before, place))
     nearest, own = np.argmin(apart, axis=1), np.arange(len(line))
     mutual = (np.argmin(apart, axis=0)[nearest] == own) & (apart[own, nearest] <= now.points.mean_cell)
     return np.where(mutual, nearest, -1)

@@ -1,4 +1,4 @@
-"""Matrix sparse matrices from arrays that are known to fit.
+"""Sparse matrices from arrays that are known to fit.
 
 SciPy checks types, shapes and index types of every new matrix: for a pack of a thousand unknowns that takes eight times
 as long as all else of building it, and a pack is discretised in some hundred matrices.

@@ -63,8 +63,9 @@ def build_mesh(case: Case) -> PackMesh:
 def build_shells(case: Case, mesh: PackMesh) -> list[PetalShell]:
     """The petals of `case` on `mesh`, one by one; equal ones are the same object."""
     petals, _ = petals_of(case)
-    clamped = petals.mount is Mount.CLAMPED
-    return [shell_of(petal, pack, mesh, clamped) for petal, pack in zip(petals.each, case.packs, strict=True)]
+    clamped, each = petals.mount is Mount.CLAMPED, list(zip(petals.each, case.packs, strict=True))
+    made = {(petal, pack): shell_of(petal, pack, mesh, clamped) for petal, pack in dict.fromkeys(each)}
+    return [made[one] for one in each]
 
 
 @lru_cache(maxsize=SHELLS)
