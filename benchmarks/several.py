@@ -11,9 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from petalfoil.analysis.branch_choice import coarse
 from petalfoil.dynamics.film_stability import leading_eigenvalue
-from petalfoil.equilibrium.branches import longest_contact, may_have_others, probe
+from petalfoil.equilibrium.branches import coarse, longest_contact, may_have_others, probe
 from petalfoil.equilibrium.cold_start import by_barriers
 from petalfoil.equilibrium.run_context import running
 from petalfoil.system.build import build_problem

@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from petalfoil.analysis.branch_choice import coarse
 from petalfoil.analysis.curve import curve
 from petalfoil.analysis.solve import solve
 from petalfoil.analysis.stability import stability
 from petalfoil.case import Case
-from petalfoil.equilibrium.branches import probe
+from petalfoil.equilibrium.branches import coarse, probe
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.continuation import advance
 from petalfoil.equilibrium.pack_at_rest import at_rest

@@ -10,7 +10,6 @@ import pytest
 import scipy.linalg as la
 from numpy.testing import assert_allclose
 
-from petalfoil.analysis.branch_choice import coarse
 from petalfoil.analysis.curve import curve, point_after
 from petalfoil.analysis.solve import solve
 from petalfoil.case import Case
@@ -20,6 +19,7 @@ from petalfoil.equilibrium.branches import (
     RESTLESS,
     SLOW,
     STRETCH,
+    coarse,
     different,
     fingerprint,
     found_by_chance,

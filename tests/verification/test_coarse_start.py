@@ -10,7 +10,8 @@ import petalfoil
 from petalfoil.analysis.operating_point import position_point, rate_on_few_cells
 from petalfoil.case import Case
 from petalfoil.dynamics.film_stability import leading_eigenvalue
-from petalfoil.equilibrium.coarse_start import begins_with_lines, by_coarse_grid, coarser, settled_early
+from petalfoil.equilibrium.branches import by_short_steps, found_by_chance
+from petalfoil.equilibrium.coarse_start import begins_with_lines, by_coarse_grid, coarser, doubtful, settled_early
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
 from petalfoil.equilibrium.line_sets import between_nodes, settled, with_lines
@@ -18,6 +19,7 @@ from petalfoil.equilibrium.line_signs import corrected_early, revised
 from petalfoil.equilibrium.prolonged_lines import between, chains, prolonged
 from petalfoil.equilibrium.run_context import running
 from petalfoil.equilibrium.under_load import balance_cold
+from petalfoil.equilibrium.whole_length import first_attempt
 from petalfoil.physics.contact import GapLines
 from petalfoil.system.build import build_problem, build_tilting
 from tests.cases import case
@@ -78,6 +80,41 @@ def test_it_leads_to_the_equilibrium_that_is_found_from_nothing() -> None:
     assert 0 < run.film.factorizations < 0.4 * cold.film.factorizations
     assert run.pack.factorizations == 0
     assert run.coarse.factorizations > 10
+
+
+BLOWER = {
+    "bearing.journal_radius": 17e-3,
+    "bearing.bushing_radius": 17.6e-3,
+    "bearing.length": 30e-3,
+    "petals.count": 10,
+    "petals.arc_length": 24e-3,
+    "petals.thickness": 0.12e-3,
+    "petals.bend_radius": 24e-3,
+    "petals.theory": "shell",
+    "operation.speed": 6283.0,
+}
+"""Ten petals whose interior point takes a step of 0.15 of Newton's on 16 x 16 cells, and which have one equilibrium."""
+
+
+@pytest.mark.slow
+def test_a_short_step_on_the_coarse_grid_leads_on_where_few_cells_know_of_no_other(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    fine = build_problem(bearing(48, 16, 100e-6, **BLOWER))
+    with running():
+        coarse = first_attempt(build_problem(coarser(fine.layout.case) or fine.layout.case))
+        own = with_lines(solve_cold(fine)).lines
+        found = by_coarse_grid(fine, None)
+    assert coarse is not None
+    assert by_short_steps(coarse)
+    assert not found_by_chance(coarse)
+    assert not doubtful(coarse)
+    assert found is not None
+    assert isinstance(own, LineContacts)
+    assert isinstance(found.lines, LineContacts)
+    same_force(found.lines, own)
+    monkeypatch.setattr("petalfoil.equilibrium.coarse_start.known_on_few_cells", lambda problem: 2)
+    assert doubtful(coarse)
 
 
 @pytest.mark.slow

@@ -6,20 +6,23 @@ that presses least on the journal: which starts lead somewhere, and which of the
 
 from __future__ import annotations
 
-from petalfoil.case import Case, ModelKind
+from petalfoil.case import Case
 from petalfoil.dynamics.film_stability import leading_eigenvalue
-from petalfoil.equilibrium.branches import cold_answers, different, found_by_chance, may_have_others, probe
+from petalfoil.equilibrium.branches import (
+    cold_answers,
+    different,
+    found_by_chance,
+    is_coarse,
+    known_on_few_cells,
+    may_have_others,
+)
 from petalfoil.equilibrium.cold_start import BARRIERS, by_barriers, by_slower_ways, solve_cold
 from petalfoil.equilibrium.continuation import ascend, settle
 from petalfoil.equilibrium.lengthening import lengthened
 from petalfoil.equilibrium.other_grids import or_from_other_grids
 from petalfoil.equilibrium.solution import Solution
-from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.walls import Capability, wall_kind
-
-PROBE_CELLS, PROBE_AXIAL = 24, 6
-"""Grid on which other equilibria are looked for."""
 
 
 def others(case: Case, problem: CoupledProblem, first: Solution | None, rate: complex) -> tuple[int, list[Solution]]:
@@ -32,7 +35,7 @@ def others(case: Case, problem: CoupledProblem, first: Solution | None, rate: co
     doubtful = first is None or may_have_others(first, rate)
     if doubtful and wall_kind(case).can(Capability.SEVERAL_EQUILIBRIA):
         if not found_by_chance(first) and not is_coarse(case):
-            return probe(build_problem(coarse(case))), found
+            return known_on_few_cells(problem), found
         found = different([*found, *cold_answers(problem)])
     if not found:
         found = list(filter(None, [by_barriers(problem, BARRIERS[1:])]))
@@ -82,20 +85,6 @@ def settled(found: list[Solution], rates: list[complex], path: str) -> tuple[lis
     order = [first, *(k for k in range(len(found)) if k != first)]
     text = f"{found[first].solution_path}; the branch from rest has lost its stability below this speed"
     return [found[k] for k in order], [rates[k] for k in order], text
-
-
-def coarse(case: Case) -> Case:
-    """The same bearing on the grid of the probe."""
-    changes: dict[str, object] = {"model.cells_per_pitch": min(case.cells_per_pitch, PROBE_CELLS)}
-    if case.model.kind is ModelKind.THREE_D:
-        changes["model.axial_cells"] = min(case.axial_cells, PROBE_AXIAL)
-    return case.replace(**changes)
-
-
-def is_coarse(case: Case) -> bool:
-    """Whether the grid of the probe is the case's own."""
-    fine = case.model.kind is ModelKind.THREE_D and case.axial_cells > PROBE_AXIAL
-    return case.cells_per_pitch <= PROBE_CELLS and not fine
 
 
 def ascent_text(jumps: int) -> str:

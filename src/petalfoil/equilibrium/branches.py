@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.case import Case, ModelKind
 from petalfoil.equilibrium.cold_start import finish
 from petalfoil.equilibrium.contact_runs import runs
 from petalfoil.equilibrium.pack_at_rest import central_point, with_ambient
@@ -18,12 +19,17 @@ from petalfoil.physics.forces import node_area
 from petalfoil.solvers.interior_point import InteriorOptions
 from petalfoil.solvers.problem import PrimalDualPoint
 from petalfoil.solvers.sparse_lu import SingularMatrixError
+from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 
 Array = NDArray[np.float64]
 
 PROBE_BARRIERS = (30.0, 3.0, 0.3)
 """Barriers at which the film joins the pack: falling, so that the pack goes on along its central path."""
+
+PROBE_CELLS, PROBE_AXIAL = 24, 6
+"""Grid on which other equilibria are looked for."""
+
 
 DIFFERENT = 1e-6
 """Equilibria whose normal forces on the journal differ by more than this fraction are different ones: a hundred times
@@ -123,6 +129,26 @@ def pressing_least(answers: list[Solution]) -> list[Solution]:
 def probe(problem: CoupledProblem) -> int:
     """Number of different equilibria that a few cold starts find, at least 1."""
     return max(1, len(cold_answers(problem)))
+
+
+def coarse(case: Case) -> Case:
+    """The same bearing on the grid of the probe."""
+    changes: dict[str, object] = {"model.cells_per_pitch": min(case.cells_per_pitch, PROBE_CELLS)}
+    if case.model.kind is ModelKind.THREE_D:
+        changes["model.axial_cells"] = min(case.axial_cells, PROBE_AXIAL)
+    return case.replace(**changes)
+
+
+def is_coarse(case: Case) -> bool:
+    """Whether the grid of the probe is the case's own."""
+    fine = case.model.kind is ModelKind.THREE_D and case.axial_cells > PROBE_AXIAL
+    return case.cells_per_pitch <= PROBE_CELLS and not fine
+
+
+def known_on_few_cells(problem: CoupledProblem) -> int:
+    """Number of different equilibria of the same bearing on the grid of the probe, at least 1."""
+    few = build_problem(coarse(problem.layout.case))
+    return probe(few.at(bearing_number=problem.bearing_number, displacement=problem.displacement))
 
 
 def cold_answers(problem: CoupledProblem) -> list[Solution]:

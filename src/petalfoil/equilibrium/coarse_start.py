@@ -13,7 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
-from petalfoil.equilibrium.branches import STRETCH, longest_contact, off_path
+from petalfoil.equilibrium.branches import (
+    STRETCH,
+    by_short_steps,
+    found_by_chance,
+    known_on_few_cells,
+    longest_contact,
+    off_path,
+)
 from petalfoil.equilibrium.line_chords import by_chords, by_tangent
 from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
 from petalfoil.equilibrium.line_sets import with_lines
@@ -71,7 +78,7 @@ def by_coarse_grid(problem: CoupledProblem, load: Array | None) -> Solution | No
     path = f"from the equilibrium on {coarse.cells_per_pitch} × {coarse.axial_cells} cells"
     answer = replace(sampled_lines(found, load), solution_path=path, on_few_cells=known.on_few_cells or known)
     answer = replace(answer, shortest_step=known.shortest_step, step_count=known.step_count)
-    return None if doubtful(answer) else answer
+    return None if longest_contact(answer) >= STRETCH else answer
 
 
 def begins_with_lines(case: Case, load: Array | None) -> bool:
@@ -122,11 +129,18 @@ def found_there(problem: CoupledProblem, load: Array | None) -> Solution | None:
 
 
 def doubtful(answer: Solution) -> bool:
-    """Whether it is to be found on its own grid: petals lie along each other, or its path was left.
+    """Whether it is to be found on its own grid: petals lie along each other, or it may not be the only one.
 
     Ends of long contacts recede node by node. Under a load no others are looked for.
     """
-    return longest_contact(answer) >= STRETCH or (answer.load is None and off_path(answer))
+    return longest_contact(answer) >= STRETCH or (answer.load is None and may_not_be_alone(answer))
+
+
+def may_not_be_alone(answer: Solution) -> bool:
+    """Whether rounding or another start leads elsewhere: its path was left and a few cells know of others."""
+    if not by_short_steps(answer):
+        return off_path(answer)
+    return found_by_chance(answer) or known_on_few_cells(answer.problem) > 1
 
 
 def settled_early(state: LineContacts) -> LineContacts:
