@@ -14,10 +14,10 @@ from petalfoil.analysis.static import static
 from petalfoil.case import Case
 from petalfoil.equilibrium.friction_handover import at_nodes
 from petalfoil.equilibrium.friction_history import PathEnd, assembled, moved
-from petalfoil.equilibrium.line_dips import closed_beside, lowest_in_cells
+from petalfoil.equilibrium.line_dips import at_both_nodes, closed_between, lowest_in_cells
 from petalfoil.equilibrium.line_friction_path import corrected, slide_on_lines
 from petalfoil.equilibrium.line_handover import on_lines
-from petalfoil.equilibrium.line_signs import PENETRATION
+from petalfoil.equilibrium.line_signs import PENETRATION, closed_beside
 from petalfoil.equilibrium.pack_at_rest import unloaded
 from petalfoil.equilibrium.rubbing_lines import RubbingLines, matched
 from petalfoil.equilibrium.run_context import current_run, running
@@ -136,16 +136,15 @@ def test_energy_closes_where_contacts_split() -> None:
             fresh += int(np.count_nonzero(matched(found, before) < 0))
             state, problem = found, there
     assert fresh >= 8
-    for lines in state.points.lines:
-        inner = ~(state.held[lines.number[:, :-1]] | state.held[lines.number[:, 1:]])
-        assert lowest_in_cells(lines, state.gaps)[1][inner].min() > -2.0 * PENETRATION
+    below = closed_between(state.points, state.gaps, 2.0 * PENETRATION)
+    assert state.held[below.beside].any(axis=1).all()
 
 
 def test_the_lowest_gap_of_a_cell_is_that_of_close_samples(pack: Assembled) -> None:
     state = pack[2]
     gaps = np.random.default_rng(7).normal(size=len(state.held))
     for kind, lines in enumerate(state.points.lines):
-        place, depth = lowest_in_cells(lines, gaps)
+        place, depth = lowest_in_cells(at_both_nodes(lines, gaps))
         t, length = np.linspace(0.0, 1.0, 201), np.diff(lines.phi)
         phi = (lines.phi[:-1, None] + t * length[:, None]).ravel()
         one = replace(state.points, kind=np.full(len(phi), kind), line=np.full(len(phi), 1), phi=phi)

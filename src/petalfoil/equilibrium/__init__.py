@@ -46,7 +46,7 @@
 `line_chords.py`           steps with one factor
 `rubbing_lines.py`         a state of a path with friction on such lines
 `line_friction_path.py`    the pack with friction on them, a step further along a path
-`line_dips.py`             contacts that split: gaps that close in a cell beside one
+`line_dips.py`             where gaps are below zero between nodes
 `line_handover.py`         states of a path handed over from nodes to lines, and back
 `line_sets.py`             these found from active nodes
 `line_signs.py`            which contacts they have: corrected by signs

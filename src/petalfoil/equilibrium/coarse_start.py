@@ -23,7 +23,7 @@ from petalfoil.equilibrium.branches import (
 )
 from petalfoil.equilibrium.line_chords import by_chords, by_tangent
 from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
-from petalfoil.equilibrium.line_sets import with_lines
+from petalfoil.equilibrium.line_sets import split, with_lines
 from petalfoil.equilibrium.line_signs import corrected_early, freed, revised
 from petalfoil.equilibrium.nodal_state import sampled_lines
 from petalfoil.equilibrium.prolonged_lines import prolonged
@@ -70,7 +70,7 @@ def by_coarse_grid(problem: CoupledProblem, load: Array | None) -> Solution | No
     here = problem if load is None else problem.at(displacement=known.lines.problem.displacement)
     try:
         start = freed(prolonged(known.lines, here, load))
-        found = settled_early(replace(start, points=start.points.lowest(start.gaps)))
+        found = split(settled_early(replace(start, points=start.points.lowest(start.gaps))))
     except NoLinesError as failure:
         current_run().note("contact lines", outcome=str(failure))
         return None

@@ -1,57 +1,53 @@
-"""Where gaps on contact lines are below zero between nodes beside a contact: it is two, and the other one is there.
+"""Where gaps on contact lines are below zero between nodes: in each cell (K15) is a cubic with one minimum at most.
 
-A contact that spreads splits: the gap curves down at it less and less, and closes anew beside it, within a cell or two.
-In each cell (K15) is a cubic with one minimum at most.
+A gap closes so away from contacts, and beside one that spreads: the gap curves down at it less and less, and closes
+anew within a cell or two.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.line_contacts import StateOnLines
-from petalfoil.equilibrium.line_signs import PENETRATION, covered
 from petalfoil.mesh import hermite
 from petalfoil.physics.contact import GapLines
 from petalfoil.physics.line_points import LinePoints
 
 Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+Index = NDArray[np.intp]
 
 
-def closed_beside(state: StateOnLines) -> StateOnLines | None:
-    """The state with points where gaps are below zero in cells beside those of its contacts; None if there are none.
+def closed_between(points: LinePoints, gaps: Array, depth: float) -> LinePoints:
+    """Places between nodes where gaps are least, and deeper than `depth` below zero; `gaps` (m,) at all nodes.
 
-    A cell that has a contact has no other minimum.
+    The lines are those of some `points`. A cubic is no lower than its Bernstein coefficients: its minimum is looked for
+    where one of the inner two is below zero.
     """
-    points, near, every = state.points, covered(state), []
-    for kind, lines in enumerate(points.lines):
-        place, depth = lowest_in_cells(lines, state.gaps)
-        free = near[lines.number[:, :-1]] | near[lines.number[:, 1:]]
-        free &= ~(state.held[lines.number[:, :-1]] | state.held[lines.number[:, 1:]])
-        own = points.kind == kind
-        free[points.line[own], hermite.located(points.phi[own], lines.phi)[0]] = False
-        line, cell = np.nonzero(free & (depth < -PENETRATION))
-        phi = lines.phi[cell] + place[line, cell] * np.diff(lines.phi)[cell]
-        every.append(LinePoints(points.lines, points.gaps, np.full(len(line), kind), line, phi))
-    if not any(len(found.phi) for found in every):
-        return None
-    for found in every:
-        points = points.joined(found)
-    none_yet = np.zeros(len(points.phi) - len(state.reaction))
-    return replace(state, points=points, reaction=np.concatenate([state.reaction, none_yet]))
+    kind, line, phi = [np.zeros(0, dtype=np.intp)], [np.zeros(0, dtype=np.intp)], [np.zeros(0)]
+    for number, lines in enumerate(points.lines):
+        nodal = at_both_nodes(lines, gaps)
+        inner = np.minimum(nodal[..., 0] + nodal[..., 1] / 3.0, nodal[..., 2] - nodal[..., 3] / 3.0)
+        on, cell = np.nonzero(inner < -depth)
+        place, lowest = lowest_in_cells(nodal[on, cell])
+        deep = lowest < -depth
+        kind.append(np.full(np.count_nonzero(deep), number))
+        line.append(on[deep])
+        phi.append((lines.phi[cell] + place * lines.cell_length[cell])[deep])
+    return LinePoints(points.lines, points.gaps, np.concatenate(kind), np.concatenate(line), np.concatenate(phi))
 
 
-def lowest_in_cells(lines: GapLines, gaps: Array) -> tuple[Array, Array]:
-    """Place `t` of the minimum of (K15) within each cell of some lines, and the gap there; (lines, cells) each.
+def at_both_nodes(lines: GapLines, gaps: Array) -> Array:
+    """Gap and slope over the cell at the node before and after each cell of some lines, (lines, cells, 4) [1]."""
+    at, (node, weight), length = gaps[lines.number], lines.slope_weights, lines.cell_length
+    slopes = np.einsum("lnk,nk->ln", at[:, node], weight)
+    return np.stack([at[:, :-1], length * slopes[:, :-1], at[:, 1:], length * slopes[:, 1:]], axis=-1)
+
+
+def lowest_in_cells(nodal: Array) -> tuple[Array, Array]:
+    """Places `t` of the minima of cubics (K15) within their cells and the gaps there, (...) each; `nodal` (..., 4).
 
     Where there is none the gap is infinite.
     """
-    at, (node, weight), length = gaps[lines.number], lines.slope_weights, np.diff(lines.phi)
-    slopes = np.einsum("lnk,nk->ln", at[:, node], weight)
-    nodal = np.stack([at[:, :-1], length * slopes[:, :-1], at[:, 1:], length * slopes[:, 1:]], axis=-1)
     powers = nodal @ hermite.COEFFICIENTS
     c, b, a = powers[..., 1], 2.0 * powers[..., 2], 3.0 * powers[..., 3]
     bent = np.sqrt(np.maximum(b**2 - 4.0 * a * c, 0.0))  # p'' = b + 2 a t at the minimum, where c + b t + a t^2 = 0

@@ -19,8 +19,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.line_contacts import LineContacts
-from petalfoil.equilibrium.line_dips import closed_beside
-from petalfoil.equilibrium.line_signs import met, revised, without
+from petalfoil.equilibrium.line_signs import closed_beside, met, revised, without
 from petalfoil.equilibrium.rubbing_lines import RubbingLines, matched
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.solvers.constraints import constrain

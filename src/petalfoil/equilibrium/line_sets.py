@@ -15,7 +15,7 @@ from petalfoil.equilibrium.element_contacts import over_normal_forces
 from petalfoil.equilibrium.heated import stiffness
 from petalfoil.equilibrium.line_chords import by_chords, by_tangent
 from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
-from petalfoil.equilibrium.line_signs import freed_near_ends, parted, revised
+from petalfoil.equilibrium.line_signs import closed_beside, freed_near_ends, parted, revised
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.travelling_contacts import NodalContacts, placed_points
@@ -31,6 +31,12 @@ STEPS = 10
 
 PATIENCE = 2
 """Tangents after which a point at which the gap still does not curve upward is two contacts."""
+
+SPLITS = 4
+"""Most times that contacts split side by side; once or twice serves."""
+
+SPLIT_STEPS = 4
+"""Most tangents with one set of contacts that have split: none or one serve, since factors serve other contacts."""
 
 REVISIONS = 16
 """Most sets of contacts: one or two serve in most packs, seven in ten petals at 280 µm, where ends of stretches recede
@@ -113,9 +119,40 @@ def points_on_lines(contacts: Contacts, placed: IsolatedContacts) -> tuple[LineP
 
 
 def settled(state: LineContacts, steps: int = STEPS, *, plain: bool = False) -> LineContacts:
-    """Newton's method of as many `steps` at most, and other contacts as long as signs ask for them.
+    """Newton's method of as many `steps` at most, and other contacts as long as signs and gaps ask for them.
 
     With `plain` steps each set of contacts has tangents of its own: where points creep, that leads elsewhere.
+
+    Raises
+    ------
+    NoLinesError
+        Newton's method does not converge, or contacts keep changing.
+    """
+    return split(signed(state, steps, plain=plain), plain=plain)
+
+
+def split(state: LineContacts, *, plain: bool = False) -> LineContacts:
+    """The equilibrium with further points where gaps beside those of an equilibrium are below zero.
+
+    Contacts that spread have split there. Where that leads to no other equilibrium, the gaps stay below zero; the run
+    log says so.
+    """
+    failure = f"gaps still close after {SPLITS} sets of contacts"
+    for _ in range(SPLITS):
+        more = closed_beside(state)
+        if more is None:
+            return state
+        try:
+            state = signed(more, SPLIT_STEPS, plain=plain)
+        except NoLinesError as reason:
+            failure = str(reason)
+            break
+    current_run().note("contact lines", outcome=f"kept with gaps below zero beside contacts: {failure}")
+    return state
+
+
+def signed(state: LineContacts, steps: int, *, plain: bool) -> LineContacts:
+    """Newton's method of as many `steps` at most, and other contacts as long as signs ask for them.
 
     Raises
     ------

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.line_contacts import LineContacts, StateOnLines
+from petalfoil.equilibrium.line_dips import closed_between
 from petalfoil.physics.contact_points import MARGIN, POINT_NODES
 from petalfoil.physics.line_points import LinePoints
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
@@ -73,13 +74,11 @@ def revised(state: StateOnLines, pull: float = RESIDUAL_TOLERANCE, known: Mask |
         return parted(state)
     bears = state.held_reaction > -pull * state.problem.weight[state.held]
     pushes = state.reaction > -pull
-    fresh = lowest_of_runs(state, (state.gaps < -PENETRATION) & ~covered(state))
-    between = dips(state, fresh, known)
+    below = (state.gaps < -PENETRATION) & ~covered(state)
+    fresh, between = lowest_of_runs(state, below), dips(state, np.flatnonzero(below), known)
     if bears.all() and pushes.all() and not len(fresh) and not len(between.phi):
         return None
-    gained = gaining(without(state, ~bears, ~pushes), fresh)
-    none_yet = np.zeros(len(between.phi))
-    return replace(gained, points=gained.points.joined(between), reaction=np.concatenate([gained.reaction, none_yet]))
+    return gaining_points(gaining(without(state, ~bears, ~pushes), fresh), between)
 
 
 def corrected_early(state: StateOnLines, *, frees: bool) -> StateOnLines:
@@ -201,33 +200,31 @@ def lowest_of_runs(state: LineContacts, below: Mask) -> Index:
     return np.flatnonzero(lowest)
 
 
-def dips(state: LineContacts, fresh: Index, known: Mask | None = None) -> LinePoints:
-    """Points where gaps are below zero between nodes, away from contacts and from the nodes `fresh`.
+def dips(state: LineContacts, below: Index, known: Mask | None = None) -> LinePoints:
+    """Points where gaps are below zero between nodes alone, away from contacts and from nodes `below` zero.
 
     Those beside nodes `known` (m,) are not looked for.
     """
-    taken = covered(state)
-    taken[fresh] = True
-    there = lowest_between(state, taken if known is None else taken | known)
+    taken = covered(state) if known is None else covered(state) | known
+    taken[below] = True
+    there = closed_between(state.points, state.gaps, PENETRATION)
     return there.kept(~np.any(taken[there.beside], axis=1))
 
 
-def lowest_between(state: LineContacts, beside: Mask) -> LinePoints:
-    """Places where gaps are below zero between nodes, found from the lower node of a cell but from those `beside` (m,).
+def closed_beside(state: StateOnLines, known: Mask | None = None) -> StateOnLines | None:
+    """The state with points where gaps are below zero in cells beside those of its points; None if there are none.
 
-    The gap of a cell (K15) is no lower than its Bernstein coefficients: it is looked for where one of the inner two is
-    below zero.
+    A contact that spreads splits. A cell that has a point has no other minimum. Those beside contacts at nodes, and
+    beside nodes `known` (m,), are not looked for.
     """
-    low = np.zeros(len(state.held), dtype=np.bool_)
-    for lines in state.points.lines:
-        gaps, cells, (node, weight) = state.gaps[lines.number], np.diff(lines.phi), lines.slope_weights
-        slopes = np.einsum("nj,lnj->ln", weight, gaps[:, node])
-        inner = gaps[:, :-1] + slopes[:, :-1] * cells / 3.0, gaps[:, 1:] - slopes[:, 1:] * cells / 3.0
-        may = np.minimum(*inner) < -PENETRATION
-        first = gaps[:, :-1] <= gaps[:, 1:]
-        low[lines.number[:, :-1][may & first]] = low[lines.number[:, 1:][may & ~first]] = True
-    there = state.points.at_nodes(np.flatnonzero(low & ~beside))
-    if not len(there.phi):
-        return there
-    there = there.lowest(state.gaps)
-    return there.kept(there.along(state.gaps)[0] < -PENETRATION)
+    there = closed_between(state.points, state.gaps, PENETRATION)
+    taken = state.held if known is None else state.held | known
+    own = np.isin(there.beside[:, 0], state.points.beside[:, 0])
+    there = there.kept(~(own | np.any(taken[there.beside], axis=1)))
+    return gaining_points(state, there) if len(there.phi) else None
+
+
+def gaining_points(state: StateOnLines, there: LinePoints) -> StateOnLines:
+    """The state with further points, which have no reactions yet."""
+    reaction = np.concatenate([state.reaction, np.zeros(len(there.phi))])
+    return replace(state, points=state.points.joined(there), reaction=reaction)

@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.line_contacts import LineContacts, StateOnLines
+from petalfoil.equilibrium.line_dips import closed_between
 from petalfoil.equilibrium.line_signs import (
     PENETRATION,
-    lowest_between,
+    closed_beside,
     reactions_at_nodes,
     revised,
     single_nodes,
@@ -51,7 +52,7 @@ class Stretches(NamedTuple):
         dipping = np.zeros(contacts, dtype=np.bool_)
         if state is None:
             return cls(np.zeros(contacts), dipping)
-        dipping[lowest_between(state, dipping).beside] = True
+        dipping[closed_between(state.points, state.gaps, PENETRATION).beside] = True
         return cls(slopes_at_single(state), dipping)
 
 
@@ -69,8 +70,7 @@ def revised_in_time(state: StateOnLines, pull: float, before: Stretches) -> Stat
         free[turned[rises_on_both_sides(state, turned)]] = True
         if free.any():
             return with_points_at(state, free, reactions_at_nodes(state), free)
-    grown = stretched(state)
-    return revised(state, pull, before.dipping) if grown is None else grown
+    return stretched(state) or revised(state, pull, before.dipping) or closed_beside(state, before.dipping)
 
 
 def slopes_at_single(state: LineContacts) -> Array:
