@@ -92,6 +92,8 @@ class ElementMotion:
     def stored(self) -> sp.csc_array:
         """`S`; friction stores nothing."""
         stored = self.contacts.equations.stored
+        if self.stuck is None:
+            return stored
         return sp.csc_array(sp.block_diag([stored, sp.csc_array((self._n_stuck, self._n_stuck))]))
 
     @cached_property

@@ -14,6 +14,7 @@ which costs one factorisation of `J`, a solve for each basis vector, and dense a
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -28,11 +29,18 @@ Values = NDArray[np.inexact[Any]]
 """Real, or complex where `J` is."""
 Complex = NDArray[np.complex128]
 
+LEAST = 20
+"""Basis vectors before the force is looked at."""
+
 MOST = 160
 """Most basis vectors. Bearings take 28 to 48 of them for whirl ratios up to 3, and up to 96 for ratios up to 30."""
 
 DEPENDENT = 1e-10
 """Part of a vector outside the space, over the vector, below which it is rounding and adds nothing."""
+
+KEPT = 0.1
+"""Part of a vector left outside the space, over the vector, from which it is orthogonal to rounding (Daniel, Gragg,
+Kaufman and Stewart 1976, doi:10.1090/S0025-5718-1976-0431641-8)."""
 
 SETTLED = 1e-10
 """Change of the force by the last block of vectors, over the largest force, below which the space is large enough."""
@@ -141,28 +149,37 @@ def reduce_system(system: MovedSystem, points: Sequence[complex]) -> ReducedMode
     start = system.solve(np.hstack(system.forcing))
     block, space = start.shape[1], KrylovSpace(len(start), start.dtype)
     space.extend(start.T)
-    last: Complex | None = None
+    farthest = max(points, key=abs)
+    before: tuple[ReducedModel, Complex] | None = None
     while True:
-        for _ in range(block):
-            if space.complete:
-                break
-            space.extend([system.solve(system.S @ space.next())])
+        space.extend(system.solve(system.S @ space.next(block).T).T)
+        if space.applied < LEAST and not space.complete:
+            continue
         model = projected(system, space, start)
-        now = model.at_each(points)
-        settled = last is not None and np.max(np.abs(now - last)) <= SETTLED * np.max(np.abs(now))
-        if settled or space.complete:
+        there = model.at(farthest)
+        if space.complete or (before is not None and settled(before[1], there) and agree(before[0], model, points)):
             return model
-        last = now
+        before = model, there
+
+
+def agree(before: ReducedModel, model: ReducedModel, points: Sequence[complex]) -> bool:
+    """Whether two models have the same force at `points`."""
+    return settled(before.at_each(points), model.at_each(points))
+
+
+def settled(before: Complex, now: Complex) -> bool:
+    """Whether forces are those `before` the last block of vectors (`SETTLED`)."""
+    return bool(np.max(np.abs(now - before)) <= SETTLED * np.max(np.abs(now)))
 
 
 def projected(system: MovedSystem, space: KrylovSpace, start: Values) -> ReducedModel:
     """The model in the vectors of `space` that `K` has been applied to; `start` is `J^-1` of the forcing (n, 2 d)."""
-    V, d = space.vectors[: space.applied].T, len(system.direct[0])
-    steady, rate = V.conj().T @ start[:, :d], V.conj().T @ start[:, d:]
+    V, d = space.vectors[: space.applied], len(system.direct[0])
+    forcing, force = V.conj() @ start, (V @ np.hstack(system.force)).T
     return ReducedModel(
         space.H[: space.applied, : space.applied],
-        (steady, rate),
-        (system.force[0].T @ V, system.force[1].T @ V),
+        (forcing[:, :d], forcing[:, d:]),
+        (force[:d], force[d:]),
         system.direct,
     )
 
@@ -202,25 +219,76 @@ class KrylovSpace:
         """`K` has been applied to all vectors: they span all that can be reached, or all that may be kept."""
         return self.applied == self.count
 
-    def next(self) -> Values:
-        """The first vector that `K` has not been applied to; its image is the next to extend the space."""
-        self.applied += 1
-        vector: Values = self.vectors[self.applied - 1]
-        return vector
+    def next(self, most: int) -> Values:
+        """The first vectors that `K` has not been applied to, (k, n); their images are the next to extend the space.
 
-    def extend(self, images: Sequence[Values] | Values) -> None:
-        """Add what vectors (n,) have outside the space."""
-        for image in images:
-            rest, whole = image, float(np.linalg.norm(image))
-            for _ in range(2):  # Gram-Schmidt, again for what rounding left
-                inside = self.vectors.conj() @ rest
-                rest = rest - self.vectors.T @ inside
-                if self.applied:
-                    self._H[: self.count, self.applied - 1] += inside
-            size = float(np.linalg.norm(rest))
-            if size <= DEPENDENT * whole or self.count == self.most:
-                continue
-            self._vectors[self.count] = rest / size
+        `most` of them: solves for several at once take a third of the time.
+        """
+        first, self.applied = self.applied, min(self.applied + most, self.count)
+        vectors: Values = self._vectors[first : self.applied]
+        return vectors
+
+    def extend(self, images: Values) -> None:
+        """Add what vectors (k, n) have outside the space; images of the last ones of `next`, where that was called."""
+        first, known, basis = self.applied - len(images), self.count, self.vectors
+        outside, size = images, lengths(images)
+        least = DEPENDENT * size
+        for _ in range(2):  # Gram-Schmidt, again where rounding is left
+            inside, longer = outside @ basis.conj().T, size
+            outside = outside - inside @ basis
             if self.applied:
-                self._H[self.count, self.applied - 1] = size
-            self.count += 1
+                self._H[:known, first : self.applied] += inside.T
+            size = lengths(outside)
+            if np.all(size > KEPT * longer):
+                break
+        if known + len(images) > self.most or not np.all(size > least) or not self._append_all(outside, size, first):
+            for k, rest in enumerate(outside):
+                self._append(rest, float(least[k]), known, first + k if self.applied else None)
+
+    def _append_all(self, outside: Values, size: Array, first: int) -> bool:
+        """Add vectors (k, n) of a `size` (k,) that have nothing of the space, unless they nearly depend on each other.
+
+        They are images of the vectors from the `first` on, where `K` has been applied. The squares of the parts that
+        each has outside those before it are the pivots of their products, none of which exceeds 1: the least is no less
+        than the determinant.
+        """
+        unit = outside / size[:, None]
+        products = unit @ unit.conj().T
+        if np.linalg.det(products).real <= KEPT**2:
+            return False
+        L, last = np.linalg.cholesky(products), self.count + len(unit)
+        self._vectors[self.count : last] = np.linalg.solve(L, unit)
+        if self.applied:
+            self._H[self.count : last, first : self.applied] = (L * size[:, None]).T
+        self.count = last
+        return True
+
+    def _append(self, rest: Values, least: float, known: int, column: int | None) -> None:
+        """Add what a vector (n,) has outside the space, unless that is `least` or shorter.
+
+        It has nothing of the first vectors, those `known` before. `column` of `H` is that of the vector whose image it
+        is, if it is one.
+        """
+        size, longer = length(rest), np.inf
+        while least < size < KEPT * longer:
+            inside, longer = self.vectors[known:].conj() @ rest, size
+            rest = rest - inside @ self.vectors[known:]
+            if column is not None:
+                self._H[known : self.count, column] += inside
+            size, known = length(rest), 0
+        if size <= least or self.count == self.most:
+            return
+        self._vectors[self.count] = rest / size
+        if column is not None:
+            self._H[self.count, column] = size
+        self.count += 1
+
+
+def length(vector: Values) -> float:
+    """Of a vector (n,)."""
+    return math.sqrt(np.vdot(vector, vector).real)
+
+
+def lengths(vectors: Values) -> Array:
+    """Of vectors (k, n), (k,)."""
+    return np.asarray(np.sqrt(np.einsum("kn,kn->k", vectors.conj(), vectors).real))

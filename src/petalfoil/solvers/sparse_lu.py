@@ -49,10 +49,10 @@ class Factor:
         if rhs.ndim == 1:
             one: NDArray[Any] = self.col * self.scaled(self.row * rhs)
             return one
-        scaled = np.asfortranarray(self.row[:, None] * rhs)
-        few = [self.scaled(scaled[:, start : start + AT_ONCE]) for start in range(0, rhs.shape[1], AT_ONCE)]
-        out: NDArray[Any] = self.col[:, None] * np.concatenate([scaled[:, :0], *few], axis=1)
-        return out
+        scaled = np.multiply(rhs.T, self.row, order="C").T  # by columns, as SuperLU takes and returns them
+        few = [self.scaled(scaled[:, first : first + AT_ONCE]).T for first in range(0, rhs.shape[1], AT_ONCE)]
+        columns: NDArray[Any] = np.concatenate([scaled[:, :0].T, *few]) * self.col
+        return columns.T
 
     def solve_transposed(self, rhs: Array) -> Array:
         """Solve `M^T x = rhs`, rhs of shape (n,)."""

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
 from petalfoil.solvers import reduced_model
-from petalfoil.solvers.reduced_model import MovedSystem, ReducedModel, reduce_system
+from petalfoil.solvers.reduced_model import KrylovSpace, MovedSystem, ReducedModel, reduce_system
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -96,3 +96,21 @@ def test_no_more_vectors_than_may_be_kept(monkeypatch: pytest.MonkeyPatch) -> No
     wanted = exact(J, system, 3.0j)
     assert model.size == 8
     assert np.max(np.abs(model.at(3.0j) - wanted)) > 1e-8 * np.max(np.abs(wanted))
+
+
+@pytest.mark.parametrize("apart", [1.0, 1e-3, 1e-7, 0.0], ids=["apart", "near", "nearer", "the same"])
+@pytest.mark.parametrize("imaginary", [0.0, 1.0], ids=["real", "complex"])
+def test_a_krylov_space_grows_by_blocks_of_vectors_however_near_they_are(apart: float, imaginary: float) -> None:
+    """Its basis is orthonormal, and holds the images of those of its vectors that were asked for."""
+    rng = np.random.default_rng(2)
+    K = rng.standard_normal((N, N)) + imaginary * 1j * rng.standard_normal((N, N))
+    start = rng.standard_normal((3, N)).astype(K.dtype)
+    start[2] = start[0] + apart * start[2]
+    space = KrylovSpace(N, K.dtype)
+    space.extend(start)
+    for _ in range(4):
+        space.extend(space.next(3) @ K.T)
+    V = space.vectors
+    assert space.applied == (12 if apart else 8)
+    assert_allclose(V.conj() @ V.T, np.eye(len(V)), atol=1e-13)
+    assert_allclose(V[: space.applied] @ K.T, space.H[:, : space.applied].T @ V, atol=1e-12 * np.linalg.norm(K))
