@@ -39,8 +39,8 @@ DEPENDENT = 1e-10
 """Part of a vector outside the space, over the vector, below which it is rounding and adds nothing."""
 
 KEPT = 0.1
-"""Part of a vector left outside the space, over the vector, from which it is orthogonal to rounding (Daniel, Gragg,
-Kaufman and Stewart 1976, doi:10.1090/S0025-5718-1976-0431641-8)."""
+"""Part of a vector left outside the space, over the vector, from which a single Gram-Schmidt step is enough: no more is
+left inside than ten times rounding."""
 
 SETTLED = 1e-10
 """Change of the force by the last block of vectors, over the largest force, below which the space is large enough."""

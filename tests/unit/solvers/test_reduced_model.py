@@ -113,4 +113,4 @@ def test_a_krylov_space_grows_by_blocks_of_vectors_however_near_they_are(apart: 
     V = space.vectors
     assert space.applied == (12 if apart else 8)
     assert_allclose(V.conj() @ V.T, np.eye(len(V)), atol=1e-13)
-    assert_allclose(V[: space.applied] @ K.T, space.H[:, : space.applied].T @ V, atol=1e-12 * np.linalg.norm(K))
+    assert_allclose(V[: space.applied] @ K.T, space.H[:, : space.applied].T @ V, atol=1e-12 * float(np.linalg.norm(K)))
