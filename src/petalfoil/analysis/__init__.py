@@ -86,7 +86,8 @@ What they share:
 `steps_ahead.py`       what a motion costs, told before it begins
 `grid_study.py`        nested grids; error bars of arrays such as stiffness
 `error_bars.py`        the error bars of any answer, from nested grids
-`accuracy.py`          whether they are below an accuracy, and the next finer grid
+`harmonics_bars.py`    the part of them that comes from harmonics of slips
+`accuracy.py`          whether they are below an accuracy, and the next finer grid or more harmonics
 `richardson.py`        values on a sequence of grids: limit, order, error bar
 `classic_method.py`    the paper's own method
 `friction_told.py`     which friction forces between petals an equilibrium has

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import numpy as np
 
-from petalfoil.analysis.arguments import Flag, Load, NumbersWithUnit, NumberWithUnit, Speed, Speeds
+from petalfoil.analysis.arguments import Flag, Load, NumbersWithUnit, NumberWithUnit, Speed, Speeds, Whole
 from petalfoil.analysis.classic_method import newton_only
 from petalfoil.analysis.contact_model import ContactModel
 from petalfoil.analysis.declaration import analysis
@@ -58,6 +58,15 @@ Amplitude = Annotated[
         above=0.0,
     ),
 ]
+Harmonics = Annotated[
+    int | None,
+    Whole(
+        metavar="COUNT",
+        help="Odd harmonics of the slips at the amplitude, at least: 64; by default as many as they need.",
+        at_least=1,
+        at_most=256,
+    ),
+]
 WithTilt = Annotated[
     bool,
     Flag(help="Also those of the slopes of the journal's axis: 4 by 4, the whole length."),
@@ -67,11 +76,12 @@ MATRICES = {"stiffness": ("K", "N/m"), "damping": ("C", "N s/m")}
 
 @dataclass(frozen=True)
 class CoefficientRequest:
-    """Whirl frequencies [rad/s], the amplitude at which petals rub [m], and whether the journal tilts too."""
+    """Whirl frequencies [rad/s], amplitude at which petals rub [m], whether the journal tilts too, least harmonics."""
 
     frequencies: Array
     amplitude: float | None
     tilt: bool = False
+    harmonics: int | None = None
 
 
 @dataclass(frozen=True)
@@ -155,6 +165,7 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
     speed: Speed = None,
     speeds: Speeds = None,
     amplitude: Amplitude = None,
+    harmonics: Harmonics = None,
     tilt: WithTilt = False,
     progress: Progress | None = None,
 ) -> Record | Points:
@@ -175,15 +186,18 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
     ------
     UsageError
         A shaft at zero speed has no film that could respond; a frequency is zero with an amplitude or a loss factor;
-        nothing rubs.
+        nothing rubs; harmonics without an amplitude.
     ConvergenceError
         The operating point was not found, or the pack is bottomed out.
     """
     newton_only(case)
+    check_harmonics(amplitude, harmonics)
     turn = list(speeds) if speeds is not None else [at(case, speed).operation.speed]
     if not all(omega > 0.0 for omega in turn):
         raise UsageError("coefficients need a turning shaft: give speeds above zero")
-    asked = CoefficientRequest(np.array(turn if frequencies is None else frequencies, dtype=float), amplitude, tilt)
+    asked = CoefficientRequest(
+        np.array(turn if frequencies is None else frequencies, dtype=float), amplitude, tilt, harmonics
+    )
     check_amplitude(case, asked)
     check_loss(case, asked)
     cases = [at(case, omega) for omega in turn]
@@ -209,6 +223,18 @@ def check_amplitude(case: Case, asked: CoefficientRequest) -> None:
             "with an amplitude, whirl frequencies must be above zero: what friction takes in a cycle does not vanish "
             "with the frequency, so its equivalent damping has no bound"
         )
+
+
+def check_harmonics(amplitude: float | None, harmonics: int | None) -> None:
+    """Refuse harmonics of slips where no amplitude is given.
+
+    Raises
+    ------
+    UsageError
+        There is none.
+    """
+    if harmonics is not None and amplitude is None:
+        raise UsageError("harmonics are those of petals that rub at an amplitude: give an amplitude, or leave them out")
 
 
 def check_rubbing(case: Case) -> None:
@@ -275,8 +301,9 @@ def point(case: Case, asked: CoefficientRequest, load: Vector | None) -> Record:
     if asked.amplitude is None or sliding is None:
         pairs = impedances(motion, asked.frequencies, speed)
     else:
-        rubs = sliding, asked.amplitude
-        cycles = [cycle_impedance(motion.frictionless, frequency, speed, rubs) for frequency in asked.frequencies]
+        rubs, least = (sliding, asked.amplitude), asked.harmonics or 0
+        each = asked.frequencies
+        cycles = [cycle_impedance(motion.frictionless, frequency, speed, rubs, least) for frequency in each]
         pairs = [(one.stiffness, one.damping) for one in cycles]
         harmonics.append(HarmonicsTold.most_of([one.told for one in cycles]))
         by_harmonics = blocks(bearing, [one.changes for one in cycles])

@@ -48,6 +48,8 @@ QuestionFunction: TypeAlias = Callable[..., Record | Run]
 LOG = logging.getLogger(__name__)
 ERROR, ACCURACY = "error", "accuracy"
 """The arguments that ask for error bars, and for bars below a limit."""
+HARMONICS = "harmonics"
+"""The argument with the fewest harmonics of slips, of a question whose bars have a part from them."""
 
 
 RESUME = StoredResult(metavar="FILE.nc", help="Go on from the points that --out wrote for the same question.")
@@ -202,7 +204,11 @@ class Analysis:
         continued = [name for name, value in asked.items() if value is not None and self._continues(name)]
         if continued:
             raise UsageError(f"error bars need the whole run on every grid: leave {continued[0]} out")
-        return WithErrorBars(run, case, lambda other: self._whole(other, asked), accuracy)
+
+        def ask(other: Case, harmonics: int | None) -> tuple[Record, ...]:
+            return self._whole(other, asked if harmonics is None else {**asked, HARMONICS: harmonics})
+
+        return WithErrorBars(run, case, ask, accuracy)
 
     def _continues(self, name: str) -> bool:
         """Whether an argument is a result to go on from, which has the grid that it was computed on."""

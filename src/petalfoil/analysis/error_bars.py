@@ -1,7 +1,7 @@
 """Error bars beside the answer of any analysis: the same question on the case's grid and on two nested with it.
 
-With an accuracy the grids are refined until the bar of every shown result is below it (`accuracy.py`); the answer is
-that of the finest.
+With an accuracy grids are refined, and harmonics of slips added, until the bar of every shown result is below it
+(`accuracy.py`); the answer is that of the finest.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from petalfoil.analysis.accuracy import finer, remark_on, shortfalls
+from petalfoil.analysis.accuracy import Resolution, ahead_of, remark_on, shortfalls
 from petalfoil.analysis.grid_study import (
     array_error_bars,
     contacts_alike,
@@ -24,6 +24,7 @@ from petalfoil.analysis.grid_study import (
     of_one_size,
     unknowns,
 )
+from petalfoil.analysis.harmonics_bars import harmonics_bar, is_matrix
 from petalfoil.analysis.rotor_verdict import neutral_by_error
 from petalfoil.analysis.runs import Run
 from petalfoil.case import Case, warnings_of_errors
@@ -33,14 +34,10 @@ from petalfoil.results.record import Record
 from petalfoil.results.schema import FIELDS
 
 Array = NDArray[np.float64]
-Ask = Callable[[Case], tuple[Record, ...]]
-"""Answers the question for a case on another grid."""
+Ask = Callable[[Case, int | None], tuple[Record, ...]]
+"""Answers the question for a case on another grid, with so many harmonics of slips at least or as many as they need."""
 Answers = dict[tuple[int, int], tuple[Record, ...] | ConvergenceError]
 """The records of each grid, or why it has none."""
-
-BY_HARMONICS = 1.25
-"""Part of a bar that comes from the harmonics of slips, over what half as many change. That halves with each doubling,
-so that what is left is about as large; with 1 one of 80 bars of two bearings at five amplitudes is 15 % short."""
 
 
 @dataclass
@@ -56,7 +53,7 @@ class WithErrorBars:
     ask : callable
         Answers the same question on another grid.
     accuracy : float or None
-        Error bar over the size of a result that is to be met [1]; None leaves the case's own grid as it is.
+        Error bar over the size of a result that is to be met [1]; None leaves grid and harmonics as they are.
     barred : tuple of Record or None
         The records with error bars, once they are known.
     """
@@ -66,7 +63,7 @@ class WithErrorBars:
     ask: Ask
     accuracy: float | None = None
     barred: tuple[Record, ...] | None = None
-    _answers: Answers = field(default_factory=dict)
+    _answers: dict[int | None, Answers] = field(default_factory=dict)
 
     @property
     def is_series(self) -> bool:
@@ -78,44 +75,49 @@ class WithErrorBars:
         raise AttributeError("a run with error bars is a series if the run itself is one")
 
     def advance(self) -> Iterator[tuple[float, str]]:
-        """The run itself, then the other grids; with an accuracy finer ones, as long as it is not met."""
+        """The run itself, then the other grids; with an accuracy finer ones or more harmonics while it is not met."""
         cases = grids(self.case)
         cost = {grid_of(case): unknowns(case) / sum(map(unknowns, cases)) for case in cases}
         own = done = cost[grid_of(self.case)]
         for part, text in self.run.advance():
             yield part * own, text
-        self._answers[grid_of(self.case)] = self.run.records()
-        case = self.case
+        here = Resolution(self.case)
+        self._answers[here.harmonics] = {grid_of(self.case): self.run.records()}
         while True:
-            for other in grids(case):
-                if self._ask(other):
+            for other in grids(here.case):
+                if self._ask(replace(here, case=other)):
                     done = min(1.0, done + cost.get(grid_of(other), 0.0))
                     yield done, grid_text(other)
-            self.barred, ahead = self._with_bars(case), finer(case)
+            self.barred = self._with_bars(here)
             if self.accuracy is None or not shortfalls(self.barred, self.accuracy):
                 return
+            ahead = ahead_of(here, self.barred, self.accuracy)
             if ahead is not None and self._ask(ahead):
-                yield done, grid_text(ahead)
-            if ahead is None or isinstance(self._answers[grid_of(ahead)], ConvergenceError):
-                self.barred = tuple(remark_on(record, self.accuracy) for record in self.barred)
+                yield done, ahead.text
+            failure = None if ahead is None else self._answers[ahead.harmonics][grid_of(ahead.case)]
+            if ahead is None or isinstance(failure, ConvergenceError):
+                stopped = "" if ahead is None else f"{ahead.text} has no answer: {failure}"
+                self.barred = tuple(remark_on(record, self.accuracy, stopped) for record in self.barred)
                 return
-            case = ahead
+            here = ahead
 
-    def _with_bars(self, case: Case) -> tuple[Record, ...]:
-        """The records on the grid of `case`, which has an answer, with their error bars."""
-        records = self._answers[grid_of(case)]
+    def _with_bars(self, here: Resolution) -> tuple[Record, ...]:
+        """The records on the grid of `here`, which has an answer, with their error bars."""
+        answers = self._answers[here.harmonics]
+        records = answers[grid_of(here.case)]
         if isinstance(records, ConvergenceError):
             raise records
-        return tuple(barred(record, number, self._answers) for number, record in enumerate(records))
+        return tuple(barred(record, number, answers) for number, record in enumerate(records))
 
-    def _ask(self, case: Case) -> bool:
-        """Answer the question on the grid of `case`; whether that was not done before."""
-        if grid_of(case) in self._answers:
+    def _ask(self, there: Resolution) -> bool:
+        """Answer the question on a grid with harmonics; whether that was not done before."""
+        answers, grid = self._answers.setdefault(there.harmonics, {}), grid_of(there.case)
+        if grid in answers:
             return False
         try:
-            self._answers[grid_of(case)] = self.ask(case)
+            answers[grid] = self.ask(there.case, there.harmonics)
         except ConvergenceError as failure:
-            self._answers[grid_of(case)] = failure
+            answers[grid] = failure
         return True
 
     def records(self, ended: str = "") -> tuple[Record, ...]:
@@ -170,10 +172,10 @@ def field_bars(record: Record, number: int, answers: Answers) -> dict[str, Array
             continue
         on_grids = [values_of(other, name, record) for other in others]
         own_bars = array_error_bars(own.astype(np.float64), on_grids, alike=alike)
-        bars[f"{name}_error"] = of_one_size(own_bars) if FIELDS[name].dims[-2:] == ("row", "column") else own_bars
-        if f"{name}_harmonics_change" in record.fields:
-            change = np.abs(record.fields[f"{name}_harmonics_change"].astype(np.float64))
-            bars[f"{name}_error"] = bars[f"{name}_error"] + BY_HARMONICS * of_one_size(change)
+        bars[f"{name}_error"] = of_one_size(own_bars) if is_matrix(name) else own_bars
+        by_harmonics = harmonics_bar(name, record)
+        if by_harmonics is not None:
+            bars[f"{name}_error"] = bars[f"{name}_error"] + by_harmonics
     return bars
 
 

@@ -140,11 +140,11 @@ def impedance(motion: Motion, frequency: float, speed: float) -> tuple[Array, Ar
 
 
 def cycle_impedance(
-    motion: Motion, frequency: float, speed: float, rubs: tuple[SlidingContacts, float]
+    motion: Motion, frequency: float, speed: float, rubs: tuple[SlidingContacts, float], least: int = 0
 ) -> CycleImpedance:
     """The same where contacts rub in a whirl of an amplitude [m].
 
-    `motion` is without their friction.
+    `motion` is without their friction. Slips have at least so many harmonics as `least` says.
 
     Raises
     ------
@@ -152,7 +152,7 @@ def cycle_impedance(
         Slips and friction did not agree.
     """
     scales, (sliding, amplitude) = motion.problem.layout.scales, rubs
-    cycle = RubbingCycle.of(sliding, motion, 1j * frequency / speed, amplitude / scales.length)
+    cycle = RubbingCycle.of(sliding, motion, 1j * frequency / speed, amplitude / scales.length, least)
     found = cycle.force_gradient()
     Z, change = (-gradient * scales.force / scales.length for gradient in (found.force, found.change))
     return CycleImpedance(Z.real, Z.imag / frequency, (change.real, change.imag / frequency), found.told)

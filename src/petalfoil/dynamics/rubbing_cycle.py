@@ -21,7 +21,7 @@ Complex = NDArray[np.complex128]
 
 FREQUENCIES = 3
 """Harmonics at whose own frequency petals and film are solved: 1, 3 and 5. Above, contacts move as at the last: the
-film hardly yields there. With all of them the loss of bearings changes by up to 2e-3 of it."""
+film hardly yields there. With all of them the loss of bearings changes by up to 2e-3 of it, from six on by 2e-4."""
 
 FEWEST, MOST = 4, 32
 """Odd harmonics to begin with; the most."""
@@ -66,6 +66,14 @@ ONE_HARMONIC = HarmonicsTold(1, np.nan)
 """What is told of slips with one harmonic."""
 
 
+def frequencies(least: int) -> int:
+    """Harmonics at whose own frequency petals and film are solved; more where at least so many harmonics are asked for.
+
+    They are a quarter of these, at least twice the usual, so that what is left is a small part of what harmonics leave.
+    """
+    return FREQUENCIES if least == 0 else max(2 * FREQUENCIES, least // 4)
+
+
 def takes_several(sliding: SlidingContacts) -> bool:
     """Whether slips have several harmonics: of contacts that are not too many."""
     return len(sliding.limit) <= LARGEST
@@ -99,24 +107,28 @@ class RubbingCycle:
     cycle : FrictionCycle
         Contacts, response without friction and amplitude.
     compliances : (m, k, k) array
-        Slips against unit friction forces at the harmonics 1, 3, 5; of the first alone where slips have one.
+        Slips against unit friction forces at the harmonics 1, 3, 5 and so on; at the first where slips have one.
+    least : int
+        Fewest harmonics that are enough, however little they change friction; 0 for any.
     """
 
     cycle: FrictionCycle
     compliances: Complex
+    least: int = 0
 
     @classmethod
-    def of(cls, sliding: SlidingContacts, motion: Motion, s: complex, amplitude: float) -> RubbingCycle:
+    def of(cls, sliding: SlidingContacts, motion: Motion, s: complex, amplitude: float, least: int = 0) -> RubbingCycle:
         """A whirl in `exp(s tau)`, from small motions without friction, at an amplitude over the reference length.
 
-        As many factorisations as `FREQUENCIES`, and as many solves for each contact.
+        As many factorisations as `frequencies`, and as many solves for each contact. Slips have at least so many
+        harmonics as `least` says.
         """
-        harmonics = range(1, 2 * FREQUENCIES, 2) if takes_several(sliding) else range(1, 2)
+        harmonics = range(1, 2 * frequencies(least), 2) if takes_several(sliding) else range(1, 2)
         solver = current_run().probe_solver
         each = [
             FrictionCycle(sliding, motion.growing(complex(s.real, h * s.imag), solver), amplitude) for h in harmonics
         ]
-        return cls(each[0], np.array([one.compliance() for one in each]))
+        return cls(each[0], np.array([one.compliance() for one in each]), least)
 
     def force_gradient(self) -> JournalForce:
         """`dF/de` of film and contacts on the journal, (d, d).
@@ -146,12 +158,17 @@ class RubbingCycle:
             return JournalForce(one, np.full_like(one, np.nan), ONE_HARMONIC)
         found, told = self.with_harmonics(free, FEWEST), HarmonicsTold(FEWEST, np.inf)
         force = half = self.on_journal(found.friction[0])
-        while told.friction_harmonics_change > CHANGE and told.friction_harmonics < MOST:
+        while self.wants_more(told):
             half, harmonics = force, 2 * told.friction_harmonics
             found = self.with_harmonics(free, harmonics, found)
             force = self.on_journal(found.friction[0])
             told = HarmonicsTold.between(harmonics, force, half)
         return JournalForce(force, force - half, told)
+
+    def wants_more(self, told: HarmonicsTold) -> bool:
+        """Whether twice as many harmonics are to be tried."""
+        changes = told.friction_harmonics_change > CHANGE and told.friction_harmonics < MOST
+        return changes or told.friction_harmonics < self.least
 
     def force(self, free: Complex, harmonics: int) -> Complex:
         """Force of friction on the journal with so many harmonics, a power of 2, over the amplitude.

@@ -52,6 +52,8 @@ class RubbingBearing:
         Unit of length of the first bearing over its own, unit of force of its own over that of the first.
     several : FollowedSlips or None
         Slips in several harmonics (E22); None where they have one (E11).
+    least : int
+        Fewest harmonics of several; 0 for as many as change friction.
     """
 
     motion: Motion
@@ -59,20 +61,21 @@ class RubbingBearing:
     by_shaft: Array
     units: tuple[float, float]
     several: FollowedSlips | None = None
+    least: int = 0
 
     @classmethod
-    def of(cls, motion: Motion, by_shaft: Array, units: tuple[float, float]) -> RubbingBearing:
+    def of(cls, motion: Motion, by_shaft: Array, units: tuple[float, float], least: int) -> RubbingBearing:
         """From small motions in which petals stick."""
         sliding = None if motion.stuck is None else SlidingContacts.of_stuck(motion.stuck)
-        return cls(motion.frictionless, sliding, by_shaft, units)
+        return cls(motion.frictionless, sliding, by_shaft, units, least=least)
 
     def at(self, s: complex) -> RubbingResponse:
         """The response to motions in `exp(s tau)`: a factorisation, and a solve for each contact.
 
-        As many as `rubbing_cycle.FREQUENCIES` where slips have several harmonics.
+        As many as `rubbing_cycle.frequencies` where slips have several harmonics.
         """
         if self.sliding is not None and self.several is not None:
-            rubbing = RubbingCycle.of(self.sliding, self.motion, s, 1.0)
+            rubbing = RubbingCycle.of(self.sliding, self.motion, s, 1.0, self.least)
             return RubbingResponse(self, rubbing.cycle.response, rubbing.compliances)
         response = self.motion.growing(s, current_run().probe_solver)
         if self.sliding is None:
@@ -90,7 +93,7 @@ class RubbingBearing:
         s, v = motion
         if self.sliding is None:
             return self
-        rubbing = RubbingCycle.of(self.sliding, self.motion, s, scale)
+        rubbing = RubbingCycle.of(self.sliding, self.motion, s, scale, self.least)
         free = RubbingResponse(self, rubbing.cycle.response, rubbing.compliances).free(v)
         return replace(self, several=FollowedSlips(rubbing.with_enough(free).told.friction_harmonics))
 
@@ -188,15 +191,15 @@ class RubbingWhirl:
     stiffness_unit: float
 
     @classmethod
-    def of(cls, motion: JournalMotion, amplitude: float) -> RubbingWhirl:
-        """From small motions in which petals stick, at an amplitude [m]."""
+    def of(cls, motion: JournalMotion, amplitude: float, least: int = 0) -> RubbingWhirl:
+        """From small motions in which petals stick, at an amplitude [m]; slips have `least` harmonics or more."""
         scales = motion.problem.layout.scales
         if isinstance(motion, JointMotion):
             each = zip(motion.parts, motion.by_shaft, motion.units, strict=True)
-            bearings = tuple(RubbingBearing.of(*one) for one in each)
+            bearings = tuple(RubbingBearing.of(*one, least) for one in each)
         else:
             alone = cast(Motion, motion)  # what is not both bearings is one
-            bearings = (RubbingBearing.of(alone, np.eye(alone.problem.layout.n_position), (1.0, 1.0)),)
+            bearings = (RubbingBearing.of(alone, np.eye(alone.problem.layout.n_position), (1.0, 1.0), least),)
         return cls(bearings, amplitude / scales.length, scales.force / scales.length)
 
     @property

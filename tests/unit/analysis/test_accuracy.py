@@ -9,12 +9,13 @@ import pytest
 from numpy.testing import assert_allclose
 
 import petalfoil
-from petalfoil.analysis.accuracy import finer, remark_on, shortfalls, size_of
+from petalfoil.analysis.accuracy import MOST_HARMONICS, finer, remark_on, shortfalls, size_of
 from petalfoil.analysis.arguments import NumberWithUnit
 from petalfoil.analysis.error_bars import WithErrorBars
+from petalfoil.analysis.harmonics_bars import BY_HARMONICS
 from petalfoil.analysis.richardson import SAFETY
 from petalfoil.analysis.runs import Single
-from petalfoil.case import Case
+from petalfoil.case import Case, ModelKind
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.record import Record
 from tests.cases import case
@@ -37,7 +38,7 @@ def refined(accuracy: float | None, **how: Any) -> tuple[Record, list[int]]:
     """The answer of the toy, and the grids that it was asked on beside its own."""
     asked: list[int] = []
 
-    def ask(bearing: Case) -> tuple[Record, ...]:
+    def ask(bearing: Case, _: int | None) -> tuple[Record, ...]:
         asked.append(bearing.cells_per_pitch)
         return (toy(bearing, **how),)
 
@@ -87,6 +88,86 @@ def test_a_finer_grid_without_an_answer_ends_the_refinement() -> None:
     assert cells(record) == 128
     assert record.errors
     assert "is not reached" in record.remarks[0]
+
+
+SLIPS = 2.0
+"""What harmonics leave of a stiffness of 10, times their number: with the 8 that it has by itself, 2.5 %."""
+
+
+def rubbing(bearing: Case, harmonics: int) -> Record:
+    """A stiffness of 10 with errors of the grid, and of harmonics, which halve with each doubling."""
+    by_grid, by_harmonics = 25.0 / bearing.cells_per_pitch**2, SLIPS / harmonics
+    ones = np.ones((1, 2, 2))
+    fields = {"stiffness": (10.0 + by_grid + by_harmonics) * ones, "stiffness_harmonics_change": by_harmonics * ones}
+    coords = {"whirl_frequency": np.ones(1), "row": np.arange(2), "column": np.arange(2)}
+    record = toy(bearing, factor=0.0)
+    scalars = {**record.scalars, "friction_harmonics": harmonics}
+    return replace(record, scalars=scalars, fields=fields, coords=coords)
+
+
+def rubbed(accuracy: float, fails_from: int = 4096) -> tuple[Record, list[tuple[int, int | None]]]:
+    """The answer of petals that rub, and the grids and harmonics that it was asked with beside its own."""
+    asked: list[tuple[int, int | None]] = []
+
+    def ask(bearing: Case, harmonics: int | None) -> tuple[Record, ...]:
+        asked.append((bearing.cells_per_pitch, harmonics))
+        if harmonics is not None and harmonics >= fails_from:
+            raise ConvergenceError("slips do not agree")
+        return (rubbing(bearing, harmonics or 8),)
+
+    run = WithErrorBars(Single(rubbing(FLAT, 8)), FLAT, ask, accuracy)
+    for _ in run.advance():
+        pass
+    (record,) = run.records()
+    return record, asked
+
+
+def test_harmonics_are_doubled_where_they_leave_the_larger_part_of_a_bar() -> None:
+    """At 1 % harmonics alone are refined: 32 leave 0.8 %; at 0.25 % the grid is too."""
+    assert "accuracy" in petalfoil.coefficients.arguments  # which declares the fields
+    record, asked = rubbed(1e-2)
+    assert (cells(record), record.scalars["friction_harmonics"]) == (64, 32)
+    assert len(asked) == len(set(asked))
+    bar = float(np.max(record.fields["stiffness_error"]))
+    by_grid = 25.0 / 64**2 - 25.0 / 128**2 + SAFETY * 25.0 / 128**2  # the finest of its three grids has 128 cells
+    assert_allclose(bar, BY_HARMONICS * SLIPS / 32 + by_grid, rtol=1e-6)
+    assert bar <= 1e-2 * 10.0
+    assert not record.remarks
+    finest, _ = rubbed(2.5e-3)
+    assert (cells(finest), finest.scalars["friction_harmonics"]) == (128, 128)
+    assert not finest.remarks
+
+
+def test_a_bar_that_harmonics_hold_above_the_accuracy_says_so() -> None:
+    """No grid would help, so that none is tried."""
+    record, asked = rubbed(1e-4)
+    assert record.scalars["friction_harmonics"] == MOST_HARMONICS[ModelKind.TWO_D]
+    assert max(grid for grid, _ in asked) < 1024
+    (remark,) = record.remarks
+    assert "0.01 % is not reached" in remark
+    assert "of it from harmonics of slips" in remark
+    assert "128 are the most that are tried" in remark
+
+
+def test_harmonics_without_an_answer_end_the_refinement() -> None:
+    record, _ = rubbed(1e-2, fails_from=32)
+    assert record.scalars["friction_harmonics"] == 16
+    assert "32 harmonics of slips has no answer: slips do not agree" in record.remarks[0]
+
+
+def test_slips_of_one_harmonic_have_a_bar_that_nothing_narrows() -> None:
+    """Nothing tells what more would change: finer grids are not tried."""
+
+    def one_harmonic(bearing: Case) -> Record:
+        record = rubbing(bearing, 1)
+        unknown = {**record.fields, "stiffness_harmonics_change": np.full((1, 2, 2), math.nan)}
+        return replace(record, fields=unknown)
+
+    run = WithErrorBars(Single(one_harmonic(FLAT)), FLAT, lambda other, _: (one_harmonic(other),), 1e-2)
+    grids = [text for _, text in run.advance()]
+    (known,) = run.records()
+    assert grids == ["grid 32", "grid 128"]
+    assert "unknown, as one harmonic of slips has no half" in known.remarks[0]
 
 
 def test_sizes_that_bars_are_compared_with() -> None:

@@ -15,8 +15,9 @@ from petalfoil.analysis.arguments import Load
 from petalfoil.analysis.balance import balance
 from petalfoil.analysis.coefficients import coefficients, entry
 from petalfoil.analysis.declaration import Analysis, analysis
-from petalfoil.analysis.error_bars import BY_HARMONICS, field_bars
+from petalfoil.analysis.error_bars import field_bars
 from petalfoil.analysis.grid_study import grid_of, grids
+from petalfoil.analysis.harmonics_bars import BY_HARMONICS
 from petalfoil.analysis.known_verbs import forget
 from petalfoil.analysis.liftoff import liftoff
 from petalfoil.analysis.richardson import SAFETY
