@@ -2,11 +2,13 @@
 
     python -m benchmarks.friction_paths
     python -m benchmarks.friction_paths 3d
+    python -m benchmarks.friction_paths loads
 
 Starting moment of the assembled pack and at the end, force at the largest displacement, width of the loop in its
 middle, energy of a cycle: the rig down to 10 um and the paper's eight petals down to 100 um and back. Writes the tables
 of `docs/decisions/033-friction-paths.md`: two minutes in 2-D. `3d rig nodes 32` is one row in 3-D; with contact lines
-that of 32 x 12 cells takes three minutes.
+that of 32 x 12 cells takes three minutes. `loads` balances loads in 3-D with the friction of assembly and run-up:
+position, minimum film thickness and energy lost; `loads rig lines 16` is one row.
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from petalfoil import Case
+from petalfoil.analysis.balance import balance
 from petalfoil.analysis.session import one_thread
 from petalfoil.analysis.static import static
 
@@ -52,6 +55,38 @@ def row(name: str, friction: float, contacts: str, cells: int, kind: str = "2d")
     return " | ".join([f"| {name}, {friction:g}", contacts, str(cells), *values]) + " |"
 
 
+LOADS = {"rig": (55.6, 1000.0), "paper_n8_spatial": (5.0, 1500.0)}
+"""Load [N] and speed [rad/s] of a balance."""
+
+
+def loaded_row(name: str, contacts: str, cells: int) -> str:
+    """One balance as a row of the table."""
+    load, speed = LOADS[name]
+    kept = {"surface.petal_friction": 0.1, "surface.friction_history": "assembled", "petals.theory": "shell"}
+    grid = {"model.kind": "3d", "model.cells_per_pitch": cells, "model.axial_cells": AXIAL[cells]}
+    held = {"model.contacts": "nodes" if contacts == "nodes" else "points"}
+    bearing = Case.load(EXAMPLES / f"{name}.toml").replace(**kept, **grid, **held)
+    found = balance.record(bearing, load=(0.0, -load), speed=speed).scalars
+    micro = [1e6 * float(found[key]) for key in ("eccentricity_y", "min_film_thickness", "petal_friction_work")]
+    counts = [str(found[key]) for key in ("film_factorizations", "pack_factorizations")]
+    return (
+        " | ".join([f"| {name}", contacts, f"{cells} × {AXIAL[cells]}", *(f"{x:.3f}" for x in micro), *counts]) + " |"
+    )
+
+
+def loaded_rows(asked: list[str]) -> Iterator[str]:
+    """The balances that are asked for, all without any."""
+    yield "| bearing | contacts | cells | position | min film | energy lost | factorisations with film | of the pack |"
+    yield "|---|---|---:|" + "---:|" * 5
+    if asked:
+        yield loaded_row(asked[0], asked[1], int(asked[2]))
+        return
+    for name in LOADS:
+        for contacts in ("nodes", "lines"):
+            for cells in AXIAL:
+                yield loaded_row(name, contacts, cells)
+
+
 def asked_rows(asked: list[str]) -> Iterator[str]:
     """The rows that are asked for."""
     kind, names, models, grids = "2d", list(DEEPEST), ["nodes", "points"], [24, 48, 96]
@@ -68,6 +103,11 @@ def asked_rows(asked: list[str]) -> Iterator[str]:
 
 def main() -> None:
     """Print the table."""
+    if sys.argv[1:2] == ["loads"]:
+        with one_thread():
+            for line in loaded_rows(sys.argv[2:]):
+                print(line, flush=True)
+        return
     print("| bearing, friction | contacts | cells | moment | moment at the end | force | width | energy of a cycle |")
     print("|---|---|---:|" + "---:|" * 5)
     with one_thread():

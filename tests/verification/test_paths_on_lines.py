@@ -15,11 +15,13 @@ from petalfoil.case import Case
 from petalfoil.equilibrium.friction_handover import at_nodes
 from petalfoil.equilibrium.friction_history import PathEnd, assembled, moved
 from petalfoil.equilibrium.line_dips import at_both_nodes, closed_between, lowest_in_cells
-from petalfoil.equilibrium.line_friction_path import corrected, slide_on_lines
+from petalfoil.equilibrium.line_friction_path import slide_on_lines
 from petalfoil.equilibrium.line_handover import on_lines
 from petalfoil.equilibrium.line_signs import PENETRATION, closed_beside
 from petalfoil.equilibrium.pack_at_rest import unloaded
-from petalfoil.equilibrium.rubbing_lines import RubbingLines, matched
+from petalfoil.equilibrium.pack_on_lines import PackOnLines
+from petalfoil.equilibrium.rubbing_line_tangent import RubbingLineTangent
+from petalfoil.equilibrium.rubbing_lines import matched
 from petalfoil.equilibrium.run_context import current_run, running
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.system.build import build_problem
@@ -31,7 +33,7 @@ pytestmark = pytest.mark.slow
 
 Array = NDArray[np.float64]
 RUBS = {"petals.theory": "shell", "surface.petal_friction": 0.1, "operation.eccentricity": (0.0, 0.0)}
-Assembled = tuple[CoupledProblem, Friction, RubbingLines]
+Assembled = tuple[CoupledProblem, Friction, PackOnLines]
 
 
 def rubbing(**changes: object) -> Case:
@@ -40,10 +42,10 @@ def rubbing(**changes: object) -> Case:
     return case("paper_n8_spatial", **{**coarse, **RUBS, **changes})
 
 
-def lines_of(way: PathEnd | None) -> RubbingLines:
+def lines_of(way: PathEnd | None) -> PackOnLines:
     """The state at the end of a way, on contact lines all along."""
     assert way is not None
-    assert isinstance(way.state, RubbingLines)
+    assert isinstance(way.state, PackOnLines)
     assert way.at_points == way.steps
     return way.state
 
@@ -63,32 +65,37 @@ def lowered(centred: CoupledProblem, way: float) -> CoupledProblem:
     return centred.at(displacement=np.array([0.0, -way]) / centred.layout.scales.length)
 
 
+def round_journal(state: PackOnLines, problem: CoupledProblem) -> PackOnLines:
+    """The state of a pack under the equations of another position of the journal."""
+    return replace(state, pack=unloaded(problem, still=True))
+
+
 def test_every_contact_keeps_the_law_of_the_disk(pack: Assembled) -> None:
     """Friction forces are within the limit of their contact, and where they are at it against the slip."""
     centred, _, start = pack
-    end = slide_on_lines(unloaded(lowered(centred, 5e-6), still=True), start, current_run().pack_solver)
+    end = slide_on_lines(round_journal(start, lowered(centred, 5e-6)), start, current_run().pack_solver)
     assert end is not None
-    slip, size = (end.law.slip @ (end.x - start.x)).reshape(2, -1), np.linalg.norm(end.force, axis=0)
+    slip, size = (end.law.slip @ (end.x - start.x)).reshape(2, -1), np.linalg.norm(end.friction_force, axis=0)
     most = end.limit.max()
     assert np.all(size <= end.limit + 1e-9 * most)
     slides = size >= (1.0 - 1e-9) * end.limit
     far = np.linalg.norm(slip, axis=0)
     rubs = slides & (end.limit > 0.0) & (far > 1e-6)
     assert rubs.sum() > 20
-    assert_allclose(end.force[:, rubs], end.limit[rubs] / far[rubs] * slip[:, rubs], atol=1e-7 * float(most))
+    assert_allclose(end.friction_force[:, rubs], end.limit[rubs] / far[rubs] * slip[:, rubs], atol=1e-7 * float(most))
     assert far[~slides].max(initial=0.0) <= 1e-8
     assert end.residual <= 1e-8
     assert end.reactions.min() >= 0.0
-    assert np.linalg.norm(end.force[1]) > 0.0
+    assert np.linalg.norm(end.friction_force[1]) > 0.0
 
 
 def test_contacts_that_stick_lose_nothing_and_come_back(pack: Assembled) -> None:
     """Under a friction that nothing overcomes the pack is elastic."""
     centred, _, start = pack
     stuck = replace(start, friction=replace(start.friction, coefficient=1e4))
-    there = slide_on_lines(unloaded(lowered(centred, 1e-7), still=True), stuck, current_run().pack_solver)
+    there = slide_on_lines(round_journal(stuck, lowered(centred, 1e-7)), stuck, current_run().pack_solver)
     assert there is not None
-    back = slide_on_lines(unloaded(centred, still=True), there, current_run().pack_solver)
+    back = slide_on_lines(round_journal(there, centred), there, current_run().pack_solver)
     assert back is not None
     assert np.linalg.norm(there.x - start.x) > 1e-3
     assert_allclose(back.x, start.x, atol=1e-6 * np.linalg.norm(there.x - start.x))
@@ -105,7 +112,7 @@ def test_the_journal_does_the_work_that_is_stored_and_lost(pack: Assembled) -> N
         for way in np.linspace(0.0, 20e-6, count + 1)[1:]:
             there = lowered(centred, way)
             before = state.in_film(problem).force
-            found = slide_on_lines(unloaded(there, still=True), state, current_run().pack_solver)
+            found = slide_on_lines(round_journal(state, there), state, current_run().pack_solver)
             assert found is not None
             mean = 0.5 * (before + found.in_film(there).force)
             work -= float(mean @ (there.displacement - problem.displacement))
@@ -127,7 +134,7 @@ def test_energy_closes_where_contacts_split() -> None:
         centred, state, fresh = problem, lines_of(assembled(friction, problem)), 0
         for way in np.linspace(0.0, 7.5e-6, 13)[1:]:
             there, before = lowered(centred, way), state
-            found = slide_on_lines(unloaded(there, still=True), before, current_run().pack_solver)
+            found = slide_on_lines(round_journal(before, there), before, current_run().pack_solver)
             assert found is not None
             mean = 0.5 * (before.in_film(problem).force + found.in_film(there).force)
             work = -float(mean @ (there.displacement - problem.displacement))
@@ -183,13 +190,14 @@ def test_a_contact_that_splits_gains_one_in_the_next_cell(pack: Assembled, depth
 def test_corrections_without_friction_converge_quadratically(pack: Assembled) -> None:
     """The tangent of displacements and places is exact: half as far away, a quarter is left after a correction."""
     centred, _, start = pack
-    solver, free = current_run().pack_solver, replace(start, force=np.zeros_like(start.force))
-    solved = slide_on_lines(unloaded(centred, still=True), free, solver, rubs=False)
+    solver, free = current_run().pack_solver, replace(start, friction_force=np.zeros_like(start.friction_force))
+    solved = slide_on_lines(round_journal(free, centred), free, solver, rubs=False)
     assert solved is not None
     left = []
     for part in (1.0, 0.5):
         aside = replace(solved, points=solved.points.moved(0.02 * part * solved.points.cell_length))
-        left.append(corrected(aside, aside, solver, rubs=False).residual)
+        tangent = RubbingLineTangent.about(aside, solver, rubs=False)
+        left.append(tangent.corrected(aside, aside)[0].residual)
     assert left[0] > 1e-9
     assert left[1] == pytest.approx(0.25 * left[0], rel=0.2)
 
@@ -199,10 +207,11 @@ def test_friction_forces_are_handed_over_to_nodes_and_back(pack: Assembled) -> N
     nodal = at_nodes(friction, start, unloaded(centred, still=True))
     assert nodal is not None
     half = len(nodal.friction.force) // 2
-    assert_allclose(nodal.friction.force.reshape(2, half).sum(axis=1), start.force.sum(axis=1), rtol=1e-9, atol=1e-9)
+    whole = start.friction_force.sum(axis=1)
+    assert_allclose(nodal.friction.force.reshape(2, half).sum(axis=1), whole, rtol=1e-9, atol=1e-9)
     again = on_lines(friction, unloaded(centred, still=True), nodal)
     assert again is not None
-    assert_allclose(again.force.sum(axis=1), start.force.sum(axis=1), rtol=1e-9, atol=1e-9)
+    assert_allclose(again.friction_force.sum(axis=1), whole, rtol=1e-9, atol=1e-9)
     assert again.residual <= 1e-8
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.equilibrium.rubbing_lines import RubbingLines
 from petalfoil.equilibrium.small_motion import ElementEquilibrium
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.physics.reynolds import Flux
@@ -52,11 +53,14 @@ def balance_with_friction(answer: Solution) -> float:
     problem, friction = answer.problem, friction_of(answer.case, answer.problem.layout)
     if answer.friction is None or friction is None:
         raise ValueError("an equilibrium without friction forces")
-    wall, layout, x = problem.layout.wall, problem.layout, answer.x
-    w, P, rubbing = x[layout.unknowns[DEFLECTION]], x[problem.positive], answer.friction.state.force
-    H, B = problem.wall_acting, friction.slip
-    loads = layout.push @ (P - 1.0) + H.T @ answer.lam - B.T @ rubbing - layout.elastic_force(w)
-    parts = layout.push @ np.abs(P - 1.0) + abs(H.T) @ np.abs(answer.lam) + abs(B.T) @ np.abs(rubbing)
+    wall, layout, x, lam = problem.layout.wall, problem.layout, answer.x, answer.lam
+    B, rubbing = friction.slip, answer.friction.state.force
+    if isinstance(answer.lines, RubbingLines):
+        x, lam = answer.lines.x, answer.lines.lam
+        B, rubbing = answer.lines.law.slip, answer.lines.friction_force.ravel()
+    w, P, H = x[layout.unknowns[DEFLECTION]], x[problem.positive], problem.wall_acting
+    loads = layout.push @ (P - 1.0) + H.T @ lam - B.T @ rubbing - layout.elastic_force(w)
+    parts = layout.push @ np.abs(P - 1.0) + abs(H.T) @ np.abs(lam) + abs(B.T) @ np.abs(rubbing)
     return largest(wall.free_motions.T @ loads, abs(wall.free_motions.T) @ parts)
 
 

@@ -12,9 +12,9 @@ from petalfoil.case import Case
 from petalfoil.equilibrium.friction_handover import PathState
 from petalfoil.equilibrium.friction_history import assembled, moved
 from petalfoil.equilibrium.nodal_state import sampled_lines, sampled_solution
+from petalfoil.equilibrium.pack_on_lines import PackOnLines
 from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.equilibrium.point_friction_path import RubbingPoints
-from petalfoil.equilibrium.rubbing_lines import RubbingLines
 from petalfoil.equilibrium.run_context import RunContext, running
 from petalfoil.equilibrium.solution import RefinedState, Solution
 from petalfoil.system.build import build_problem
@@ -90,7 +90,7 @@ def answer_of(problem: CoupledProblem, slid: PathState) -> Solution:
     if isinstance(slid, RubbingPoints):
         equations = replace(slid.equations, film_held=None)
         return replace(sampled_solution(PointContacts(equations, slid.residual), None), solution_path=WAY)
-    if isinstance(slid, RubbingLines):
+    if isinstance(slid, PackOnLines):
         return replace(sampled_lines(slid.in_film(still), None), solution_path=WAY)
     state = RefinedState(problem.layout.ambient(slid.x), np.zeros(problem.layout.n_wall), slid.lam)
     return Solution(still, state, slid.residual, WAY)

@@ -146,6 +146,8 @@ def begins_on_path(case: Case, request: OrbitRequest) -> bool:
 def balance_on_path(case: Case, request: OrbitRequest) -> Solution | None:
     """The balance where a motion begins, if it keeps the friction of its path; else None.
 
+    In 3-D it has contacts at nodes, as motions with friction have.
+
     Raises
     ------
     ConvergenceError
@@ -154,7 +156,8 @@ def balance_on_path(case: Case, request: OrbitRequest) -> Solution | None:
     if not begins_on_path(case, request):
         return None
     speed = request.schedule(case).speed(0.0)
-    return under_load(at(case, speed, (0.0, 0.0)), constant_load(case, request.load))[0]
+    held = case.replace(**{"model.contacts": "nodes"}) if case.has_contact_lines else case
+    return under_load(at(held, speed, (0.0, 0.0)), constant_load(case, request.load))[0]
 
 
 class FirstPosition(NamedTuple):

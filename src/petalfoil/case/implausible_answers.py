@@ -121,10 +121,10 @@ def _path_at_nodes(case: Case, scalars: Scalars) -> Iterator[str]:
     between = case.has_contact_lines and case.follows_friction and case.heat is None
     if path and between and "at nodes" in str(scalars.get("contact_model", "")):
         yield (
-            "contact_model: contacts are at nodes, as friction along a path under a load has no contact lines between "
-            "nodes in 3-D, or as they were lost at rest; the rig's starting moment differs by 18 per cent between "
-            "16 x 6 and 32 x 12 cells so, stiffness and damping by more: compare two grids (--error), or the same path "
-            "in 2-D, which has contact points"
+            "contact_model: contacts are at nodes, as contact lines between nodes were lost on the path, or as motions "
+            "with friction have none in 3-D; the rig's starting moment differs by 18 per cent between 16 x 6 and "
+            "32 x 12 cells so, stiffness and damping by more: compare two grids (--error), or the same path in 2-D, "
+            "which has contact points"
         )
 
 

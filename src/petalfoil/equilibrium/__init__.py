@@ -44,8 +44,11 @@
 `line_tangent.py`          the factorised tangent of these, as it serves later states
 `line_exchange.py`         what has changed in their contacts since it was factorised
 `line_chords.py`           steps with one factor
-`rubbing_lines.py`         a state of a path with friction on such lines
-`line_friction_path.py`    the pack with friction on them, a step further along a path
+`rubbing_lines.py`         a state of a path with friction on such lines, under a film
+`pack_on_lines.py`         the same of the pack alone
+`sinking_lines.py`         the same in a medium that holds journal and petals back
+`rubbing_line_tangent.py`  a step of Newton's method for these
+`line_friction_path.py`    petals with friction on them, a step further along a path
 `line_dips.py`             where gaps are below zero between nodes
 `line_handover.py`         states of a path handed over from nodes to lines, and back
 `line_sets.py`             these found from active nodes

@@ -16,9 +16,9 @@ from petalfoil.equilibrium.friction_path import FrictionResult
 from petalfoil.equilibrium.line_handover import forces_at_nodes
 from petalfoil.equilibrium.nodal_state import shared_reactions
 from petalfoil.equilibrium.pack_at_rest import resting
+from petalfoil.equilibrium.pack_on_lines import PackOnLines
 from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.equilibrium.point_friction_path import RubbingPoints
-from petalfoil.equilibrium.rubbing_lines import RubbingLines
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.system.foil_pack import FoilPackProblem
 from petalfoil.system.friction import FrictionState, against_slip, slips
@@ -27,16 +27,16 @@ from petalfoil.system.point_layout import PointLayout
 
 Array = NDArray[np.float64]
 
-PathState = FrictionResult | RubbingPoints | RubbingLines
+PathState = FrictionResult | RubbingPoints | PackOnLines
 """A state of a path, wherever its contacts are."""
 
 
-def at_nodes(friction: Friction, reached: RubbingPoints | RubbingLines, pack: FoilPackProblem) -> FrictionResult | None:
+def at_nodes(friction: Friction, reached: RubbingPoints | PackOnLines, pack: FoilPackProblem) -> FrictionResult | None:
     """A state with contact points at the nodes of its `pack`, under the same friction forces; None if none was found.
 
     Forces are shared by the nodes beside each point as reactions are.
     """
-    if isinstance(reached, RubbingLines):
+    if isinstance(reached, PackOnLines):
         force = forces_at_nodes(friction, reached)
     else:
         force = shared_friction(friction, reached)

@@ -15,8 +15,8 @@ from petalfoil.equilibrium.friction_path import FrictionResult, slide
 from petalfoil.equilibrium.line_friction_path import slide_on_lines
 from petalfoil.equilibrium.line_handover import on_lines
 from petalfoil.equilibrium.pack_at_rest import at_rest, unloaded
+from petalfoil.equilibrium.pack_on_lines import PackOnLines
 from petalfoil.equilibrium.point_friction_path import RubbingPoints, slide_at_points
-from petalfoil.equilibrium.rubbing_lines import RubbingLines
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.physics.dry_friction import Friction
 from petalfoil.solvers.contact_newton import solve_contacts
@@ -52,7 +52,7 @@ class PathEnd:
 
     Attributes
     ----------
-    state : FrictionResult, RubbingPoints or RubbingLines
+    state : FrictionResult, RubbingPoints or PackOnLines
         The state.
     lost : float
         Energy lost on the way, over the units of force and length [1].
@@ -148,8 +148,8 @@ def led(
 def slid_to(pack: FoilPackProblem, friction: Friction, before: PathState) -> PathState | None:
     """The pack after a step: exact, or with friction that builds up over a width."""
     solver = current_run().pack_solver
-    if isinstance(before, RubbingLines):
-        return slide_on_lines(pack, before, solver)
+    if isinstance(before, PackOnLines):
+        return slide_on_lines(replace(before, pack=pack), before, solver)
     if isinstance(before, RubbingPoints):
         ahead = PackAtPoints.of(before.whole, pack.coupled, before.state, before.force, pack.withdrawn)
         return slide_at_points(ahead, before.law(friction.coefficient), solver)
@@ -158,9 +158,7 @@ def slid_to(pack: FoilPackProblem, friction: Friction, before: PathState) -> Pat
     return slide_exactly(pack, friction, before, pack.layout.wall.contacts.line_numbers, solver)
 
 
-def with_points(
-    friction: Friction, pack: FoilPackProblem, nodal: FrictionResult
-) -> RubbingPoints | RubbingLines | None:
+def with_points(friction: Friction, pack: FoilPackProblem, nodal: FrictionResult) -> RubbingPoints | PackOnLines | None:
     """A state with contacts at nodes with contact points or, in 3-D, lines that keep its friction forces.
 
     None where there are none near it, or none are asked for.

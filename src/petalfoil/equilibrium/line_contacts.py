@@ -155,10 +155,15 @@ class LineContacts:
         """Force on the journal that is left under the load, (n_position,); zeros at a fixed position."""
         return np.zeros_like(self.force) if self.load is None else self.force + self.load
 
+    @property
+    def row_scale(self) -> Array:
+        """What each of the rows is compared with, (n,)."""
+        return self.linearized.row_scale
+
     @cached_property
     def residual(self) -> float:
         """Largest scaled residual of (C11), (C12) and the held gaps; a slope counts over a cell."""
-        rows = float(np.max(np.abs(self.rows) / self.linearized.row_scale, initial=0.0))
+        rows = float(np.max(np.abs(self.rows) / self.row_scale, initial=0.0))
         lengths = np.concatenate([self.closed, self.slopes * self.points.cell_length])
         return max(rows, float(np.max(np.abs(lengths), initial=0.0)))
 

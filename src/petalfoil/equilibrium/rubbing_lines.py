@@ -1,19 +1,25 @@
-"""A state of a path with friction on contact lines: displacements, contacts, and what acts at them (3-D)."""
+"""A state of a path with friction on contact lines: film, petals, contacts, and what acts at them (3-D).
+
+wall, film   F(x) - G^T lam - n^T lam_c + B^T T = 0                                        (C11), (M14)
+points       p = 0 ,  p' = 0           at each                                                     (C12)
+"""
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.line_contacts import LineContacts
+from petalfoil.equilibrium.line_contacts import CARRIED, LineContacts
 from petalfoil.physics.dry_friction import Friction
-from petalfoil.system.coupled import CoupledProblem
-from petalfoil.system.foil_pack import FoilPackProblem
-from petalfoil.system.friction import SLIDES, friction_on_lines
+from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, Border, ContactProblem
+from petalfoil.system.friction import SLIDES, against_slip, friction_on_lines, slips
+from petalfoil.system.loaded import load_scale
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -21,64 +27,73 @@ Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class PulledLines(LineContacts):
-    """Contact lines of a pack whose petals rub, under a film at rest.
+class RubbingLines(LineContacts):
+    """A state of a path: film and petals round a journal that is held, or balances a load.
 
     Attributes
     ----------
-    pulls : (n,) array
-        `B^T T` among all unknowns.
+    friction : Friction
+        The law between its petals, in two directions.
+    friction_force : (2, j + k) array
+        Along the petals and along the shaft, of contacts at nodes, then at points.
+    lost : float
+        Energy lost in the step, over the units of force and length [1].
     """
 
-    pulls: Array = field(default_factory=lambda: np.zeros(0), kw_only=True)
+    friction: Friction = field(kw_only=True)
+    friction_force: Array = field(kw_only=True)
+    lost: float = field(default=0.0, kw_only=True)
+
+    @property
+    def equations(self) -> ContactProblem:
+        """Equations that the unknowns are those of."""
+        return self.problem
 
     @cached_property
     def rows(self) -> Array:
         """Residual of (C11) with the friction forces, (n,)."""
         return super().rows + self.pulls
 
-
-@dataclass(frozen=True)
-class RubbingLines(LineContacts):
-    """A state of a path without film; its unknowns are the displacements of the petals.
-
-    Attributes
-    ----------
-    pack : FoilPackProblem
-        The pack round its journal.
-    friction : Friction
-        The law between its petals, in two directions.
-    force : (2, j + k) array
-        Friction forces along the petals and along the shaft, of contacts at nodes, then at points.
-    lost : float
-        Energy lost in the step, over the units of force and length [1].
-    """
-
-    pack: FoilPackProblem = field(kw_only=True)
-    friction: Friction = field(kw_only=True)
-    force: Array = field(kw_only=True)
-    lost: float = field(default=0.0, kw_only=True)
-
     @cached_property
-    def gaps(self) -> Array:
-        """Gaps at all nodes, (m,)."""
-        return self.pack.gaps(self.x)
+    def matrix(self) -> sp.csc_array:
+        """Derivative of the rows by the unknowns, travel of the points included (E12), (n, n)."""
+        return self.motion.steady
+
+    @property
+    def border(self) -> Border:
+        """How the journal's position enters."""
+        return self.motion.border
+
+    @property
+    def forcing(self) -> Array:
+        """Derivative of the rows by the journal's position, (n, d)."""
+        return self.motion.steady_forcing
+
+    @property
+    def border_stiffness(self) -> Array:
+        """What resists the journal beside what the unknowns do (E13), (d, d)."""
+        return np.asarray(self.springs + self.contacts.gradient)
+
+    @property
+    def elimination_key(self) -> Hashable | None:
+        """States with equal keys share their elimination orders."""
+        return self.motion.elimination_key
+
+    @property
+    def force_left(self) -> Array:
+        """Force on the journal that is left where points are where slopes vanish (E13), (d,)."""
+        return np.asarray(self.unbalanced - self.contacts.slope_by_e.T @ (self.travel_stiffness * self.slopes))
+
+    @property
+    def left(self) -> float:
+        """Largest scaled residual; of the force that is left what is over what a solution leaves counts likewise."""
+        force = float(np.linalg.norm(self.unbalanced)) / (1.0 if self.load is None else load_scale(self.load))
+        return max(self.residual, force * RESIDUAL_TOLERANCE / CARRIED)
 
     @property
     def reactions(self) -> Array:
         """Reactions of all contacts, (j + k,)."""
         return np.concatenate([self.held_reaction, self.reaction])
-
-    @cached_property
-    def gap_rows(self) -> sp.csr_array:
-        """Derivatives of the gaps of all contacts, (j + k, n)."""
-        at_nodes = sp.csr_array(self.pack.G[np.flatnonzero(self.held)])
-        return sp.csr_array(sp.vstack([at_nodes, self.points.value @ self.pack.G]))
-
-    @cached_property
-    def slope_rows(self) -> sp.csr_array:
-        """Derivatives of the slopes at the points, (k, n)."""
-        return sp.csr_array(self.points.slope @ self.pack.G)
 
     @cached_property
     def law(self) -> Friction:
@@ -94,23 +109,15 @@ class RubbingLines(LineContacts):
     @property
     def pulls(self) -> Array:
         """`B^T T`, (n,)."""
-        return np.asarray(self.law.slip.T @ self.force.ravel())
-
-    @cached_property
-    def residual(self) -> float:
-        """Largest scaled residual of rows, gaps and slopes; a slope counts over a cell."""
-        linearized = self.pack.linearize(self.x)
-        rows = (linearized.residual - self.gap_rows.T @ self.reactions + self.pulls) / linearized.row_scale
-        lengths = np.concatenate([self.closed, self.slopes * self.points.cell_length])
-        return max(float(np.max(np.abs(rows))), float(np.max(np.abs(lengths), initial=0.0)))
+        return against_slip(self.law, self.friction_force.ravel(), len(self.x))
 
     def slid(self, x: Array) -> Array:
-        """Sizes of the slips of all contacts since displacements `x` (n,), (j + k,)."""
-        return np.asarray(np.linalg.norm((self.law.slip @ (self.x - x)).reshape(2, -1), axis=0))
+        """Sizes of the slips of all contacts since unknowns `x` (n,), (j + k,)."""
+        return np.asarray(np.linalg.norm(slips(self.law, self.x - x).reshape(2, -1), axis=0))
 
     def creep(self, x: Array) -> float:
-        """Largest slip since displacements `x` (n,) of a contact that sticks."""
-        sticks = np.linalg.norm(self.force, axis=0) < (1.0 - SLIDES) * self.limit
+        """Largest slip since unknowns `x` (n,) of a contact that sticks."""
+        sticks = np.linalg.norm(self.friction_force, axis=0) < (1.0 - SLIDES) * self.limit
         return float(np.max(self.slid(x)[sticks], initial=0.0))
 
     def at_gaps(self, forces: Array) -> Array:
@@ -120,7 +127,11 @@ class RubbingLines(LineContacts):
         out[self.held] += forces[:j]
         return out
 
-    def on(self, contacts: LineContacts, force: Array) -> RubbingLines:
+    def shifted(self, change: Array, way: Array) -> Self:
+        """The state after a change of the unknowns (n,) and of the journal's position (d,), contacts as they are."""
+        return replace(self, x=self.x + change, problem=self.problem.at(displacement=self.problem.displacement + way))
+
+    def on(self, contacts: LineContacts, force: Array) -> Self:
         """The state with other contacts, and their friction forces (2, j + k)."""
         return replace(
             self,
@@ -128,16 +139,8 @@ class RubbingLines(LineContacts):
             reaction=contacts.reaction,
             held=contacts.held,
             held_reaction=contacts.held_reaction,
-            force=force,
+            friction_force=force,
         )
-
-    def in_film(self, problem: CoupledProblem) -> PulledLines:
-        """The same under a film at rest, which `problem` has at ambient pressure."""
-        x = problem.layout.ambient(self.x)
-        pulls = np.zeros(len(x))
-        pulls[: len(self.x)] = self.pulls
-        own = self.points, self.reaction, self.held, self.held_reaction
-        return PulledLines(problem, x, *own, load=None, pulls=pulls)
 
 
 def places(state: LineContacts) -> tuple[Index, Array]:
