@@ -2,7 +2,8 @@
 
 Columns of one factor tell what unit friction forces do to film, petals and journal, reactions and slips among it. The
 law of all contacts is then a small dense problem (M6), whose contacts do not open: a reaction that pulls limits
-friction to zero, and leaves by its sign once the stage has settled (`contact_sets.revised`).
+friction to zero, which is (M6) of a contact whose opening is its pull. It leaves by its sign once the stage has
+settled (`contact_sets.revised`).
 """
 
 from __future__ import annotations
@@ -106,8 +107,10 @@ class RubbingTangent(ElementTangent):
             reaction + change[first + rubs] - grip @ force,
             (slip.value + slipped(change))[rubs] - by_force @ force,
         )
-        states = States(held, slips_forward(force, friction.limit(state.points)[rubs]))
-        normal, tangential = (np.zeros(len(rubs)), reaction), (force, slip.value[rubs])
+        # A contact that pulls is known as open by its pull: closed without a reaction it would be at the margins of
+        # three states at once, and the way from what is known would try them one after another.
+        states = States(reaction > 0.0, slips_forward(force, friction.limit(state.points)[rubs]))
+        normal, tangential = (-reaction, reaction), (force, slip.value[rubs])
         found = contact_forces(space, without, KnownForces.of(space, states, normal, tangential))
         if found is None:
             raise NoPointsError("no contacts, sticking or slipping, carry the friction of a stage")

@@ -31,7 +31,8 @@ EVENTS = 120
 """Most changes of state along the way from known forces: some ten are typical, for more a shorter step is cheaper."""
 
 ROUNDING = 1e-10
-"""A quantity of wrong sign this small over the largest of its kind is zero."""
+"""A quantity of wrong sign this small over the largest of its kind is zero; so is this part of the way from what is
+known."""
 
 
 @dataclass(frozen=True)
@@ -188,7 +189,7 @@ def led(space: ContactSpace, constant: tuple[Array, Array], known: KnownForces) 
         if way == 0.0 or (way > 0.0 and part + length[first] >= 1.0):
             break
         part += way * float(length[first])
-        if part < 0.0:
+        if part < -ROUNDING:
             return None
         states, flipped = changed(space, states, first, here.slip + part * rate.slip)
     found = of_states(space, constant, states)
