@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from petalfoil.analysis.static import static
 from petalfoil.case import Case
 from petalfoil.equilibrium import friction_history, point_friction_path
-from petalfoil.equilibrium.contact_sets import listed, packed, revised
+from petalfoil.equilibrium.contact_sets import listed, packed, revised, without_loose
 from petalfoil.equilibrium.continuation import rest
 from petalfoil.equilibrium.element_contacts import with_elements
 from petalfoil.equilibrium.friction_handover import at_nodes
@@ -277,6 +277,28 @@ def test_a_point_that_meets_again_after_it_was_split_stays_one(monkeypatch: pyte
     assert asked == [True, False]
     assert same_contacts(found.state, expected.state)
     assert_allclose(found.state.points.reaction, expected.state.points.reaction, rtol=1e-6, atol=1e-9)
+
+
+def test_points_that_pull_by_themselves_are_given_up_and_stretches_but_by_what_opens() -> None:
+    """Points of a stretch may pull by rounding; one by itself may not, as nothing but its own gap says where it is."""
+    problem = build_problem(rubbing("paper_n8", 0.1, 12)).at(bearing_number=0.0)
+    whole = problem.layout.elements
+    assert whole is not None
+    places, stretch = np.array([1.2, 3.0, 5.0]), np.array([0, 2, 0])
+
+    def left(*reactions: float) -> ContactPoints | None:
+        points = ContactPoints(np.full(3, 9), places, stretch, np.array(reactions))
+        state = PointState(np.zeros(whole.n_wall), np.ones(whole.n_film), points)
+        return without_loose(PackAtPoints.of(whole, problem, state, np.zeros(len(reactions))))
+
+    assert left(1.0, 1.0, 1.0, 1.0, 1.0) is None
+    assert left(1.0, 1.0, -1e-12, 1.0, 1.0) is None
+    alone, torn = left(-1e-12, 1.0, -1e-12, 1.0, 1.0), left(1.0, 1.0, -1.0, 1.0, 1.0)
+    assert alone is not None
+    assert torn is not None
+    assert_allclose(alone.position, places[1:])
+    assert_allclose(alone.reaction, [1.0, 0.0, 1.0, 1.0])
+    assert len(torn.reaction) == 4
 
 
 @pytest.mark.slow

@@ -7,8 +7,12 @@ import pytest
 
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
+from petalfoil.equilibrium.friction_history import assembled
+from petalfoil.equilibrium.point_friction_path import RubbingPoints
 from petalfoil.equilibrium.run_context import running
 from petalfoil.errors import ConvergenceError
+from petalfoil.system.build import build_problem
+from petalfoil.system.friction import friction_of
 from tests.random_packs import random_case
 
 PRESSURE = 0.1
@@ -51,3 +55,21 @@ def test_factorisations_a_step_do_not_grow_with_the_grid(seed: int) -> None:
     assert fine[0]
     assert fine[3] == coarse[3]
     assert fine[1] / fine[2] < 1.5 * coarse[1] / coarse[2]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2])
+def test_stiff_packs_keep_contact_points_while_they_are_assembled(seed: int) -> None:
+    """In a few halves of steps. Half of the contacts of the first pull by little where they are held, and contacts of
+    the second wander along gaps of little curvature: both lost their points, after 62 and 12 halves."""
+    case = rubbing(seed, 12)
+    problem = build_problem(case).at(bearing_number=0.0)
+    friction = friction_of(case, problem.layout)
+    assert friction is not None
+    with running() as run:
+        end = assembled(friction, problem)
+    assert end is not None
+    assert isinstance(end.state, RubbingPoints)
+    assert end.at_points == end.steps
+    assert end.state.residual < 1e-8
+    assert sum(event.get("outcome") == "halved" for event in run.history) <= 10

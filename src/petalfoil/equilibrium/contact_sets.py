@@ -142,10 +142,30 @@ def revised(
     pulling = points.reaction < -least_pull(equations, max(part * PULL, error))
     if not released.any() and not fresh and not pulling.any():
         return None
-    contacts = listed(replace(points, reaction=np.where(pulling, points.reaction, np.maximum(points.reaction, 0.0))))
+    contacts = marked(points, pulling)
     for k in np.flatnonzero(released):
         contacts[k].position += 2.0 * MEETING if contacts[k].position == 0.0 else -2.0 * MEETING
     return packed(without_pulling(with_fresh(contacts, fresh, splitting=splitting)))
+
+
+def marked(points: ContactPoints, pulling: Mask) -> list[TravellingContact]:
+    """The contacts one by one, of which those `pulling` (j,) alone have reactions below zero."""
+    return listed(replace(points, reaction=np.where(pulling, points.reaction, np.maximum(points.reaction, 0.0))))
+
+
+def without_loose(equations: PointEquations) -> ContactPoints | None:
+    """The contacts without those that pull while Newton's method does not settle; None if none does.
+
+    A contact by itself that pulls wanders along its gap, however little it pulls. In stretches reactions of this size
+    may have either sign.
+    """
+    points = equations.state.points
+    alone = np.ones(len(points.reaction), dtype=bool)
+    stretches = np.flatnonzero(points.inner)
+    for first, last in zip(points.ends[stretches], points.ends[stretches + 1], strict=True):
+        alone[first : last + 1] = False
+    loose = points.reaction < np.where(alone, 0.0, -least_pull(equations, PULL))
+    return packed(without_pulling(marked(points, loose))) if loose.any() else None
 
 
 def least_pull(equations: PointEquations, opening: float) -> Array:
