@@ -111,8 +111,8 @@ def test_contact_lines_that_come_and_go_take_the_factorisations_of_contacts_at_n
 
 @pytest.mark.slow
 def test_points_that_split_and_meet_again_stay_points() -> None:
-    """From turn 26 to 34 light contacts travel over several elements: points in 94 % of the steps, 247 factorisations on
-    one processor and 368 on another, whose sums round otherwise.
+    """From turn 26 to 34 light contacts travel over several elements: points in 94 % of the steps, 247 factorisations
+    on one processor and 368 on another, whose sums round otherwise.
 
     Where they split each time that a gap closed beside them, points were lost for ten turns after 500.
     """
