@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -11,18 +12,19 @@ from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
 from petalfoil.analysis.coefficients import coefficients
+from petalfoil.analysis.harmonics_bars import harmonics_bar
 from petalfoil.analysis.operating_point import operating_point
 from petalfoil.analysis.rotor_on_bearings import RotorOnBearings
-from petalfoil.analysis.stability import harmonics_told, stability
+from petalfoil.analysis.stability import harmonics_told, mode_fields, stability
 from petalfoil.case import Case
 from petalfoil.dynamics.critical_mass import Whirl
 from petalfoil.dynamics.eigenpairs import Eigenpair
 from petalfoil.dynamics.more_harmonics import bettered
 from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.dynamics.rotor_motion import Inertia
-from petalfoil.dynamics.rubbing_cycle import CHANGE, ONE_HARMONIC, HarmonicsTold, RubbingCycle
+from petalfoil.dynamics.rubbing_cycle import CHANGE, ONE_HARMONIC, FollowedSlips, HarmonicsTold, RubbingCycle
 from petalfoil.dynamics.rubbing_modes import NeutralWhirls, RubbingMode, RubbingNeutral, RubbingRotor
-from petalfoil.dynamics.rubbing_whirl import RubbingResponse, RubbingWhirl
+from petalfoil.dynamics.rubbing_whirl import ONE_LEAVES, HarmonicsLeft, RubbingResponse, RubbingWhirl
 from petalfoil.equilibrium.run_context import current_run, running
 from petalfoil.results.record import Record
 from tests.cases import case
@@ -61,7 +63,7 @@ def along_x(*, spatial: bool = False) -> RubbingRotor:
     return RubbingRotor(rubbing(spatial=spatial), inertia, SPEED)
 
 
-def mode_along_x(*, spatial: bool = False) -> tuple[Eigenpair, HarmonicsTold, Eigenpair]:
+def mode_along_x(*, spatial: bool = False) -> tuple[Eigenpair, HarmonicsLeft, Eigenpair]:
     """Its mode with as many harmonics as it needs, how many, and with one."""
     rotor = along_x(spatial=spatial)
     one = rotor.near((-0.02 + 0.065j, np.array([1.0, 0.0], dtype=complex)))
@@ -93,7 +95,7 @@ def test_the_resistance_to_a_motion_along_an_axis_is_a_column_of_stiffness_and_d
 def test_a_mode_along_a_line_solves_its_equation_with_the_cycle_of_coefficients(spatial: bool) -> None:
     """(E19) at its complex frequency, formed anew and with as many harmonics as that finds enough, to 1e-6."""
     with running():
-        several, told, one = mode_along_x(spatial=spatial)
+        several, left_over, one = mode_along_x(spatial=spatial)
         bearing_ = rubbing(spatial=spatial).bearings[0]
         assert bearing_.sliding is not None
         left = []
@@ -103,6 +105,7 @@ def test_a_mode_along_a_line_solves_its_equation_with_the_cycle_of_coefficients(
             gradient = cycle.force_gradient()
             inert = MASS * (SPEED * found.number) ** 2
             left.append(abs(inert - whirl.stiffness_unit * gradient.force[0, 0]) / abs(inert))
+    told = left_over.told
     assert told.friction_harmonics == gradient.told.friction_harmonics >= 8
     assert told.friction_harmonics_change <= CHANGE
     assert left[0] < 1e-6
@@ -117,14 +120,79 @@ def test_a_neutral_whirl_is_a_mode_that_neither_grows_nor_dies_out() -> None:
         neutral = NeutralWhirls(whirl, Inertia.of_mass(MASS), SPEED)
         one = neutral.near(0.1, next(neutral.shapes(0.1)))
         assert one is not None
-        several, told = bettered(whirl, one, neutral.near_in)
-        assert told.friction_harmonics >= 8
+        several, left = bettered(whirl, one, neutral.near_in)
+        assert left.told.friction_harmonics >= 8
         inertia = Inertia.of_mass(several.mass)
         mode = RubbingRotor(whirl.with_enough(several.motion), inertia, SPEED).near(several.motion)
         same = RubbingRotor(whirl, inertia, SPEED).near(several.motion)
     assert mode is not None
     assert mode.number == pytest.approx(1j * several.ratio, abs=1e-6)
     assert same is None or abs(same.number - mode.number) > 1e-3
+
+
+def in_so_many(whirl: RubbingWhirl, harmonics: int) -> RubbingWhirl:
+    """Slips in so many harmonics, enough or not."""
+    return replace(whirl, bearings=tuple(replace(one, several=FollowedSlips(harmonics)) for one in whirl.bearings))
+
+
+@pytest.mark.slow
+def test_what_half_as_many_harmonics_change_of_a_mode_is_its_distance_from_that_with_half_as_many() -> None:
+    """Both by solving for it, where the record has it to first order."""
+    with running():
+        rotor, found = along_x(), []
+        known = rotor.near((-0.02 + 0.065j, np.array([1.0, 0.0], dtype=complex)))
+        for harmonics in (4, 8, 16):
+            assert known is not None
+            several = in_so_many(rotor.whirl, harmonics)
+            known = rotor.near_in(several, known)
+            assert known is not None
+            found.append(rotor.mode(known, several.left(known.motion)))
+    for half, mode in pairwise(found):
+        assert mode.change == pytest.approx(mode.s - half.s, rel=1e-2)
+        frequency, growth, ratio = mode.changes(SPEED)
+        assert (growth, frequency) == (pytest.approx(SPEED * mode.change.real), pytest.approx(SPEED * mode.change.imag))
+        assert ratio == pytest.approx(mode.damping_ratio - half.damping_ratio, rel=1e-2)
+
+
+@pytest.mark.slow
+def test_what_half_as_many_harmonics_change_of_a_neutral_whirl_is_its_distance_from_that_with_half_as_many() -> None:
+    with running():
+        whirl, found = RubbingWhirl.of(stuck().motion, 2e-6), []
+        neutral = NeutralWhirls(whirl, Inertia.of_mass(MASS), SPEED)
+        known = neutral.near(0.1, next(neutral.shapes(0.1)))
+        for harmonics in (8, 16):
+            assert known is not None
+            several = in_so_many(whirl, harmonics)
+            known = neutral.near_in(several, known)
+            assert known is not None
+            found.append(known.leaving(several.left(known.motion)))
+    half, here = found
+    assert here.mass_change == pytest.approx(here.mass - half.mass, rel=5e-2)
+    assert here.ratio_change == pytest.approx(here.ratio - half.ratio, rel=5e-2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("amplitude", [10e-6, 50e-6])
+def test_what_harmonics_leave_in_the_bars_of_a_mode_holds_against_64_of_them(amplitude: float) -> None:
+    """Of a mode along x, at sixteen frequencies of their own in place of three."""
+    modes = []
+    with running():
+        for least in (0, 64):
+            rotor = replace(along_x(), whirl=RubbingWhirl.of(stuck().motion, amplitude, least))
+            v = np.array([1.0, 0.0], dtype=complex)
+            stiffness = rotor.whirl.resistance(rotor.whirl.at(0.1j), v)[0]
+            known = rotor.near((1j * np.sqrt(stiffness / MASS) / SPEED, v))
+            assert known is not None
+            modes.append(rotor.mode(*bettered(rotor.whirl, known, rotor.near_in)))
+    few, many = modes
+    assert few.told.friction_harmonics < many.told.friction_harmonics == 64
+    fields, coords = mode_fields([few], SPEED, tilts=False)
+    record = Record(analysis="stability", scalars={}, fields=fields, coords=coords, case_toml=bearing().to_toml())
+    better, _ = mode_fields([many], SPEED, tilts=False)
+    for name in ("natural_frequency", "mode_growth_rate", "damping_ratio"):
+        bar = harmonics_bar(name, record)
+        assert bar is not None
+        assert abs(better[name] - fields[name]) <= bar < 0.02 * abs(fields[name])
 
 
 @pytest.mark.slow
@@ -134,12 +202,12 @@ def test_what_several_harmonics_do_not_solve_keeps_one_and_says_so(monkeypatch: 
     with running():
         one = rotor.near((-0.02 + 0.065j, v))
         assert one is not None
-        assert bettered(rotor.whirl, one, lambda _, __: None) == (one, ONE_HARMONIC)
+        assert bettered(rotor.whirl, one, lambda _, __: None) == (one, ONE_LEAVES)
         monkeypatch.setattr("petalfoil.dynamics.more_harmonics.CHANGE", 0.0)
         monkeypatch.setattr("petalfoil.dynamics.more_harmonics.ROUNDS", 1)
-        assert bettered(rotor.whirl, one, lambda _, known: known) == (one, ONE_HARMONIC)
+        assert bettered(rotor.whirl, one, lambda _, known: known) == (one, ONE_LEAVES)
         monkeypatch.setattr("petalfoil.dynamics.friction_harmonics.STEPS", 1)
-        assert bettered(rotor.whirl, one, rotor.near_in) == (one, ONE_HARMONIC)
+        assert bettered(rotor.whirl, one, rotor.near_in) == (one, ONE_LEAVES)
         told = [str(row["outcome"]) for row in current_run().history if row["phase"] == "one harmonic"]
     assert len(told) == 3
     for outcome, words in zip(told, ("none is found", "does not settle", "do not agree with their slips"), strict=True):
@@ -162,7 +230,7 @@ def test_a_mode_that_is_not_found_again_has_ended_in_a_fold(monkeypatch: pytest.
         rotor = replace(along_x(), whirl=RubbingWhirl.of(stuck().motion, 5e-6), inertia=Inertia.of_mass(MASS))
         found = rotor.near((-0.0085945 + 0.0888382j, np.array([0.126943 - 0.232271j, 1.0])))
         assert found is not None
-        assert bettered(rotor.whirl, found, rotor.near_in) == (found, ONE_HARMONIC)
+        assert bettered(rotor.whirl, found, rotor.near_in) == (found, ONE_LEAVES)
         several = replace(rotor, whirl=rotor.whirl.with_enough(found.motion))
         monkeypatch.setattr(RubbingResponse, "friction", mixed)
         regular = []
@@ -196,7 +264,7 @@ def mode_with(told: HarmonicsTold) -> RubbingMode:
 def test_modes_of_large_cycles_are_less_damped_than_one_harmonic_says(monkeypatch: pytest.MonkeyPatch) -> None:
     """By 10 to 35 % at 10 um; the record tells the harmonics."""
     several = stability.record(bearing(), load=LOAD, mass=MASS, amplitude=RUBS)
-    monkeypatch.setattr("petalfoil.dynamics.rubbing_modes.bettered", lambda _, found, __: (found, ONE_HARMONIC))
+    monkeypatch.setattr("petalfoil.dynamics.rubbing_modes.bettered", lambda _, found, __: (found, ONE_LEAVES))
     one = stability.record(bearing(), load=LOAD, mass=MASS, amplitude=RUBS)
     assert several.scalars["friction_harmonics"] == 8
     assert 0.0 < several.scalars["friction_harmonics_change"] <= CHANGE

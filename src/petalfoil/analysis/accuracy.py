@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from petalfoil.analysis.grid_study import grid_of, grid_text, on_grid, unknowns
-from petalfoil.analysis.harmonics_bars import harmonics_bar
+from petalfoil.analysis.harmonics_bars import harmonics_bar, scalar_harmonics_bar
 from petalfoil.case import Case, ModelKind
 from petalfoil.results.record import Record
 from petalfoil.results.schema import FIELDS, SCALARS
@@ -135,14 +135,15 @@ def relative_bars(record: Record) -> dict[str, RelativeBar]:
     shown = {*in_order(errors), *OWN_ROWS}
     for name, error in errors.items():
         if name in shown:
-            bars[shown_as(name).label] = RelativeBar(_over(error, size_of(name, record.scalars)))
+            size, by_harmonics = size_of(name, record.scalars), scalar_harmonics_bar(name, record)
+            bars[shown_as(name).label] = RelativeBar(_over(error, size), _over(by_harmonics, size))
     for name, values in record.fields.items():
         if f"{name}_error" in FIELDS and f"{name}_error" in record.fields:
             errors_of = record.fields[f"{name}_error"].astype(float)
             if errors_of.size:
                 size, part = float(np.max(np.abs(values.astype(float)))), harmonics_bar(name, record)
-                by_harmonics = 0.0 if part is None else _over(float(np.max(part)), size)
-                bars[FIELDS[name].long_name] = RelativeBar(_over(float(np.max(errors_of)), size), by_harmonics)
+                whole, of_harmonics = float(np.max(errors_of)), 0.0 if part is None else float(np.max(part))
+                bars[FIELDS[name].long_name] = RelativeBar(_over(whole, size), _over(of_harmonics, size))
     return bars
 
 

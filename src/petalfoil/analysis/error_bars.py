@@ -24,7 +24,7 @@ from petalfoil.analysis.grid_study import (
     of_one_size,
     unknowns,
 )
-from petalfoil.analysis.harmonics_bars import harmonics_bar, is_matrix
+from petalfoil.analysis.harmonics_bars import harmonics_bar, harmonics_bars, is_matrix
 from petalfoil.analysis.rotor_verdict import neutral_by_error
 from petalfoil.analysis.runs import Run
 from petalfoil.case import Case, warnings_of_errors
@@ -146,7 +146,7 @@ def barred(record: Record, number: int, answers: Answers) -> Record:
     if not record.converged:
         return record
     try:
-        errors = error_bars(record, on_grid)
+        errors = harmonics_bars(record, error_bars(record, on_grid))
     except ConvergenceError as failure:
         return replace(record, errors={}, remarks=(*record.remarks, f"no error bars: {failure}"))
     told = (*record.warnings, *warnings_of_errors(record.scalars, errors))

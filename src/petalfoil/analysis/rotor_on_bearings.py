@@ -47,11 +47,14 @@ class RotorOnBearings:
         Mass of the rotor [kg]; nan where none is known.
     amplitude : float or None
         Amplitude of the whirl at which petals rub [m]; None where they stick.
+    harmonics : int
+        Fewest harmonics of their slips; 0 for as many as they need.
     """
 
     case: Case
     mass: float
     amplitude: float | None = None
+    harmonics: int = 0
 
     @cached_property
     def inertia(self) -> Inertia:
@@ -129,13 +132,15 @@ class RotorOnBearings:
         if self.amplitude is None:
             return neutral_whirl(impedance, speed, None if self.case.bearings == 1 else self.inertia)
         inertia = Inertia.of_mass(1.0) if self.case.bearings == 1 else self.inertia
-        return NeutralWhirls(RubbingWhirl.of(impedance.motion, self.amplitude), inertia, speed).least()
+        rubbing = RubbingWhirl.of(impedance.motion, self.amplitude, self.harmonics)
+        return NeutralWhirls(rubbing, inertia, speed).least()
 
     def modes(self, impedance: Impedance, speed: float) -> list[Mode]:
         """The natural modes at a speed [rad/s], and at the amplitude if there is one."""
         if self.amplitude is None:
             return natural_modes(impedance, self.inertia, speed)
-        return [*RubbingRotor(RubbingWhirl.of(impedance.motion, self.amplitude), self.inertia, speed).modes(impedance)]
+        rubbing = RubbingWhirl.of(impedance.motion, self.amplitude, self.harmonics)
+        return [*RubbingRotor(rubbing, self.inertia, speed).modes(impedance)]
 
     def deciding_modes(self, whirl: Whirl, impedance: Impedance, speed: float) -> list[Mode] | None:
         """The modes where no mass is critical, for they decide there; None where one is, or the mass is unknown."""

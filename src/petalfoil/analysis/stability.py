@@ -13,7 +13,14 @@ import numpy as np
 from petalfoil.analysis.arguments import Load, Loads, Mass, Speed, Speeds
 from petalfoil.analysis.campbell import BRANCHES, CRITICAL, Branches
 from petalfoil.analysis.classic_method import newton_only
-from petalfoil.analysis.coefficients import Amplitude, Amplitudes, check_rubbing, state_parts
+from petalfoil.analysis.coefficients import (
+    Amplitude,
+    Amplitudes,
+    Harmonics,
+    check_harmonics,
+    check_rubbing,
+    state_parts,
+)
 from petalfoil.analysis.contact_model import ContactModel
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.operating_point import OperatingPoint, Vector, applied_load, at, operating_point
@@ -48,6 +55,12 @@ HARMONICS = "mode_friction_harmonics"
 """The same at an amplitude."""
 MODE_BARS = ("natural_frequency_error", "mode_growth_rate_error", "damping_ratio_error")
 """Their error bars."""
+MODE_CHANGES = (
+    "natural_frequency_harmonics_change",
+    "mode_growth_rate_harmonics_change",
+    "damping_ratio_harmonics_change",
+)
+"""What half as many harmonics of slips change of them, at an amplitude."""
 
 
 def barred(name: str, record: Record, mode: int, shown_as: str = "") -> Cell:
@@ -128,6 +141,30 @@ class CriticalMass:
 
 
 @dataclass(frozen=True)
+class WhirlChanges:
+    """By how much critical mass and its whirl ratio differ from those with half as many harmonics of the slips."""
+
+    critical_mass_harmonics_change: float
+    whirl_ratio_harmonics_change: float
+
+    @classmethod
+    def of(cls, whirl: Whirl) -> WhirlChanges:
+        """Of a neutral whirl; not known (nan) with one harmonic, or where none is found."""
+        if isinstance(whirl, RubbingNeutral):
+            return cls(whirl.mass_change, whirl.ratio_change)
+        return cls(math.nan, math.nan)
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What the rotor is, and how it whirls: mass [kg], amplitude [m], fewest harmonics of the slips; each if given."""
+
+    mass: float | None
+    amplitude: float | None
+    harmonics: int | None
+
+
+@dataclass(frozen=True)
 class RotorMass:
     """The rotor."""
 
@@ -143,10 +180,16 @@ class RotorThreshold:
 
 
 @analysis(
-    SinglePoint(lists=MODES, histories=(TILT, HARMONICS, *MODE_BARS), table=MODE_TABLE),
+    SinglePoint(lists=MODES, histories=(TILT, HARMONICS, *MODE_CHANGES, *MODE_BARS), table=MODE_TABLE),
     GRID,
     Campbell(lists=(*MODES, CRITICAL), histories=(TILT,), table=CAMPBELL_TABLE, at=at_speed),
-    excludes={"speed": ("speeds",), "load": ("loads",), "mass": ("loads",), "amplitude": ("speeds", "loads")},
+    excludes={
+        "speed": ("speeds",),
+        "load": ("loads",),
+        "mass": ("loads",),
+        "amplitude": ("speeds", "loads"),
+        "harmonics": ("speeds", "loads"),
+    },
     results={CRITICAL: Variable(("mode",), "rad s-1", "speed at which the natural frequency is the speed", "omega_c")},
     error_bars=True,
 )
@@ -159,6 +202,7 @@ def stability(  # noqa: PLR0913 - the options of the verb
     speeds: Speeds = None,
     loads: Loads = None,
     amplitude: Amplitude = None,
+    harmonics: Harmonics = None,
     progress: Progress | None = None,
 ) -> Record | Points:
     """Find critical mass, threshold speed and damped natural frequencies of a rigid rotor.
@@ -167,8 +211,6 @@ def stability(  # noqa: PLR0913 - the options of the verb
     --speeds or --loads as a table over load and speed. Petals with friction
     stick, as in the smallest motions; with an --amplitude they rub: modes
     pass that amplitude, and a rotor of the critical mass whirls on with it.
-    In 3-D their slips are taken for sines, as several harmonics of a mode cost
-    eight times as much; `coefficients` with an amplitude has them.
     Where the row "contacts" says "at nodes" and petals lie on each other
     along a stretch, frequencies are accurate to several per cent, a small
     damping to 50 %. A case without rotor.span is one bearing, and masses are
@@ -182,15 +224,17 @@ def stability(  # noqa: PLR0913 - the options of the verb
     Raises
     ------
     UsageError
-        The shaft does not turn, there is no load where a table needs one, or nothing rubs at an amplitude.
+        The shaft does not turn, there is no load where a table needs one, nothing rubs at an amplitude, or harmonics
+        are given without one.
     ConvergenceError
         The operating point was not found, or the pack is bottomed out.
     """
     newton_only(case)
+    check_harmonics(amplitude, harmonics)
     if speeds is None and loads is None:
         if amplitude is not None:
             check_rubbing(case)
-        return point(turning(at(case, speed)), load, (mass, amplitude), progress)
+        return point(turning(at(case, speed)), load, Wanted(mass, amplitude, harmonics), progress)
     if speeds is not None and mass is not None:
         over = [turning(at(case, omega)) for omega in speeds]
         return Points(partial(_campbell, over, load, mass, progress), len(over), layout=Campbell)
@@ -207,18 +251,16 @@ def turning(case: Case) -> Case:
     return case
 
 
-def point(
-    case: Case, load: Vector | None, rotor_asked: tuple[float | None, float | None], progress: Progress | None
-) -> Record:
+def point(case: Case, load: Vector | None, wanted: Wanted, progress: Progress | None) -> Record:
     """Critical mass at the operating point, the speed at which the rotor becomes unstable, and its modes.
 
-    `rotor_asked` are its mass [kg] and the amplitude [m] of its whirl. Without a mass that of the case's rotor is
-    taken, without one the load over gravity; without a load there are no threshold speed (nan) and no modes.
+    Without a mass that of the case's rotor is taken, without one the load over gravity; without a load there are no
+    threshold speed (nan) and no modes.
     """
-    mass, amplitude = rotor_asked
     with running(progress, "stability") as run:
-        speed = case.operation.speed
-        rotor = RotorOnBearings(whole_length(case), rotor_mass(case, load, mass), amplitude)
+        speed, amplitude = case.operation.speed, wanted.amplitude
+        mass = rotor_mass(case, load, wanted.mass)
+        rotor = RotorOnBearings(whole_length(case), mass, amplitude, wanted.harmonics or 0)
         found = operating_point(rotor.case, load)
         impedance = rotor.impedance(found.answer)
         whirl = rotor.whirl(impedance, speed)
@@ -233,7 +275,7 @@ def point(
         parts = (
             *(() if amplitude is not None else (RotorVerdict.of(case, whirl, rotor.mass, modes),)),
             RotorThreshold(rotor.mass, threshold),
-            *(() if amplitude is None else (Amplitudes(amplitude), harmonics_told(whirl, modes))),
+            *(() if amplitude is None else at_amplitude(amplitude, whirl, modes)),
             *whirl_parts(case, found, whirl, ended, modes),
             ContactModel.of_motion(impedance.motion),
             effort(run.seconds),
@@ -263,6 +305,11 @@ def whirl_parts(
     return *state_parts(case, found), CriticalMass(whirl.mass, whirl.ratio), outcome
 
 
+def at_amplitude(amplitude: float, whirl: Whirl, modes: Sequence[Mode] | None) -> tuple[object, ...]:
+    """What is told of petals that rub."""
+    return Amplitudes(amplitude), harmonics_told(whirl, modes), WhirlChanges.of(whirl)
+
+
 def harmonics_told(whirl: Whirl, modes: Sequence[Mode] | None) -> HarmonicsTold:
     """Harmonics of the slips in the critical whirl and the modes: the fewest."""
     told = [one.told for one in (whirl, *(modes or ())) if isinstance(one, RubbingNeutral | RubbingMode)]
@@ -285,9 +332,11 @@ def mode_fields(modes: list[Mode], speed: float, *, tilts: bool) -> tuple[dict[s
     }
     if tilts:
         values[TILT] = [mode.tilt for mode in modes]
-    rubbing = [float(mode.told.friction_harmonics) for mode in modes if isinstance(mode, RubbingMode)]
+    rubbing = [mode for mode in modes if isinstance(mode, RubbingMode)]
     if rubbing:
-        values[HARMONICS] = rubbing
+        changes = zip(*(mode.changes(speed) for mode in rubbing), strict=True)
+        values[HARMONICS] = [float(mode.told.friction_harmonics) for mode in rubbing]
+        values |= {name: list(each) for name, each in zip(MODE_CHANGES, changes, strict=True)}
     fields: dict[str, Array] = {name: np.array(each, dtype=float) for name, each in values.items()}
     return fields, {"mode": np.arange(1, len(modes) + 1)}
 

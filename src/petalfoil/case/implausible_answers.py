@@ -88,9 +88,9 @@ def of_answer(case: Case, scalars: Scalars) -> Iterator[str]:
     yield from _path_at_nodes(case, scalars)
     if number(scalars, "friction_harmonics") == 1.0:
         yield (
-            "friction_harmonics: slips of petals that rub were taken for sines, as they are with many contacts, "
-            "in the modes of 3-D models, and in modes that are lost with more harmonics: where contacts stick and "
-            "slip in turn damping is off by up to a third; compare `coefficients --amplitude` on a coarser grid"
+            "friction_harmonics: slips of petals that rub were taken for sines, as they are with many contacts "
+            "and in modes that are lost with more harmonics: where contacts stick and slip in turn "
+            "damping is off by up to a third; compare `coefficients --amplitude` on a coarser grid"
         )
     yield from _short_lines(case, scalars)
     apart = number(scalars, "nodal_force_difference")

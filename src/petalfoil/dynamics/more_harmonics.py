@@ -8,8 +8,8 @@ from typing import Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.dynamics.rubbing_cycle import CHANGE, MOST, ONE_HARMONIC, HarmonicsTold
-from petalfoil.dynamics.rubbing_whirl import RubbingWhirl
+from petalfoil.dynamics.rubbing_cycle import CHANGE, MOST
+from petalfoil.dynamics.rubbing_whirl import ONE_LEAVES, HarmonicsLeft, RubbingWhirl
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.errors import ConvergenceError
 
@@ -32,14 +32,14 @@ Found = TypeVar("Found", bound=FreeWhirl)
 
 def bettered(
     whirl: RubbingWhirl, found: Found, near: Callable[[RubbingWhirl, Found], Found | None]
-) -> tuple[Found, HarmonicsTold]:
-    """The whirl near one of one harmonic, and the harmonics of its slips; the one of one harmonic where none is found.
+) -> tuple[Found, HarmonicsLeft]:
+    """The whirl near one of one harmonic, and what its harmonics leave; the one of one harmonic where none is found.
 
     `near` solves (E19) near a whirl. The number of harmonics is that which the start needs. Where the solution needs
     more, it is begun with again.
     """
     if not whirl.takes_several:
-        return found, ONE_HARMONIC
+        return found, ONE_LEAVES
     here, outcome = found, "none is found near it with several"
     try:
         for _ in range(ROUNDS):
@@ -47,12 +47,12 @@ def bettered(
             better = near(several, here)
             if better is None:
                 break
-            told, here = several.told(better.motion), better
-            if told.friction_harmonics_change <= CHANGE or told.friction_harmonics >= MOST:
-                return better, told
+            left, here = several.left(better.motion), better
+            if left.told.friction_harmonics_change <= CHANGE or left.told.friction_harmonics >= MOST:
+                return better, left
         else:
             outcome = "their number does not settle"
     except ConvergenceError as failure:
         outcome = str(failure)
     current_run().note("one harmonic", s=f"{found.motion[0]:.6g}", outcome=outcome)
-    return found, ONE_HARMONIC
+    return found, ONE_LEAVES

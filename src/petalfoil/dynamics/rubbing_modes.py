@@ -25,7 +25,7 @@ from petalfoil.dynamics.natural_modes import APART, Mode, natural_modes, orbit, 
 from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.dynamics.rotor_motion import Inertia
 from petalfoil.dynamics.rubbing_cycle import ONE_HARMONIC, HarmonicsTold
-from petalfoil.dynamics.rubbing_whirl import IN_PLANE, RubbingWhirl
+from petalfoil.dynamics.rubbing_whirl import IN_PLANE, ONE_LEAVES, HarmonicsLeft, RubbingWhirl
 from petalfoil.equilibrium.run_context import current_run
 
 Array = NDArray[np.float64]
@@ -49,9 +49,17 @@ class RubbingMode(Mode):
     ----------
     told : HarmonicsTold
         Harmonics of its slips.
+    change : complex
+        By how much `s` differs from that with half as many, to first order; nan with one.
     """
 
     told: HarmonicsTold
+    change: complex = complex(math.nan, math.nan)
+
+    def changes(self, speed: float) -> tuple[float, float, float]:
+        """The same of natural frequency [rad/s], growth rate [1/s] and damping ratio [1], at a speed [rad/s]."""
+        half = self.s - self.change
+        return self.change.imag * speed, self.change.real * speed, self.damping_ratio + half.real / abs(half)
 
 
 @dataclass(frozen=True)
@@ -65,17 +73,35 @@ class RubbingNeutral(Whirl):
     told : HarmonicsTold
         Harmonics of its slips.
     slope : (2 d, 2 d) array
-        Derivative of the real residual by the logarithms of ratio and mass, and by the shape.
+        Derivative of the real residual by the logarithms of ratio and of mass times its square, and by the shape.
+    mass_change, ratio_change : float
+        By how much mass [kg] and ratio differ from those with half as many, to first order; nan with one.
     """
 
     v: Complex
     told: HarmonicsTold
     slope: Array
+    mass_change: float = math.nan
+    ratio_change: float = math.nan
 
     @property
     def motion(self) -> tuple[complex, Complex]:
         """`s` and `v`."""
         return 1j * self.ratio, self.v
+
+    def leaving(self, left: HarmonicsLeft) -> RubbingNeutral:
+        """The same with what its harmonics leave."""
+        if left.resistance is None:
+            return replace(self, told=left.told)
+        by_ratio, by_inertia = moved_by(self.slope, left.resistance)
+        mass_change = self.mass * (by_inertia - 2.0 * by_ratio)  # of mass times the square of the ratio
+        return replace(self, told=left.told, mass_change=mass_change, ratio_change=self.ratio * by_ratio)
+
+
+def moved_by(slope: Array, change: Complex) -> tuple[float, float]:
+    """Both parts of the number by which a solution moves where the residual changes by `change`, to first order."""
+    moved = np.linalg.solve(slope, -np.concatenate([change.real, change.imag]))
+    return float(moved[0]), float(moved[len(moved) // 2])
 
 
 # ------------------------------------------------------------------------------------------ natural modes
@@ -116,9 +142,9 @@ class RubbingRotor:
         every += [self.near(start) for start in self.starts(whirl_impedance(self.whirl.frictionless))]
         known = [one for one in every if one is not None]
         every += [self.near((one.number, across(one.v))) for one in known]
-        alone = apart((self.mode(one, ONE_HARMONIC), one) for one in every if one is not None)
+        alone = apart((self.mode(one, ONE_LEAVES), one) for one in every if one is not None)
         better = [bettered(self.whirl, one, self.near_in) for _, one in alone]
-        kept = apart((self.mode(one, told), one) for one, told in better)
+        kept = apart((self.mode(one, left), one) for one, left in better)
         modes = [mode for mode, _ in kept if shows(mode.s)]
         lost, joined = sum(one is None for one in every), len(alone) - len(kept)
         current_run().note("modes", found=len(modes), lost=lost, joined=joined)
@@ -160,13 +186,15 @@ class RubbingRotor:
             start = found.number, found.v
         return found
 
-    def mode(self, found: Eigenpair, told: HarmonicsTold) -> RubbingMode:
+    def mode(self, found: Eigenpair, left: HarmonicsLeft) -> RubbingMode:
         """A solution as a mode. Its participation (E9) is that of the nonlinear equations, the amplitude held."""
-        by_mass = self.inert(found.number) @ found.v
-        moved = np.linalg.solve(found.slope, -np.concatenate([by_mass.real, by_mass.imag]))
-        change = found.unit * complex(moved[0], moved[len(moved) // 2])
-        share = 2.0 * abs(change / found.number)
-        return RubbingMode(upper(found.number), share, orbit(found.v), tilt_of(found.v), told)
+        by_mass = found.unit * complex(*moved_by(found.slope, self.inert(found.number) @ found.v))
+        share = 2.0 * abs(by_mass / found.number)
+        mode = RubbingMode(upper(found.number), share, orbit(found.v), tilt_of(found.v), left.told)
+        if left.resistance is None:
+            return mode
+        change = found.unit * complex(*moved_by(found.slope, left.resistance))
+        return replace(mode, change=change if found.number.imag > 0.0 else change.conjugate())
 
 
 def apart(modes: Iterable[tuple[RubbingMode, Eigenpair]]) -> list[tuple[RubbingMode, Eigenpair]]:
@@ -212,7 +240,7 @@ class NeutralWhirls:
         for whirl in (one for one in found if one is not None):
             if not any(alike(whirl, other) for other in alone):
                 alone.append(whirl)
-        better = [replace(one, told=told) for one, told in (bettered(self.whirl, one, self.near_in) for one in alone)]
+        better = [one.leaving(left) for one, left in (bettered(self.whirl, one, self.near_in) for one in alone)]
         return min(better, key=lambda one: one.mass, default=Whirl(np.inf, np.nan))
 
     def near_in(self, whirl: RubbingWhirl, known: RubbingNeutral) -> RubbingNeutral | None:

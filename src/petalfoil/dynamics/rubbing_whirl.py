@@ -31,6 +31,26 @@ IN_PLANE = slice(0, 2)
 """Coordinates of a journal's centre; slopes of its axis follow."""
 
 
+@dataclass(frozen=True)
+class HarmonicsLeft:
+    """What the harmonics of slips in a whirl leave.
+
+    Attributes
+    ----------
+    told : HarmonicsTold
+        Harmonics, and what half as many change.
+    resistance : (d,) array or None
+        What resists the motion more than with half as many, for each unit of its shape [N/m]; None with one harmonic.
+    """
+
+    told: HarmonicsTold
+    resistance: Complex | None
+
+
+ONE_LEAVES = HarmonicsLeft(ONE_HARMONIC, None)
+"""Of slips with one harmonic, which has no half."""
+
+
 def half_axis(v: Complex) -> float:
     """Major half axis of the ellipse `Re(v exp(i tau))`, v of shape (2,)."""
     return float(np.sqrt(0.5 * (np.linalg.norm(v) ** 2 + abs(v @ v))))
@@ -134,12 +154,16 @@ class RubbingResponse:
         ConvergenceError
             Slips and friction did not agree.
         """
-        unit, arm, sliding = self.bearing.units[1], self.bearing.by_shaft, self.bearing.sliding
+        sliding = self.bearing.sliding
         total = self.response.force_gradient @ self.displacement(v)
         if sliding is not None:
             against = against_slip(sliding.friction, self.friction(v, scale), len(self.response.units))
             total = total + self.response.forced(-against)[1]
-        return np.asarray(unit * (arm.T @ total), dtype=np.complex128)
+        return self.on_shaft(total)
+
+    def on_shaft(self, force: Complex) -> Complex:
+        """A force on the journal as one on the shaft, over the units of the first bearing, (d,)."""
+        return np.asarray(self.bearing.units[1] * (self.bearing.by_shaft.T @ force), dtype=np.complex128)
 
     def displacement(self, v: Complex) -> Complex:
         """Displacement of the journal over its unit of length, of a shaft that moves by `v`."""
@@ -163,13 +187,13 @@ class RubbingResponse:
         slip = rubbing.cycle.settled(free, self.compliances[0])
         return np.asarray(rubbing.cycle.sliding.equivalent(slip, scale)[0] * slip)
 
-    def told(self, v: Complex, scale: float) -> HarmonicsTold | None:
-        """What half as many harmonics change; None where slips have one."""
+    def left(self, v: Complex, scale: float) -> tuple[HarmonicsTold, Complex] | None:
+        """What half as many harmonics change, also of the force on the shaft (d,); None where slips have one."""
         if self.bearing.several is None:
             return None
         count, free = self.bearing.several.harmonics, self.free(v)
         force, half = (self.rubbing(scale).force(free, harmonics) for harmonics in (count, count // 2))
-        return HarmonicsTold.between(count, force, half)
+        return HarmonicsTold.between(count, force, half), self.on_shaft(force - half)
 
 
 @dataclass(frozen=True)
@@ -222,11 +246,14 @@ class RubbingWhirl:
         scale = self.scale(motion[1])
         return replace(self, bearings=tuple(one.with_enough(motion, scale) for one in self.bearings))
 
-    def told(self, motion: tuple[complex, Complex]) -> HarmonicsTold:
-        """Harmonics of the slips in a motion `s`, `v`, and what half as many change."""
+    def left(self, motion: tuple[complex, Complex]) -> HarmonicsLeft:
+        """What the harmonics of the slips in a motion `s`, `v` leave."""
         s, v = motion
-        told = [one.told(v, self.scale(v)) for one in self.at(s)]
-        return HarmonicsTold.most_of([one for one in told if one is not None] or [ONE_HARMONIC])
+        each = [one for one in (response.left(v, self.scale(v)) for response in self.at(s)) if one is not None]
+        if not each:
+            return ONE_LEAVES
+        change = -self.stiffness_unit * np.sum([force for _, force in each], axis=0)
+        return HarmonicsLeft(HarmonicsTold.most_of([told for told, _ in each]), change)
 
     @property
     def takes_several(self) -> bool:

@@ -106,6 +106,15 @@ FIELDS: dict[str, Variable] = {
     "natural_frequency_error": Variable(("mode",), "rad s-1", "error bar of the natural frequency", "d omega_d"),
     "mode_growth_rate_error": Variable(("mode",), "s-1", "error bar of the growth rate of the mode", "d Re s_k"),
     "damping_ratio_error": Variable(("mode",), "1", "error bar of the damping ratio", "d zeta"),
+    "natural_frequency_harmonics_change": Variable(
+        ("mode",), "rad s-1", "change of the natural frequency from half as many harmonics", "d omega_dh"
+    ),
+    "mode_growth_rate_harmonics_change": Variable(
+        ("mode",), "s-1", "change of the growth rate of the mode from half as many harmonics", "d Re s_kh"
+    ),
+    "damping_ratio_harmonics_change": Variable(
+        ("mode",), "1", "change of the damping ratio from half as many harmonics", "d zeta_h"
+    ),
     "mode_growth_rate": Variable(("mode",), "s-1", "growth rate of the mode, negative where it dies out", "Re s_k"),
     "damping_ratio": Variable(("mode",), "1", "damping ratio of the mode, negative where it grows", "zeta"),
     "participation": Variable(("mode",), "1", "part of the rotor's mass in the mode", "q"),
@@ -210,6 +219,8 @@ SCALARS: dict[str, Variable] = {
     "friction_harmonics_change": _run(
         "1", "change of the friction on the journal from half as many harmonics, over it", "dT_h"
     ),
+    "critical_mass_harmonics_change": _run("kg", "change of the critical mass from half as many harmonics", "dm_h"),
+    "whirl_ratio_harmonics_change": _run("1", "change of the whirl ratio from half as many harmonics", "dgamma_h"),
     "rotor_mass": _given("kg", "mass of a rigid rotor; in two bearings all of it", "m"),
     "force_x": _answer("N", "force of film and contact on the journal along x", "F_x"),
     "force_y": _answer("N", "force of film and contact on the journal along y", "F_y"),

@@ -17,7 +17,7 @@ from petalfoil.analysis.coefficients import coefficients, entry
 from petalfoil.analysis.declaration import Analysis, analysis
 from petalfoil.analysis.error_bars import field_bars
 from petalfoil.analysis.grid_study import grid_of, grids
-from petalfoil.analysis.harmonics_bars import BY_HARMONICS
+from petalfoil.analysis.harmonics_bars import BY_HARMONICS, harmonics_bar, harmonics_bars
 from petalfoil.analysis.known_verbs import forget
 from petalfoil.analysis.liftoff import liftoff
 from petalfoil.analysis.richardson import SAFETY
@@ -135,6 +135,22 @@ def test_what_more_harmonics_change_is_added_to_the_bar_from_the_grids() -> None
         answers = {grid_of(one): (rubbing(one, change),) for one in grids(FLAT)}
         bars = field_bars(rubbing(FLAT, change), 0, answers)["stiffness_error"]
         assert_allclose(bars, SAFETY * BAR + BY_HARMONICS * abs(change), rtol=1e-6)
+
+
+def test_bars_of_numbers_and_modes_have_what_more_harmonics_change() -> None:
+    """A number without slips keeps its bar; one whose slips have one harmonic has none."""
+    scalars = {"critical_mass_harmonics_change": -0.2, "whirl_ratio_harmonics_change": np.nan}
+    fields, coords = {"damping_ratio_harmonics_change": np.array([-0.1])}, {"mode": np.ones(1)}
+    record = replace(rubbing(FLAT, 0.0), scalars=scalars, fields=fields, coords=coords)
+    bars = harmonics_bars(record, {"bearing_force": 1.0, "critical_mass": 0.5, "whirl_ratio": 0.1})
+    assert bars == {"bearing_force": 1.0, "critical_mass": pytest.approx(0.5 + BY_HARMONICS * 0.2)}
+    assert_allclose(harmonics_bar("damping_ratio", record), [BY_HARMONICS * 0.1])
+    assert harmonics_bar("natural_frequency", record) is None
+    parts = {"natural_frequency_harmonics_change": [0.0, 3.0], "mode_growth_rate_harmonics_change": [2.0, -1.0]}
+    both = {name: np.array(values) for name, values in parts.items()}
+    mode = replace(record, fields=both, coords={"mode": np.array([1, 2])})
+    assert_allclose(harmonics_bar("natural_frequency", mode), BY_HARMONICS * np.array([math.sqrt(2.0), 3.0]))
+    assert_allclose(harmonics_bar("mode_growth_rate", mode), BY_HARMONICS * np.array([2.0, math.sqrt(5.0)]))
 
 
 def test_with_one_harmonic_there_is_no_bar() -> None:
