@@ -15,7 +15,7 @@ from petalfoil.analysis.branch_choice import others
 from petalfoil.analysis.neighbours import begun, keep
 from petalfoil.case import Case
 from petalfoil.equilibrium.branches import by_short_steps
-from petalfoil.equilibrium.coarse_film import coarse_search, coarser_film, from_coarse_film, points_near
+from petalfoil.equilibrium.coarse_film import coarser_film, from_coarse_film, points_near
 from petalfoil.equilibrium.run_context import counted_as_coarse, current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.whole_length import balance_from_nothing, first_attempt
@@ -40,7 +40,7 @@ def by_coarse_film(problem: CoupledProblem, load: Array | None) -> Solution | No
         coarse = coarse.at(bearing_number=problem.bearing_number, displacement=problem.displacement)
         there = None if load is None else load * problem.layout.scales.force / coarse.layout.scales.force
         first = alone(case, coarse, there)
-        known = None if first is None else points_near(first, coarse_search(problem.layout.case))
+        known = None if first is None else points_near(first)
         run.note("coarse film", outcome="no equilibrium leads on" if known is None else "contact points")
     if first is None or known is None:
         return None

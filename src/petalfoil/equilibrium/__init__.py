@@ -29,6 +29,7 @@
 `contact_sets.py`          the same corrected by the signs of reactions and gaps
 `element_tangent.py`       a step of Newton's method for petals with continuous slopes, under a load or not
 `rubbing_tangent.py`       the same with friction at contact points
+`amended_factor.py`        one factor of the tangent for states with other contact points
 `point_contacts.py`        equilibria with contact points as unknowns
 `point_prospects.py`       when a search for these is given up
 `followed_points.py`       these followed to a neighbouring position, speed or load

@@ -38,11 +38,7 @@ WORTH = 2.0
 """Least number of cells over those of the coarse film: with fewer an equilibrium there saves little."""
 
 SEARCHED = Search(48, 2)
-"""The search for contact points under the coarse film, as long as it takes on fine grids."""
-
-WORTH_SEARCHING = 8.0
-"""Tangents under the fine film whose cost, by cells, that search may have: three of ten random packs have none there,
-and begin anew under the fine film."""
+"""The search for contact points under the coarse film: one factor serves most of its tangents."""
 
 CARRIED = Search(12, 2)
 """The search for contact points from those of the coarse film: one or two tangents serve, the rig takes seven."""
@@ -64,19 +60,14 @@ def coarser_film(case: Case, load: Array | None = None) -> Case | None:
     return case.replace(**{"model.cells_per_pitch": COARSE_FILM_CELLS})
 
 
-def coarse_search(case: Case) -> Search:
-    """The search for contact points under the coarse film of a case."""
-    return SEARCHED._replace(most=min(round(WORTH_SEARCHING * case.cells_per_pitch / COARSE_FILM_CELLS), SEARCHED.most))
-
-
-def points_near(solution: Solution, search: Search) -> PointContacts | None:
+def points_near(solution: Solution) -> PointContacts | None:
     """The equilibrium with contact points near one with contacts at nodes that a single search finds, or None."""
     problem, load = solution.problem, solution.load
     whole = problem.layout.elements
     if whole is None or not constrain(problem.G, solution.active).determinate:
         return None
     try:
-        found = searched(PointEquations(whole, problem, start_at(whole, solution)), load, search)
+        found = searched(PointEquations(whole, problem, start_at(whole, solution)), load, SEARCHED)
         agreeing(found, solution)
     except NoPointsError as failure:
         current_run().note("contact points", outcome=str(failure))

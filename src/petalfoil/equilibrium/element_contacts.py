@@ -10,6 +10,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.equilibrium.amended_factor import serving_factor
 from petalfoil.equilibrium.asperity_contacts import AsperityContacts, with_asperities
 from petalfoil.equilibrium.asperity_path import from_free_petals
 from petalfoil.equilibrium.contact_runs import from_active_nodes
@@ -131,7 +132,8 @@ def tightened(found: ElementEquilibrium, load: Array | None) -> ElementEquilibri
     if settled is not None and settled is not found:
         return settled
     try:
-        close = followed(found, found.equations.problem, load)
+        served = serving_factor(found.tangent, current_run().film_solver)
+        close = followed(found, found.equations.problem, load, served)
     except NoPointsError as failure:
         current_run().note("contact points", outcome=f"kept with contacts 2 nm deep: {failure}")
         return found

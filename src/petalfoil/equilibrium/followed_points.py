@@ -14,6 +14,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.equilibrium.amended_factor import ServingFactor
 from petalfoil.equilibrium.contact_runs import divisions
 from petalfoil.equilibrium.contact_sets import listed, packed, revised
 from petalfoil.equilibrium.continuation import FAR_FOLLOWED
@@ -22,6 +23,7 @@ from petalfoil.equilibrium.point_contacts import (
     POLISHED,
     PointContacts,
     admitted,
+    all_unknowns,
     changed,
     norm,
 )
@@ -38,6 +40,9 @@ Array = NDArray[np.float64]
 TANGENTS = 8
 """Most tangents from an equilibrium to the next: one to three between points of a curve, four over a third of
 the speed."""
+
+OWN = 2
+"""Tangents with factors of their own, before the last of these serves on."""
 
 SURE = 3
 """Tangents after which a residual that grows from one to the next is not going to fall."""
@@ -61,8 +66,12 @@ NEAR = 1e-3
 others by as much."""
 
 
-def followed(near: PointContacts, problem: CoupledProblem, load: Array | None) -> PointContacts:
+def followed(
+    near: PointContacts, problem: CoupledProblem, load: Array | None, serving: ServingFactor | None = None
+) -> PointContacts:
     """The equilibrium of a neighbouring problem from that `near`, in a few whole steps; under a load with its position.
+
+    A factor that is `serving` already serves its tangents; else the first ones have factors of their own.
 
     The residual may grow on the way: for points that travel it does so in the first step, and halving that step would
     lead there in ten short ones.
@@ -74,7 +83,7 @@ def followed(near: PointContacts, problem: CoupledProblem, load: Array | None) -
     """
     start = problem.at(displacement=near.equations.problem.displacement)
     equations, tangent = replace(near.equations, problem=start), foretelling(near, load)
-    foretold, before = NEAR, np.inf
+    foretold, before, serving = NEAR, np.inf, serving or ServingFactor(current_run().film_solver, OWN)
     for count in range(TANGENTS):
         size, largest = norm(equations, load)
         if count and largest <= RESIDUAL_TOLERANCE and not np.any(way(equations, problem, load)):
@@ -88,7 +97,7 @@ def followed(near: PointContacts, problem: CoupledProblem, load: Array | None) -
             break
         before = largest
         if count or tangent is None:
-            tangent = ElementTangent.at(equations, load, current_run().film_solver)
+            tangent = serving.tangent(equations, load)
         given, secants = count == 0 or bool(np.any(way(equations, problem, load))), Secants()
         equations = stepped(equations, (tangent, None if given else secants), problem, load)
         if not count:
@@ -147,13 +156,6 @@ def stepped(
         place = problem.displacement
     state = changed(equations, length * change, FARTHEST_TRAVEL)
     return replace(equations, problem=problem.at(displacement=place), state=state)
-
-
-def all_unknowns(equations: PointEquations) -> Array:
-    """Deflections, pressures, reactions, places and the journal's position, (n + n_position,) [1]."""
-    points = equations.state.points
-    unknowns = equations.deflection, equations.pressures, points.reaction, points.position
-    return np.concatenate([*unknowns, equations.problem.displacement])
 
 
 def settled(

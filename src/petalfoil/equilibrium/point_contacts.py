@@ -15,6 +15,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.equilibrium.amended_factor import ServingFactor
 from petalfoil.equilibrium.contact_sets import SAMPLES, beside_contacts, merged, revised
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError, scaled_force, unbalanced
 from petalfoil.equilibrium.point_prospects import SearchedSets, check_prospects
@@ -22,6 +23,7 @@ from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import AT_POINTS
 from petalfoil.physics.gap_curves import ContactPoints, sampled
 from petalfoil.solvers.problem import POSITIVE_FRACTION, RESIDUAL_TOLERANCE
+from petalfoil.solvers.secants import Secants
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.point_equations import PointEquations, PointState
 from petalfoil.system.point_layout import PointLayout
@@ -70,8 +72,13 @@ found by either alone. In vain it is 48 more for a seventh of random packs."""
 FARTHEST_MOVE = 0.5
 """Longest move of the journal under a load in a step, in units of the reference film (5 um)."""
 
-CHORD = 0.2
-"""Residual after a step over that before it, up to which the factor at hand serves another step, at half the cost."""
+CHORD, CLOSE_CHORD = 0.2, 0.35
+"""Residual after a step over that before it, up to which the factor at hand serves another step, at half the cost: far
+from a solution, and close to it, where steps are bettered by secants (C15)."""
+
+CLOSE = 1e-3
+"""Residual (root of the squares) from which on a solution is close. Farther away secants lead elsewhere: with them the
+rig has no contact points."""
 
 POLISHED = 1e-3
 """Residual over that of a solution below which another step changes no printed digit."""
@@ -187,9 +194,9 @@ def searched(equations: PointEquations, load: Array | None, search: Search) -> P
     NoPointsError
         It leads nowhere.
     """
-    left, changes, seen = search.most, 0, SearchedSets()
+    left, changes, seen, serving = search.most, 0, SearchedSets(), ServingFactor(current_run().film_solver)
     while True:
-        equations, steps, tangent = newton(equations, left, load, search)
+        equations, steps, tangent = newton(equations, left, (load, serving), search)
         points, left = revised(equations), left - steps
         seen.check(equations, points)
         if points is None:
@@ -206,12 +213,12 @@ def searched(equations: PointEquations, load: Array | None, search: Search) -> P
 
 
 def newton(
-    equations: PointEquations, most: int, load: Array | None, search: Search
+    equations: PointEquations, most: int, asked: tuple[Array | None, ServingFactor], search: Search
 ) -> tuple[PointEquations, int, ElementTangent | None]:
-    """Newton's method with the contacts as they are, apart from points that meet, in at most `most` factorisations.
+    """Newton's method with the contacts as they are, apart from points that meet, in at most `most` tangents.
 
-    Returns the equations, the factorisations and the last tangent. A factor serves on as long as every step with it
-    lessens the residual to `CHORD` of it.
+    Returns the equations, the tangents and the last of them. A tangent serves on as long as every step with it
+    lessens the residual to `CHORD` of it. `asked` are the load and the factor that serves all tangents.
 
     Raises
     ------
@@ -220,20 +227,48 @@ def newton(
     NoPointsError
         It does not converge.
     """
-    (size, largest), tangent, creeping = norm(equations, load), None, 0
+    (load, serving), tangent, creeping = asked, None, 0
+    size, largest = norm(equations, load)
     for count in range(most):
         if largest <= RESIDUAL_TOLERANCE and count:
             return equations, count, tangent
         check_prospects(equations, search.most - most + count)
-        tangent, gain, first = ElementTangent.at(equations, load, current_run().film_solver), 0.0, size
-        whole_step = creeping == search.creeping
-        while gain <= CHORD and largest > POLISHED * RESIDUAL_TOLERANCE and tangent.n == equations.n:
-            step = tangent.correction(equations.newton_residual, unbalanced(equations, load))
-            equations = stepped(equations, step, load, whole_step=whole_step and not gain)
-            before, (size, largest) = size, norm(equations, load)
-            gain = size / before
+        tangent, first, whole_step = serving.tangent(equations, load), size, creeping == search.creeping
+        equations = by_tangent(equations, tangent, load, whole_step=whole_step)
+        size, largest = norm(equations, load)
         creeping = creeping + 1 if size > CREEP * first and not whole_step else 0
     raise StillChangingError(f"contacts or the residual, {largest:.1e}, still change after {search.most} steps")
+
+
+def by_tangent(
+    equations: PointEquations, tangent: ElementTangent, load: Array | None, *, whole_step: bool
+) -> PointEquations:
+    """The equations after steps with one tangent, as long as they gain; the first one may be a `whole_step`.
+
+    Raises
+    ------
+    NoPointsError
+        The film has closed.
+    """
+    gain, secants, (size, largest) = 0.0, Secants(), norm(equations, load)
+    while largest > POLISHED * RESIDUAL_TOLERANCE and tangent.n == equations.n:
+        if gain > (CHORD if size > CLOSE else CLOSE_CHORD):
+            break
+        change, move = tangent.correction(equations.newton_residual, unbalanced(equations, load))
+        if size <= CLOSE:
+            both = secants.bettered(all_unknowns(equations), np.concatenate([change, move]))
+            change, move = both[: equations.n], both[equations.n :]
+        equations = stepped(equations, (change, move), load, whole_step=whole_step and not gain)
+        before, (size, largest) = size, norm(equations, load)
+        gain = size / before
+    return equations
+
+
+def all_unknowns(equations: PointEquations) -> Array:
+    """Deflections, pressures, reactions, places and the journal's position, (n + n_position,) [1]."""
+    points = equations.state.points
+    unknowns = equations.deflection, equations.pressures, points.reaction, points.position
+    return np.concatenate([*unknowns, equations.problem.displacement])
 
 
 def norm(equations: PointEquations, load: Array | None) -> tuple[float, float]:

@@ -19,6 +19,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from petalfoil.equilibrium.amended_factor import serving_factor
 from petalfoil.equilibrium.contact_sets import (
     CLOSELY,
     OVERLAP,
@@ -66,12 +67,12 @@ def settled_points(found: PointContacts, load: Array | None) -> PointContacts | 
     points = corrected(equations, tangent)
     if points is None:
         return found
-    seen, left = SearchedSets(), SETTLING.most
+    seen, left, served = SearchedSets(), SETTLING.most, serving_factor(tangent, current_run().film_solver)
     try:
         while points is not None:
             seen.check(equations, points)
             equations = replace(equations, state=replace(equations.state, points=points))
-            equations, steps, tangent = newton(equations, left, load, SETTLING)
+            equations, steps, tangent = newton(equations, left, (load, served), SETTLING)
             left, points = left - steps, corrected(equations, tangent)
             points = revised(equations, closely=True) if points is None else points
     except NoPointsError as failure:

@@ -321,20 +321,20 @@ class PointGaps:
         return compliance * part(at, load)
 
     @cached_property
-    def _weights(self) -> tuple[Index, Array]:
+    def weights(self) -> tuple[Index, Array]:
         """Columns (j, 4) of the nodal gaps at each point, and their weights in the gap and its slope, (j, 2, 4)."""
         return hermite.entries_with_slopes(*self._place, self.curves.angle)
 
     def of_nodal(self, columns: Array) -> tuple[Array, Array]:
         """Gaps and slopes at the points that several nodal gaps (2 n_node, d) have there, (j, d) each."""
-        at, weights = self._weights
+        at, weights = self.weights
         value, slope = np.einsum("kdi,kie->dke", weights, columns[at])
         return value, slope
 
     @cached_property
     def by_w(self) -> tuple[Triplets, Triplets]:
         """Derivatives of the cubic of (K10) at the points, and of its slope, by the unknowns of the petals, (j, n)."""
-        (columns, weights), (unknowns, by_unknowns) = self._weights, self.curves.padded
+        (columns, weights), (unknowns, by_unknowns) = self.weights, self.curves.padded
         unknown, weight = unknowns[columns], by_unknowns[columns]
         both = [weights[:, kind, :, None] * weight for kind in range(2)]
         held = [np.nonzero(values) for values in both]
@@ -344,14 +344,14 @@ class PointGaps:
     @cached_property
     def nodal_loads(self) -> Array:
         """Reactions as loads on the nodal (value, slope) of the gaps, (2 n_node,)."""
-        columns, weights = self._weights
+        columns, weights = self.weights
         loads = weights[:, 0] * self.points.reaction[:, None]
         return add_up(columns.ravel(), loads.ravel(), len(self.curves.rest))
 
     @cached_property
     def _cubic(self) -> Array:
         """The cubic of (K10) at the points, and its derivative by the place, (2, j)."""
-        columns, weights = self._weights
+        columns, weights = self.weights
         return np.asarray(np.einsum("kdi,ki->dk", weights, self.nodal[columns]))
 
     @property

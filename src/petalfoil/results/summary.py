@@ -131,6 +131,7 @@ _SHOWN: dict[str, TableLabel] = {
     "force_residual": TableLabel("force residual"),
     "iterations": TableLabel("iterations"),
     "factorizations": TableLabel("factorisations"),
+    "coarse_factorizations": TableLabel("factorisations on coarser grids"),
     "wall_time": TableLabel("time", "s"),
 }
 
