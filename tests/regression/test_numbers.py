@@ -71,6 +71,10 @@ SIZES = {
 }
 """Natural sizes in SI units of what may be small beside it; zero for the rest, which is compared relatively."""
 
+CROSSINGS = {"liftoff_speed": 1e-6, "touchdown_speed": 1e-6, "liftoff_by_contact_film_thickness": 1e-5}
+"""Relative tolerances of what is found from many solutions, each to a residual of 1e-8: from one processor to another
+the touchdown speed differs by 6e-8, and a derivative of two of them by 2e-6."""
+
 FLAT = case("paper_n8", **{"model.cells_per_pitch": 16})
 RUBBING = FLAT.replace(**{"surface.petal_friction": 0.2})
 COARSE = RUBBING.replace(**{"model.cells_per_pitch": 8})
@@ -239,7 +243,7 @@ def compare(name: str, found: Any, stored: Any) -> None:
         assert np.all(np.asarray(found) <= np.asarray(stored)), f"{name}: {found}, stored {stored}"
     else:
         atol = RTOL * SIZES.get(name.partition("@")[0], 0.0)
-        assert_allclose(np.asarray(found, dtype=float), stored, rtol=RTOL, atol=atol, err_msg=name)
+        assert_allclose(np.asarray(found, dtype=float), stored, rtol=CROSSINGS.get(name, RTOL), atol=atol, err_msg=name)
 
 
 def marks(run: Run) -> list[pytest.MarkDecorator]:

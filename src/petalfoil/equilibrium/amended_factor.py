@@ -34,6 +34,10 @@ MOST_LOADS = 400
 """Most nodal loads that are answered by one factor, four for each element with a point; past that another one is made.
 The rig has some 150, with those that points have travelled over."""
 
+OWN = 2
+"""Tangents of a search with factors of their own, before the last of these serves on: short searches have no more, and
+to amend one costs some hundred solves, as much as three or four factors."""
+
 
 @dataclass(eq=False)
 class NodalAnswers:
@@ -246,12 +250,11 @@ class ServingFactor:
     known : NodalAnswers or None
         What it has answered; None before another state asks for it.
     own : int
-        States that still get a factor of their own, before one is amended: that costs some hundred solves, as much as
-        two or three factors.
+        States that still get a factor of their own, before one is amended.
     """
 
     solver: LinearSolver
-    own: int = 0
+    own: int = OWN
     made: tuple[PointEquations, Factor] | None = None
     known: NodalAnswers | None = None
 

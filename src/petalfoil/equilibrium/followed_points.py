@@ -41,8 +41,9 @@ TANGENTS = 8
 """Most tangents from an equilibrium to the next: one to three between points of a curve, four over a third of
 the speed."""
 
-OWN = 2
-"""Tangents with factors of their own, before the last of these serves on."""
+OWN = 4
+"""Tangents with factors of their own, before the last of these serves on: few take more, and to amend one costs as much
+as three or four factors."""
 
 SURE = 3
 """Tangents after which a residual that grows from one to the next is not going to fall."""

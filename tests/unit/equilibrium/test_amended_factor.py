@@ -70,7 +70,7 @@ def test_other_points_are_solved_with_the_same_factor(known: PointEquations, tra
 
 
 def test_states_are_served_by_one_factor_until_it_is_too_far_away(known: PointEquations) -> None:
-    serving = ServingFactor(LinearSolver())
+    serving = ServingFactor(LinearSolver(), 0)
     served = [serving.tangent(one, None) for one in (known, others(known), known)]
     for tangent in served:
         assert isinstance(tangent.factor, ServedTangent)
@@ -91,7 +91,7 @@ def test_the_first_states_may_have_factors_of_their_own(known: PointEquations) -
 
 def test_too_many_nodal_loads_ask_for_another_factor(known: PointEquations, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(amended_factor, "MOST_LOADS", 3)
-    serving = ServingFactor(LinearSolver())
+    serving = ServingFactor(LinearSolver(), 0)
     for _ in range(2):
         serving.tangent(known, None)
     assert serving.solver.counter.factorizations == 2
