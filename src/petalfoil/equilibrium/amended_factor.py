@@ -75,7 +75,7 @@ class NodalAnswers:
         """None asked for so far; a solve for each reaction and place."""
         by_w, n = equations.whole.curves.by_w, equations.n
         common, nodes = equations.whole.n_wall + equations.whole.n_film, by_w.shape[0]
-        released = factor.solve(np.eye(n)[:, common:])
+        released = factor.solve(np.eye(n, n - common, -common))
         opened = by_w @ released[: by_w.shape[1]]
         none, place = np.zeros(0, dtype=np.intp), np.full(nodes, -1, dtype=np.intp)
         return cls(equations, factor, place, none, np.zeros((n, 0)), np.zeros((nodes, 0)), released, opened)
@@ -147,11 +147,11 @@ class AmendedFactor:
         """
         matrix, common = equations.steady, known.common
         loads, reads = border(known, equations)
-        pushed, k = known.answers @ loads, loads.shape[1]
+        k = loads.shape[1]
         complement = np.zeros((k + known.released.shape[1],) * 2)
         complement[:k, :k] = corner(matrix, common) - reads.T @ (known.openings[known.used] @ loads)
         complement[:k, k:] = -(reads.T @ known.opened[known.used])
-        complement[k:, :k], complement[k:, k:] = -pushed[common:], -known.released[common:]
+        complement[k:, :k], complement[k:, k:] = -(known.answers[common:] @ loads), -known.released[common:]
         if not np.all(np.isfinite(complement)):
             raise NotNearError("the border has no finite response")
         lu, pivots, zero = scipy.linalg.lapack.dgetrf(complement)
