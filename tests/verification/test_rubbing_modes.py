@@ -132,12 +132,12 @@ def test_two_bearings_that_share_a_rotor_rub_as_one_with_half_of_it() -> None:
         found = two.near((known.number, np.append(known.v, [0.0, 0.0])))
         other = two.near(conical)
         assert found is not None
-        (several, told), (single_one, _) = (
+        (several, left), (single_one, _) = (
             bettered(of.whirl, at, of.near_in) for of, at in ((two, found), (one, known))
         )
     assert other is not None
     assert found.number == pytest.approx(known.number, rel=1e-6)
-    assert told.friction_harmonics >= 8
+    assert left.told.friction_harmonics >= 8
     assert several.number != pytest.approx(found.number, rel=1e-4)
     assert several.number == pytest.approx(single_one.number, rel=1e-6)
     assert tilt_of(other.v) > 0.5
