@@ -70,6 +70,7 @@ def test_loads(called: Called, given: Any, force: tuple[float, float] | None) ->
         "case": PLAIN,
         "frequencies": None,
         "load": force,
+        "harmonics": None,
         "speed": None,
         "speeds": None,
         "amplitude": None,
