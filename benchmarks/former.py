@@ -58,7 +58,8 @@ def unpacked(folder: Path) -> str:
     except (OSError, subprocess.CalledProcessError):
         return f"the history of this folder does not hold {COMMIT}"
     with tarfile.open(fileobj=BytesIO(archive)) as tar:
-        tar.extractall(folder, filter="data")
+        tar.extraction_filter = getattr(tarfile, "data_filter", None)  # unknown to Python before 3.11.4, and of no use
+        tar.extractall(folder)
     return ""
 
 
