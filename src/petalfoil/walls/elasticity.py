@@ -42,15 +42,15 @@ class Elasticity:
     def _levels(self) -> tuple[SparseRows, SparseRows, SparseRows]:
         """(whole, rest, metric): strains over the largest entry of their rows by jumps, and the rigidity between them.
 
-        Jumps are differences of neighbouring deflections. Entries of `whole` are +-1, or 0 beside a cell of less than
-        half the length. Jumps of neighbouring cells are nearly equal: they are subtracted before they are weighted,
-        so that their difference is free of rounding. Only `rest`, what unequal cells add, is rounded.
+        Jumps are differences of neighbouring deflections. Entries of `whole` are multiples of 1 / `PARTS`, +-1 between
+        equal cells. Jumps of neighbouring cells are nearly equal: they are subtracted before they are weighted, so that
+        their difference is free of rounding. Only `rest`, what unequal cells add beyond that, is rounded.
         """
         size = abs(self.strain).max(axis=1).toarray().ravel() if self.strain.nnz else np.ones(self.strain.shape[0])
         scale = sp.diags_array(np.where(size > 0.0, size, 1.0))
         unit = sp.csr_array(scale.power(-1) @ self.strain)
         whole, rest = unit.copy(), unit.copy()
-        whole.data = np.round(unit.data)
+        whole.data = np.round(PARTS * unit.data) / PARTS
         rest.data -= whole.data
         rest.data[np.abs(rest.data) < CELL_ROUNDING] = 0.0
         for part in (whole, rest):
@@ -75,6 +75,13 @@ class Elasticity:
         out: Array = self._jumps.T @ (whole.T @ moments + rest.T @ moments)
         return out
 
+
+PARTS = 1024
+"""Parts of one in which the ratio of two cells' lengths takes part in sums without rounding.
+
+Jumps of finest grids have some 42 binary digits, so that products with ten more are exact. With whole numbers alone
+what was rounded beside unequal cells left a residual of 1e-8 at 4096 cells per pitch, a digit of one node up or down.
+"""
 
 CELL_ROUNDING = 1e-10
 """Cells whose length ratio differs from 1 by less than this count as equal [1]."""
