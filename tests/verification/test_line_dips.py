@@ -19,11 +19,8 @@ from petalfoil.equilibrium.line_signs import EARLY_PULL, PENETRATION, closed_bes
 from petalfoil.equilibrium.line_stretches import Stretches, revised_in_time
 from petalfoil.equilibrium.run_context import current_run, running
 from petalfoil.physics.line_points import LinePoints
-from petalfoil.system.build import build_problem
 from tests.cases import case
-
-LINE = 2
-NONE = np.zeros(0, dtype=np.intp)
+from tests.line_states import LINE, give_gaps, without_contacts
 
 SAMPLES = 32
 """Places looked at in each cell."""
@@ -32,24 +29,17 @@ SAMPLES = 32
 @pytest.fixture(scope="module")
 def free() -> LineContacts:
     """A state without contacts; its gaps are given by `with_gaps`."""
-    grid = {"model.cells_per_pitch": 12, "model.axial_cells": 4, "model.axial_density": "uniform"}
-    problem = build_problem(case("paper_n8_spatial", **grid))
-    contacts = problem.layout.wall.contacts
-    points = LinePoints(contacts.lines, len(contacts.rest), NONE, NONE, np.zeros(0))
-    held = np.zeros(len(contacts.rest), dtype=np.bool_)
-    return LineContacts(problem, np.ones(problem.layout.unknowns.n), points, np.zeros(0), held, np.zeros(0), load=None)
+    return without_contacts()
 
 
 def with_gaps(free: LineContacts, along: NDArray[np.float64], phi: float | None = None) -> LineContacts:
     """The state with gaps along one line (node,), and a contact point at an angle of it."""
-    gaps = np.ones(len(free.held))
-    gaps[free.points.lines[0].number[LINE]] = along
     state = free
     if phi is not None:
         points = replace(free.points, kind=np.array([0]), line=np.array([LINE]), phi=np.array([phi]))
         state = replace(free, points=points, reaction=np.ones(1))
     state = replace(state)
-    vars(state)["gaps"] = gaps
+    give_gaps(state, along)
     return state
 
 
@@ -117,7 +107,7 @@ def test_a_shallow_gap_does_not_hide_a_deep_one(free: LineContacts) -> None:
     """The rig at 10 um: steps of Newton's method from the lower node lead to a shallow one in the cell before."""
     along = np.full(len(free.points.lines[0].phi), 3.0)
     along[2:10] = 1.5, 0.76338202, 0.22138359, 0.06934371, 0.04167849, 0.00131065, 0.07526233, 0.74241387
-    deep = dips(with_gaps(free, along), NONE)
+    deep = dips(with_gaps(free, along), np.zeros(0, dtype=np.intp))
     assert len(deep.phi) == 1
     assert deep.beside.tolist() == [free.points.lines[0].number[LINE, 7:9].tolist()]
 

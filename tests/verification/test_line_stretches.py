@@ -12,23 +12,16 @@ from petalfoil.analysis.release import OrbitRequest
 from petalfoil.equilibrium.line_contacts import LineContacts
 from petalfoil.equilibrium.line_signs import EARLY_PULL, dips
 from petalfoil.equilibrium.line_stretches import Stretches, revised_in_time, slopes_at_single
-from petalfoil.physics.line_points import LinePoints
-from petalfoil.system.build import build_problem
 from tests.cases import case
+from tests.line_states import LINE, give_gaps, without_contacts
 
-LINE, NODE = 2, 5
-NONE = np.zeros(0, dtype=np.intp)
+NODE = 5
 
 
 @pytest.fixture(scope="module")
 def free() -> LineContacts:
     """A state without contacts; its gaps are given by `with_gaps`."""
-    grid = {"model.cells_per_pitch": 12, "model.axial_cells": 4, "model.axial_density": "uniform"}
-    problem = build_problem(case("paper_n8_spatial", **grid))
-    contacts = problem.layout.wall.contacts
-    points = LinePoints(contacts.lines, len(contacts.rest), NONE, NONE, np.zeros(0))
-    held = np.zeros(len(contacts.rest), dtype=np.bool_)
-    return LineContacts(problem, np.ones(problem.layout.unknowns.n), points, np.zeros(0), held, np.zeros(0), load=None)
+    return without_contacts()
 
 
 def with_gaps(free: LineContacts, along: np.ndarray, held: tuple[int, ...] = ()) -> LineContacts:
@@ -37,9 +30,7 @@ def with_gaps(free: LineContacts, along: np.ndarray, held: tuple[int, ...] = ())
     active = free.held.copy()
     active[number[list(held)]] = True
     state = replace(free, held=active, held_reaction=np.ones(len(held)))
-    gaps = np.ones(len(active))
-    gaps[number] = along
-    vars(state)["gaps"] = gaps
+    give_gaps(state, along)
     return state
 
 
@@ -103,7 +94,7 @@ def test_a_gap_below_zero_beside_a_kink_is_found(free: LineContacts) -> None:
     """Deeper than twice the parabola through the lowest node and those beside it: the edge of a petal in the rig."""
     along = np.full(len(free.points.lines[0].phi), 3.0)
     along[NODE - 2 : NODE + 3] = 1.6, 0.496, 0.0891, 0.1069, 1.5336
-    found = dips(with_gaps(free, along), NONE)
+    found = dips(with_gaps(free, along), np.zeros(0, dtype=np.intp))
     assert len(found.phi) == 1
     phi = free.points.lines[0].phi
     assert phi[NODE] < found.phi[0] < phi[NODE + 1]

@@ -15,7 +15,9 @@ points on the elements beside it, wherever they travel.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.linalg
@@ -23,7 +25,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError
-from petalfoil.solvers.near_factor import Inverse, NotNearError, improved
+from petalfoil.solvers.near_factor import Inverse, NearInverse, NotNearError, factorized
 from petalfoil.solvers.sparse_lu import Factor, LinearSolver, SingularMatrixError
 from petalfoil.system.point_equations import PointEquations
 
@@ -115,15 +117,13 @@ class NodalAnswers:
 
 
 @dataclass(frozen=True)
-class AmendedFactor:
+class AmendedFactor(NearInverse):
     """A factor bordered as (C17): ready to solve with the tangent of a state with other contact points.
 
     Attributes
     ----------
     known : NodalAnswers
         The factor, and what it answers to nodal loads.
-    matrix : (n, n) sparse
-        `J`.
     loads, reads : (m, k) array
         `J_12` and `J_21` over the first `m` nodal gaps in use: others have been asked for since.
     complement : tuple
@@ -131,7 +131,6 @@ class AmendedFactor:
     """
 
     known: NodalAnswers
-    matrix: sp.csc_array
     loads: Array
     reads: Array
     complement: tuple[Array, NDArray[np.intp]]
@@ -152,24 +151,7 @@ class AmendedFactor:
         complement[:k, :k] = corner(matrix, common) - reads.T @ (known.openings[known.used] @ loads)
         complement[:k, k:] = -(reads.T @ known.opened[known.used])
         complement[k:, :k], complement[k:, k:] = -(known.answers[common:] @ loads), -known.released[common:]
-        if not np.all(np.isfinite(complement)):
-            raise NotNearError("the border has no finite response")
-        lu, pivots, zero = scipy.linalg.lapack.dgetrf(complement)
-        if zero:
-            raise NotNearError("the border is singular")
-        return cls(known, matrix, loads, reads, (lu, pivots))
-
-    def solve(self, rhs: Array) -> Array:
-        """Solve `J x = rhs`, rhs of shape (n,) or (n, k).
-
-        Raises
-        ------
-        NotNearError
-            GMRES does not get there.
-        """
-        if rhs.ndim == 2:
-            return np.column_stack([self.solve(column) for column in rhs.T])
-        return improved(self.matrix, self.nearly, rhs)
+        return cls(matrix, known, loads, reads, factorized(complement))
 
     def nearly(self, rhs: Array) -> Array:
         """Solve (C17), (n,)."""
@@ -182,16 +164,6 @@ class AmendedFactor:
         found = scipy.linalg.lu_solve(self.complement, behind, check_finite=False)
         first -= known.answers[:, :m] @ (self.loads @ found[:k]) + known.released @ found[k:]
         return np.concatenate([first[:common], found[:k]])
-
-    def solve_transposed(self, rhs: Array) -> Array:
-        """Solve `J^T x = rhs`, rhs of shape (n,).
-
-        Raises
-        ------
-        NotNearError
-            GMRES does not get there.
-        """
-        return improved(self.matrix.T, self.nearly_transposed, rhs)
 
     def nearly_transposed(self, rhs: Array) -> Array:
         """Solve with the transpose of (C17), (n,)."""
@@ -328,11 +300,7 @@ class ServedTangent:
         NoPointsError
             The contacts do not determine the petals.
         """
-        try:
-            return self.inverse.solve(rhs)
-        except NotNearError:
-            self.inverse = self.serving.renewed(self.equations)
-        return self.inverse.solve(rhs)
+        return self.served(lambda inverse: inverse.solve(rhs))
 
     def solve_transposed(self, rhs: Array) -> Array:
         """Solve `J^T x = rhs`, rhs of shape (n,), likewise.
@@ -342,8 +310,18 @@ class ServedTangent:
         NoPointsError
             The contacts do not determine the petals.
         """
+        return self.served(lambda inverse: inverse.solve_transposed(rhs))
+
+    def served(self, solution: Callable[[Inverse], NDArray[Any]]) -> Array:
+        """A solution by the factor at hand, or by one of the state's own.
+
+        Raises
+        ------
+        NoPointsError
+            The contacts do not determine the petals.
+        """
         try:
-            return self.inverse.solve_transposed(rhs)
+            return solution(self.inverse)
         except NotNearError:
             self.inverse = self.serving.renewed(self.equations)
-        return self.inverse.solve_transposed(rhs)
+        return solution(self.inverse)

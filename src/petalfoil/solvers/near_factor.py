@@ -13,6 +13,7 @@ Methods for Sparse Linear Systems, 2nd edition, 2003, sections 6.5 and 9.3, doi:
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
@@ -53,63 +54,24 @@ class Inverse(Protocol):
 
 
 @dataclass(frozen=True)
-class NearFactor:
-    """The factor of a near matrix, bordered as (1): ready to solve with `matrix`.
+class NearInverse(ABC):
+    """A matrix, and what solves with it but for a difference that GMRES makes up for.
 
     Attributes
     ----------
-    factor : Factor
-        Of the near matrix `K`.
     matrix : (n, n) sparse
         `J`.
-    below : (k_J, common) sparse
-        `J_21`.
-    responses : (n_K, k) array
-        What `K` makes of the columns of the border, those of `J` and `E`.
-    border : tuple
-        LU factors of the Schur complement of the border, (k, k).
     """
 
-    factor: Factor
     matrix: sp.csc_array
-    below: sp.csr_array
-    responses: Array
-    border: tuple[Array, NDArray[np.intp]]
 
-    @classmethod
-    def of(cls, factor: Factor, matrix: sp.csc_array, common: int) -> NearFactor:
-        """Solve for the border.
-
-        Raises
-        ------
-        NotNearError
-            Without the difference of the common blocks, the matrix is singular.
-        """
-        old, new = len(factor.row) - common, matrix.shape[0] - common
-        columns = np.zeros((common + old, new + old))
-        columns[:common, :new] = matrix[:common, common:].toarray()
-        columns[common:, new:] = np.eye(old)
-        responses = factor.solve(columns)
-        complement = np.zeros((new + old, new + old))
-        complement[:new, :new] = matrix[common:, common:].toarray()
-        below = sp.csr_array(matrix[common:, :common])
-        complement[:new] -= below @ responses[:common]
-        complement[new:] = -responses[common:]
-        if not np.all(np.isfinite(complement)):
-            raise NotNearError("the border has no finite response")
-        lu, pivots, zero = scipy.linalg.lapack.dgetrf(complement) if new + old else (complement, np.zeros(0, int), 0)
-        if zero:
-            raise NotNearError("the border is singular")
-        border = lu, pivots
-        return cls(factor, matrix, below, responses, border)
-
+    @abstractmethod
     def nearly(self, rhs: Array) -> Array:
-        """Solve (1), (n,)."""
-        new, common = self.below.shape
-        first = self.factor.solve(np.concatenate([rhs[:common], np.zeros(len(self.factor.row) - common)]))
-        behind = rhs[common:] - self.below @ first[:common]
-        border = scipy.linalg.lu_solve(self.border, np.concatenate([behind, -first[common:]]), check_finite=False)
-        return np.concatenate([first[:common] - self.responses[:common] @ border, border[:new]])
+        """Solve `J x = rhs` but for the difference, (n,)."""
+
+    @abstractmethod
+    def nearly_transposed(self, rhs: Array) -> Array:
+        """Solve `J^T x = rhs` likewise, (n,)."""
 
     def solve(self, rhs: Array) -> Array:
         """Solve `J x = rhs`, rhs of shape (n,) or (n, k).
@@ -133,6 +95,57 @@ class NearFactor:
         """
         return improved(self.matrix.T, self.nearly_transposed, rhs)
 
+
+@dataclass(frozen=True)
+class NearFactor(NearInverse):
+    """The factor of a near matrix, bordered as (1): ready to solve with `matrix`.
+
+    Attributes
+    ----------
+    factor : Factor
+        Of the near matrix `K`.
+    below : (k_J, common) sparse
+        `J_21`.
+    responses : (n_K, k) array
+        What `K` makes of the columns of the border, those of `J` and `E`.
+    border : tuple
+        LU factors of the Schur complement of the border, (k, k).
+    """
+
+    factor: Factor
+    below: sp.csr_array
+    responses: Array
+    border: tuple[Array, NDArray[np.intp]]
+
+    @classmethod
+    def of(cls, factor: Factor, matrix: sp.csc_array, common: int) -> NearFactor:
+        """Solve for the border.
+
+        Raises
+        ------
+        NotNearError
+            Without the difference of the common blocks, the matrix is singular.
+        """
+        old, new = len(factor.row) - common, matrix.shape[0] - common
+        columns = np.zeros((common + old, new + old))
+        columns[:common, :new] = matrix[:common, common:].toarray()
+        columns[common:, new:] = np.eye(old)
+        responses = factor.solve(columns)
+        complement = np.zeros((new + old, new + old))
+        complement[:new, :new] = matrix[common:, common:].toarray()
+        below = sp.csr_array(matrix[common:, :common])
+        complement[:new] -= below @ responses[:common]
+        complement[new:] = -responses[common:]
+        return cls(matrix, factor, below, responses, factorized(complement))
+
+    def nearly(self, rhs: Array) -> Array:
+        """Solve (1), (n,)."""
+        new, common = self.below.shape
+        first = self.factor.solve(np.concatenate([rhs[:common], np.zeros(len(self.factor.row) - common)]))
+        behind = rhs[common:] - self.below @ first[:common]
+        border = scipy.linalg.lu_solve(self.border, np.concatenate([behind, -first[common:]]), check_finite=False)
+        return np.concatenate([first[:common] - self.responses[:common] @ border, border[:new]])
+
     def nearly_transposed(self, rhs: Array) -> Array:
         """Solve with the transpose of (1), (n,)."""
         (new, common), behind = self.below.shape, np.zeros(len(self.border[1]))
@@ -143,6 +156,24 @@ class NearFactor:
         return np.concatenate(
             [self.factor.solve_transposed(np.concatenate([first, -border[new:]]))[:common], border[:new]]
         )
+
+
+def factorized(complement: Array) -> tuple[Array, NDArray[np.intp]]:
+    """LU factors and pivots of the Schur complement of a border, (k, k) and (k,).
+
+    Raises
+    ------
+    NotNearError
+        It is singular, or not finite.
+    """
+    if not np.all(np.isfinite(complement)):
+        raise NotNearError("the border has no finite response")
+    if not len(complement):
+        return complement, np.zeros(0, dtype=np.intp)
+    lu, pivots, zero = scipy.linalg.lapack.dgetrf(complement)
+    if zero:
+        raise NotNearError("the border is singular")
+    return lu, pivots
 
 
 def improved(matrix: Any, nearly: Callable[[Array], Array], rhs: Array) -> Array:
