@@ -13,9 +13,9 @@ from petalfoil.analysis.operating_point import operating_point
 from petalfoil.case import Case
 from petalfoil.equilibrium import line_sets
 from petalfoil.equilibrium.line_contacts import LineContacts, NoLinesError
-from petalfoil.equilibrium.line_dips import closed_between
+from petalfoil.equilibrium.line_dips import PENETRATION, closed_between
 from petalfoil.equilibrium.line_sets import split, with_lines
-from petalfoil.equilibrium.line_signs import EARLY_PULL, PENETRATION, closed_beside, dips
+from petalfoil.equilibrium.line_signs import EARLY_PULL, closed_beside, dips
 from petalfoil.equilibrium.line_stretches import Stretches, revised_in_time
 from petalfoil.equilibrium.run_context import current_run, running
 from petalfoil.physics.line_points import LinePoints

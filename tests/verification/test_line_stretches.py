@@ -11,7 +11,7 @@ from petalfoil.analysis.orbit_motion import follow
 from petalfoil.analysis.release import OrbitRequest
 from petalfoil.equilibrium.line_contacts import LineContacts
 from petalfoil.equilibrium.line_signs import EARLY_PULL, dips
-from petalfoil.equilibrium.line_stretches import Stretches, revised_in_time, slopes_at_single
+from petalfoil.equilibrium.line_stretches import Stretches, revised_in_time
 from tests.cases import case
 from tests.line_states import LINE, give_gaps, without_contacts
 
@@ -48,7 +48,7 @@ def test_a_single_node_becomes_a_point_once_the_gap_no_longer_leans(free: LineCo
     before = Stretches.of(ahead, len(free.held))
     assert before.leaning[node] < 0.0
     assert np.count_nonzero(before.leaning) == 1
-    assert slopes_at_single(behind)[node] > 0.0
+    assert behind.slopes_at_single[node] > 0.0
     assert revised_in_time(ahead, EARLY_PULL, before) is None
     point = revised_in_time(behind, EARLY_PULL, before)
     assert point is not None
@@ -64,7 +64,7 @@ def test_a_node_stays_where_the_gap_dips_on_its_other_side(free: LineContacts) -
     along = parabola(free, -0.05)
     along[NODE + 2] = 4.0
     kinked = with_gaps(free, along, (NODE,))
-    assert slopes_at_single(kinked).max() > 0.0
+    assert kinked.slopes_at_single.max() > 0.0
     assert revised_in_time(kinked, EARLY_PULL, before) is None
 
 

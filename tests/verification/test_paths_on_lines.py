@@ -14,10 +14,10 @@ from petalfoil.analysis.static import static
 from petalfoil.case import Case
 from petalfoil.equilibrium.friction_handover import at_nodes
 from petalfoil.equilibrium.friction_history import PathEnd, assembled, moved
-from petalfoil.equilibrium.line_dips import at_both_nodes, closed_between, lowest_in_cells
+from petalfoil.equilibrium.line_dips import PENETRATION, at_both_nodes, closed_between, lowest_in_cells
 from petalfoil.equilibrium.line_friction_path import slide_on_lines
 from petalfoil.equilibrium.line_handover import on_lines
-from petalfoil.equilibrium.line_signs import PENETRATION, closed_beside
+from petalfoil.equilibrium.line_signs import closed_beside
 from petalfoil.equilibrium.pack_at_rest import unloaded
 from petalfoil.equilibrium.pack_on_lines import PackOnLines
 from petalfoil.equilibrium.rubbing_line_tangent import RubbingLineTangent

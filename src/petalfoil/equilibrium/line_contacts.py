@@ -22,11 +22,13 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from petalfoil.equilibrium.line_dips import PENETRATION, closed_between
 from petalfoil.equilibrium.line_tangent import LineChange, LineResiduals, LineTangent
 from petalfoil.equilibrium.linear_response import SmallMotion
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.small_motion import ON_LINES
 from petalfoil.equilibrium.travelling_contacts import TravellingContacts, travelling_contacts
+from petalfoil.physics.contact_points import MARGIN
 from petalfoil.physics.line_points import LinePoints
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE, positive_step
 from petalfoil.system.coupled import CoupledProblem, Linearization
@@ -107,6 +109,32 @@ class LineContacts:
     def slopes(self) -> Array:
         """`p'` at the points, (k,)."""
         return np.asarray(self.along[1])
+
+    @cached_property
+    def closed_between_nodes(self) -> LinePoints:
+        """Places between nodes where gaps are least, and below zero."""
+        return closed_between(self.points, self.gaps, PENETRATION)
+
+    @cached_property
+    def single_nodes(self) -> Mask:
+        """Contacts at single nodes away from the ends of their lines and from points, (m,)."""
+        alone, near = np.zeros(len(self.held), dtype=np.bool_), np.zeros(len(self.held), dtype=np.bool_)
+        near[self.points.beside.ravel()] = True
+        for lines in self.points.lines:
+            held = np.pad(self.held[lines.number], ((0, 0), (1, 1)))
+            single = held[:, 1:-1] & ~held[:, :-2] & ~held[:, 2:] & ~near[lines.number]
+            single[:, :MARGIN] = single[:, len(lines.phi) - MARGIN :] = False
+            alone[lines.number[single]] = True
+        return alone
+
+    @cached_property
+    def slopes_at_single(self) -> Array:
+        """Slopes of the gaps at contacts at single nodes, zero at all others; (m,) [1/rad]."""
+        alone, slopes = np.flatnonzero(self.single_nodes), np.zeros(len(self.held))
+        if len(alone):
+            points = self.points.at_nodes(alone)
+            slopes[points.nearest] = points.along(self.gaps)[1]
+        return slopes
 
     @cached_property
     def closed(self) -> Array:

@@ -16,6 +16,9 @@ from petalfoil.physics.line_points import LinePoints
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
+PENETRATION = 1e-4
+"""A gap this far below zero gains a contact, in units of the reference film (1 nm)."""
+
 
 def closed_between(points: LinePoints, gaps: Array, depth: float) -> LinePoints:
     """Places between nodes where gaps are least, and deeper than `depth` below zero; `gaps` (m,) at all nodes.

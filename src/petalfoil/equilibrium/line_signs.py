@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.line_contacts import LineContacts, StateOnLines
-from petalfoil.equilibrium.line_dips import closed_between
+from petalfoil.equilibrium.line_dips import PENETRATION
 from petalfoil.physics.contact_points import MARGIN, POINT_NODES
 from petalfoil.physics.line_points import LinePoints
 from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
@@ -20,9 +20,6 @@ from petalfoil.solvers.problem import RESIDUAL_TOLERANCE
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
-
-PENETRATION = 1e-4
-"""A gap this far below zero gains a contact, in units of the reference film (1 nm)."""
 
 MEETING = 0.03
 """Points this near to each other on a line become one, in cells."""
@@ -130,20 +127,8 @@ def without(state: StateOnLines, nodes: Mask, points: Mask) -> StateOnLines:
 
 def freed(state: StateOnLines) -> StateOnLines:
     """With points in place of contacts at single nodes away from the ends of their lines: they are free to travel."""
-    alone = single_nodes(state)
+    alone = state.single_nodes
     return with_points_at(state, alone, reactions_at_nodes(state), alone)
-
-
-def single_nodes(state: LineContacts) -> Mask:
-    """Contacts at single nodes away from the ends of their lines and from points, (m,)."""
-    alone, near = np.zeros(len(state.held), dtype=np.bool_), np.zeros(len(state.held), dtype=np.bool_)
-    near[state.points.beside.ravel()] = True
-    for lines in state.points.lines:
-        held = np.pad(state.held[lines.number], ((0, 0), (1, 1)))
-        single = held[:, 1:-1] & ~held[:, :-2] & ~held[:, 2:] & ~near[lines.number]
-        single[:, :MARGIN] = single[:, len(lines.phi) - MARGIN :] = False
-        alone[lines.number[single]] = True
-    return alone
 
 
 def freed_near_ends(state: StateOnLines) -> StateOnLines:
@@ -207,7 +192,7 @@ def dips(state: LineContacts, below: Index, known: Mask | None = None) -> LinePo
     """
     taken = covered(state) if known is None else covered(state) | known
     taken[below] = True
-    there = closed_between(state.points, state.gaps, PENETRATION)
+    there = state.closed_between_nodes
     return there.kept(~np.any(taken[there.beside], axis=1))
 
 
@@ -217,7 +202,7 @@ def closed_beside(state: StateOnLines, known: Mask | None = None) -> StateOnLine
     A contact that spreads splits. A cell that has a point has no other minimum. Those beside contacts at nodes, and
     beside nodes `known` (m,), are not looked for.
     """
-    there = closed_between(state.points, state.gaps, PENETRATION)
+    there = state.closed_between_nodes
     taken = state.held if known is None else state.held | known
     own = np.isin(there.beside[:, 0], state.points.beside[:, 0])
     there = there.kept(~(own | np.any(taken[there.beside], axis=1)))

@@ -14,15 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.line_contacts import LineContacts, StateOnLines
-from petalfoil.equilibrium.line_dips import closed_between
-from petalfoil.equilibrium.line_signs import (
-    PENETRATION,
-    closed_beside,
-    reactions_at_nodes,
-    revised,
-    single_nodes,
-    with_points_at,
-)
+from petalfoil.equilibrium.line_dips import PENETRATION
+from petalfoil.equilibrium.line_signs import closed_beside, reactions_at_nodes, revised, with_points_at
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -52,8 +45,8 @@ class Stretches(NamedTuple):
         dipping = np.zeros(contacts, dtype=np.bool_)
         if state is None:
             return cls(np.zeros(contacts), dipping)
-        dipping[closed_between(state.points, state.gaps, PENETRATION).beside] = True
-        return cls(slopes_at_single(state), dipping)
+        dipping[state.closed_between_nodes.beside] = True
+        return cls(state.slopes_at_single, dipping)
 
 
 def revised_in_time(state: StateOnLines, pull: float, before: Stretches) -> StateOnLines | None:
@@ -64,22 +57,13 @@ def revised_in_time(state: StateOnLines, pull: float, before: Stretches) -> Stat
     the node becomes a point: it is one there, so that nothing moves. Gaps that were below zero between nodes `before`
     gain no point.
     """
-    turned = np.flatnonzero(before.leaning * slopes_at_single(state) < 0.0)
+    turned = np.flatnonzero(before.leaning * state.slopes_at_single < 0.0)
     if len(turned) and not np.any(state.doubled):
         free = np.zeros_like(state.held)
         free[turned[rises_on_both_sides(state, turned)]] = True
         if free.any():
             return with_points_at(state, free, reactions_at_nodes(state), free)
     return stretched(state) or revised(state, pull, before.dipping) or closed_beside(state, before.dipping)
-
-
-def slopes_at_single(state: LineContacts) -> Array:
-    """Slopes of the gaps at contacts at single nodes (`single_nodes`), zero at all others; (m,) [1/rad]."""
-    alone, slopes = np.flatnonzero(single_nodes(state)), np.zeros(len(state.held))
-    if len(alone):
-        points = state.points.at_nodes(alone)
-        slopes[points.nearest] = points.along(state.gaps)[1]
-    return slopes
 
 
 def rises_on_both_sides(state: LineContacts, nodes: Index) -> Mask:

@@ -178,10 +178,11 @@ class LinePoints:
 
     def at_nodes(self, gaps: Index) -> LinePoints:
         """Points at the nodes of some gaps alone."""
-        none = np.zeros(0, dtype=np.intp)
+        none, asked = np.zeros(0, dtype=np.intp), np.zeros(self.gaps, dtype=np.bool_)
+        asked[gaps] = True
         kind, line, phi = [none], [none], [np.zeros(0)]
         for number, lines in enumerate(self.lines):
-            on, node = np.nonzero(np.isin(lines.number, gaps))
+            on, node = np.nonzero(asked[lines.number])
             kind.append(np.full(len(on), number))
             line.append(on)
             phi.append(lines.phi[node])
