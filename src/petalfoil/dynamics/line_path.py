@@ -12,6 +12,7 @@ from petalfoil.dynamics.time_state import AtNodes, Instant, TimeState
 from petalfoil.equilibrium.line_contacts import LineContacts
 from petalfoil.equilibrium.line_sets import start_at
 from petalfoil.equilibrium.line_signs import freed_near_ends
+from petalfoil.equilibrium.line_stretches import Stretches
 from petalfoil.solvers.constraints import constrain
 from petalfoil.system.time_step import StepProblem
 
@@ -49,7 +50,8 @@ def on_lines_instant(tau: float, state: LineContacts, moving: TimeState, change:
     bare = LineContacts(
         state.problem, state.x, state.points, state.reaction, state.held, state.held_reaction, load=None
     )
-    return Instant(tau, moving, change, AtNodes(state.x, state.lam, state.active), lines=bare)
+    nodal, left = AtNodes(state.x, state.lam, state.active), Stretches.of(state, len(state.held))
+    return Instant(tau, moving, change, nodal, lines=bare, stretches=left)
 
 
 def line_guesses(problem: StepProblem, path: list[Instant], tau: float) -> list[LineContacts]:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.line_contacts import LineContacts
+from petalfoil.equilibrium.line_stretches import Stretches
 from petalfoil.system.friction import FrictionState
 from petalfoil.system.point_equations import PointEquations, PointState
 
@@ -87,6 +88,8 @@ class Instant:
         None where contacts are at nodes.
     lines : LineContacts or None
         Contacts in 3-D where they are lines between nodes; None of others.
+    stretches : Stretches or None
+        What its gaps leave of stretches of contacts at nodes; None where that has not been asked for.
     """
 
     tau: float
@@ -96,6 +99,7 @@ class Instant:
     friction: FrictionState | None = None
     equations: PointEquations | None = None
     lines: LineContacts | None = None
+    stretches: Stretches | None = None
 
     @property
     def between_nodes(self) -> bool:

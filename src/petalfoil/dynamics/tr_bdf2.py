@@ -179,12 +179,12 @@ def advance(
     bearing: RotorBearing, stage: Stage, tau: float, path: list[Instant], tangent: Tangents | None
 ) -> Reached | None:
     """Where a stage leads at `tau`, within a step or at its end; None if it has no solution."""
+    last = path[-1]
     if bearing.points is not None:
         return advance_points(PointStage(bearing.points, stage, bearing.compiled), tau, path, tangent)
     if bearing.lines:
-        before = Stretches.of(path[-1].lines, len(path[-1].active))
+        before = last.stretches or Stretches.of(last.lines, len(last.active))
         return advance_lines(LineStage(stage, before), tau, path, tangent)
-    last = path[-1]
     for x, e in guesses(path, tau):
         at_nodes = tangent if isinstance(tangent, BorderedTangent) else None
         found = solved(stage, (x, e, last.active), last, at_nodes)
