@@ -53,12 +53,12 @@ def records(case: Case, displacements: NDArray[np.float64]) -> Iterator[object]:
 
 def cold_3d(quick: bool) -> None:
     """A position from nothing in 3-D, on the default grid."""
-    petalfoil.solve(pack("paper_n8_spatial", *((12, 4) if quick else (0, 0)), down=2e-4))
+    petalfoil.solve(pack("paper_n8_spatial", *((8, 4) if quick else (0, 0)), down=2e-4))
 
 
 def warm_3d(quick: bool) -> float:
     """Three followed points of a curve in 3-D [s]."""
-    case = pack("paper_n8_spatial", *((12, 4) if quick else (24, 16)))
+    case = pack("paper_n8_spatial", *((8, 4) if quick else (24, 16)))
     points = records(case, 2e-5 * np.arange(4))
     next(points)
     begin = time.process_time()
@@ -69,38 +69,38 @@ def warm_3d(quick: bool) -> float:
 
 def curve_2d(quick: bool) -> None:
     """Fifteen points of a load characteristic in 2-D."""
-    petalfoil.curve(pack("paper_n8", 32 if quick else 0), np.linspace(0.0, 280e-6, 15))
+    petalfoil.curve(pack("paper_n8", 12 if quick else 0), np.linspace(0.0, 280e-6, 15))
 
 
 def frequencies_3d(quick: bool) -> None:
     """Stiffness and damping at twenty frequencies in 3-D."""
-    case = pack("paper_n8_spatial", *((12, 4) if quick else (24, 16)), down=1e-4)
+    case = pack("paper_n8_spatial", *((8, 4) if quick else (24, 16)), down=1e-4)
     petalfoil.coefficients(case, frequencies=np.linspace(400.0, 8000.0, 20))
 
 
 def threshold(quick: bool) -> None:
     """Critical mass, natural modes and threshold speed in 2-D."""
-    petalfoil.stability(pack("paper_n8", 32 if quick else 0), load="20 N", mass="2 kg")
+    petalfoil.stability(pack("paper_n8", 12 if quick else 0), load="20 N", mass="2 kg")
 
 
 def liftoff(quick: bool) -> None:
     """Lift-off and touchdown of the rig in 2-D."""
-    petalfoil.liftoff(pack("rig", 24 if quick else 0), loads=[46.4])
+    petalfoil.liftoff(pack("rig", 12 if quick else 0), loads=[46.4])
 
 
 def runup(quick: bool) -> None:
     """A run-up of the rig over nine speeds and back."""
-    petalfoil.runup(pack("rig", 24 if quick else 0), load="46.4 N", to="12000 rpm", points=5 if quick else 9)
+    petalfoil.runup(pack("rig", 12 if quick else 0), load="46.4 N", to="12000 rpm", points=5 if quick else 9)
 
 
 def orbit_2d(quick: bool) -> None:
     """Six turns in 2-D."""
-    petalfoil.orbit(pack("orbit_n8", 24 if quick else 0), revolutions=1.0 if quick else 6.0)
+    petalfoil.orbit(pack("orbit_n8", 12 if quick else 0), revolutions=0.2 if quick else 6.0)
 
 
 def orbit_fifth(quick: bool) -> float:
     """Six turns in 2-D, the fifth such motion of a process [s]: with numba it has paid for compiled loops by then."""
-    for _ in range(4):
+    for _ in range(0 if quick else 4):
         orbit_2d(quick)
     begin = time.process_time()
     orbit_2d(quick)
@@ -119,7 +119,7 @@ def spatial_orbit(quick: bool) -> Case:
 
 def orbit_3d(quick: bool) -> None:
     """Three turns in 3-D."""
-    petalfoil.orbit(spatial_orbit(quick), revolutions=1.0 if quick else 3.0)
+    petalfoil.orbit(spatial_orbit(quick), revolutions=0.2 if quick else 3.0)
 
 
 def per_turn(case: Case, few: float, many: float) -> float:
@@ -140,7 +140,7 @@ def per_turn(case: Case, few: float, many: float) -> float:
 
 def orbit_turn_2d(quick: bool) -> float:
     """A turn in 2-D, without the start of the motion [s]."""
-    return per_turn(pack("orbit_n8", 24 if quick else 0), *((1.0, 2.0) if quick else (6.0, 46.0)))
+    return per_turn(pack("orbit_n8", 12 if quick else 0), *((1.0, 2.0) if quick else (6.0, 46.0)))
 
 
 def orbit_turn_3d(quick: bool) -> float:

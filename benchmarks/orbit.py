@@ -76,8 +76,8 @@ FULL = (
     OrbitCase("3d", "3d", {"model.cells_per_pitch": 24, "model.axial_cells": 16}, seconds=60.0, sample=40.0),
 )
 QUICK = (
-    OrbitCase("2d", "2d", {"model.cells_per_pitch": 16}, revolutions=2.0, sample=2.0),
-    OrbitCase("3d", "3d", {"model.cells_per_pitch": 10, "model.axial_cells": 6}, revolutions=1.0, sample=2.0),
+    OrbitCase("2d", "2d", {"model.cells_per_pitch": 16}, revolutions=2.0, sample=0.5),
+    OrbitCase("3d", "3d", {"model.cells_per_pitch": 10, "model.axial_cells": 6}, revolutions=1.0, sample=0.5),
 )
 
 

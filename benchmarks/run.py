@@ -41,7 +41,7 @@ def groups(quick: bool, classic_seconds: float) -> dict[str, Callable[[], list[R
     """The measurements of each group. A quick run has the same rows; its grids are too small for the limits."""
     if quick:
         return {
-            "race": lambda: race.rows(race.QUICK, min(classic_seconds, 10.0), 1),
+            "race": lambda: race.rows(race.QUICK, classic_seconds, 1),
             "point": lambda: warm_point.rows(warm_point.Grid(12, 6), 3, 2),
             "growth": lambda: growth.rows((growth.Grid(8, 4), growth.Grid(14, 8)), None),
             "whole": lambda: whole_length.rows(whole_length.QUICK, 1),

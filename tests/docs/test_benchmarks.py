@@ -52,14 +52,14 @@ def test_a_quick_run_of_the_plain_journal(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_a_quick_run_has_all_rows(tmp_path: Path) -> None:
     before = tmp_path / "before.json"
-    rows = {row["name"]: row for row in measured(before)}
+    rows = {row["name"]: row for row in measured(before, "--classic-seconds", "600")}  # it needs two on a slow machine
     assert set(rows) >= {"warm_count", "warm_total", "factor_original", "growth_time", "growth_memory", "journal_48x16"}
     shares = [rows[f"warm_{name}"]["ratio"] for name in ("factorisation", "assembly", "solves", "rest")]
     assert_allclose(sum(shares), 1.0, rtol=1e-12)
     assert min(shares) > 0.0
     assert_allclose(rows["warm_total"]["ratio"] * rows["warm_factorisation"]["ratio"], 1.0, rtol=1e-12)
     assert rows["warm_count"]["ratio"] >= 2.0
-    assert rows["race_n8_14_e0_numpy"]["details"]["apart at 1e-05"] < 1e-4
+    assert rows["race_n8_11_e0_numpy"]["details"]["apart at 1e-05"] < 1e-4
     again = run("benchmarks/run.py", "--quick", "--only", "point", "--against", str(before)).stdout
     assert again.count("(was ") == len([name for name in rows if name.startswith(("warm", "factor"))])
 
