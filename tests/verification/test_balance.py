@@ -128,17 +128,11 @@ def check(found: list[Drawn]) -> None:
 
 
 @pytest.mark.slow
-def test_fifteen_random_bearings() -> None:
-    found, _ = run_random(15)
-    check(found)
-    assert np.median([cost(drawn.balance) - drawn.cost for drawn in found]) <= 2  # 1 when this was written
-
-
-@pytest.mark.slow
-def test_three_hundred_random_bearings() -> None:
+@pytest.mark.parametrize("count", [40, pytest.param(300, marks=pytest.mark.long)])
+def test_random_bearings(count: int) -> None:
     """All that have an answer where they were drawn are found; nearly all there, the others on a stable branch."""
-    found, without = run_random(300)
-    assert without <= 6
+    found, without = run_random(count)
+    assert without <= 0.02 * count
     check(found)
     assert np.mean([drawn.same for drawn in found]) >= 0.96
     assert all(drawn.balance.scalars["stable"] for drawn in found)

@@ -112,17 +112,11 @@ def check(solved: list[tuple[Case, Record]]) -> None:
 
 
 @pytest.mark.slow
-def test_ten_random_packs() -> None:
-    solved, failed = run_random(10, SEED)
-    assert not failed
-    check(solved)
-
-
-@pytest.mark.slow
-def test_two_hundred_random_packs() -> None:
-    """198 at least; the rest end in the typed error. (199 when this was written.)"""
-    solved, failed = run_random(200, SEED)
-    assert len(solved) >= 198
+@pytest.mark.parametrize("count", [50, pytest.param(200, marks=pytest.mark.long)])
+def test_random_packs(count: int) -> None:
+    """Of a hundred 99 at least; the rest end in the typed error. (199 of 200 when this was written.)"""
+    solved, failed = run_random(count, SEED)
+    assert len(solved) >= 0.99 * count
     assert all(error.history and error.advice for _, error in failed)
     check(solved)
 
