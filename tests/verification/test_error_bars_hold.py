@@ -93,7 +93,7 @@ def test_an_accuracy_is_met_with_more_harmonics_where_no_finer_grid_would_do() -
     assert np.max(by_harmonics) > 3e-3 * np.max(np.abs(usual.fields["stiffness"]))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_bars_of_petals_that_rub_hold_against_more_harmonics_and_a_finer_grid(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two bearings at five amplitudes against 64 harmonics at six frequencies of their own, on twice the cells.
 

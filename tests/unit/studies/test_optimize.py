@@ -177,7 +177,7 @@ def test_what_cannot_be_optimized_is_refused(vary: str, words: dict[str, object]
     assert told in str(refused.value)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_petal_bearing_is_optimized_within_few_designs() -> None:
     """Minimum film thickness of the paper's bearing within stress and contact: the best known within 2 %."""
     bearing = PAPER.replace(**{"model.kind": "2d", "model.cells_per_pitch": 24})
