@@ -147,18 +147,18 @@ def test_a_cold_start_with_all_that_is_asked_about_it() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in TEN if name not in ("rig", "random 1")])
+@pytest.mark.parametrize("name", list(TEN))
 def test_answers_with_contact_points_cost_the_same_on_fine_grids(name: str) -> None:
     """Pack, film, contact points, growth rate and other equilibria, on 32 cells 14 to 21 when this was written.
 
-    On finer grids two or three, and 13 to 20 under the coarse film.
+    On finer grids two or three, and 12 to 18 under the coarse film.
     """
     for cells in (32, 64, 512):
         s = solve.record(TEN[name].replace(**{"model.cells_per_pitch": cells})).scalars
         own = sum(int(s[key]) for key in COSTS)  # type: ignore[call-overload]
         assert s["contact_model"] == AT_POINTS
         assert own <= (21 if cells == 32 else 3)
-        assert own + int(s["coarse_factorizations"]) <= 22  # type: ignore[call-overload]
+        assert own + int(s["coarse_factorizations"]) <= (21 if cells == 32 else 20)  # type: ignore[call-overload]
 
 
 @pytest.mark.slow

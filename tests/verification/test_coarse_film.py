@@ -7,9 +7,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 import petalfoil
-from petalfoil.analysis.by_coarse_film import by_coarse_film
+from petalfoil.analysis.by_coarse_film import by_coarse_film, from_nothing
 from petalfoil.analysis.operating_point import at_position, operating_point, with_reported
 from petalfoil.case import Case
+from petalfoil.dynamics import film_stability
+from petalfoil.dynamics.film_stability import eigenvalue_at_hand, leading_eigenvalue
 from petalfoil.equilibrium.coarse_film import carried, coarser_film, from_coarse_film
 from petalfoil.equilibrium.contact_sets import revised
 from petalfoil.equilibrium.point_contacts import PointContacts
@@ -86,6 +88,30 @@ def test_results_say_so_and_count_both_grids() -> None:
     assert told["stable"]
     assert float(str(told["residual"])) <= 1e-8
     assert float(str(told["reaction_balance_error"])) <= 1e-9
+
+
+@pytest.mark.parametrize("name", ["paper_n8", "paper_n10", "rig"])
+def test_the_growth_rate_follows_from_the_tangent_at_hand(name: str) -> None:
+    """Without a factorisation, near enough for its sign."""
+    coarse = build_problem(case(name, **{"model.cells_per_pitch": 32, "operation.eccentricity": (0.0, -10e-6)}))
+    with running() as run:
+        found = from_nothing(coarse, None)
+        assert found is not None
+        before = run.film.factorizations
+        near = eigenvalue_at_hand(found)
+        assert (run.film.factorizations, run.probes.factorizations) == (before, 0)
+        exact = leading_eigenvalue(found)
+    assert run.probes.factorizations == 1
+    assert abs(near - exact) <= 0.02 * abs(exact)
+
+
+def test_a_growth_rate_in_doubt_is_found_exactly(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(film_stability, "DOUBT", 1e3)
+    with running() as run:
+        found = from_nothing(build_problem(bearing(32)), None)
+        assert found is not None
+        assert eigenvalue_at_hand(found) == leading_eigenvalue(found)
+    assert run.probes.factorizations == 2
 
 
 def test_a_force_far_from_that_under_the_coarse_film_is_another_equilibrium(known: PointContacts) -> None:

@@ -14,8 +14,10 @@ from numpy.typing import NDArray
 from petalfoil.analysis.branch_choice import others
 from petalfoil.analysis.neighbours import begun, keep
 from petalfoil.case import Case
+from petalfoil.dynamics.film_stability import eigenvalue_at_hand
 from petalfoil.equilibrium.branches import by_short_steps
 from petalfoil.equilibrium.coarse_film import coarser_film, from_coarse_film, points_near
+from petalfoil.equilibrium.point_contacts import PointContacts
 from petalfoil.equilibrium.run_context import counted_as_coarse, current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.equilibrium.whole_length import balance_from_nothing, first_attempt
@@ -40,9 +42,9 @@ def by_coarse_film(problem: CoupledProblem, load: Array | None) -> Solution | No
         coarse = coarse.at(bearing_number=problem.bearing_number, displacement=problem.displacement)
         there = None if load is None else load * problem.layout.scales.force / coarse.layout.scales.force
         first = alone(case, coarse, there)
-        known = None if first is None else points_near(first)
-        run.note("coarse film", outcome="no equilibrium leads on" if known is None else "contact points")
-    if first is None or known is None:
+        run.note("coarse film", outcome="no equilibrium leads on" if first is None else "contact points")
+    known = None if first is None else first.elements
+    if first is None or not isinstance(known, PointContacts):
         return None
     found = from_coarse_film(known, problem, load)
     if found is None:
@@ -52,16 +54,33 @@ def by_coarse_film(problem: CoupledProblem, load: Array | None) -> Solution | No
 
 
 def alone(case: Case, problem: CoupledProblem, load: Array | None) -> Solution | None:
-    """The equilibrium with contacts at nodes from nothing; None where others are known, or may be by its path."""
-    start = partial(first_attempt, problem) if load is None else partial(balance_from_nothing, problem, load)
+    """The equilibrium with contact points from nothing; None where others are known, or may be by its path."""
     try:
-        found, rate = begun(problem, load, start)
+        found, rate = begun(problem, load, partial(from_nothing, problem, load), eigenvalue_at_hand)
     except ConvergenceError as failure:  # the grid that was asked for will say why
         current_run().note("coarse film", outcome=str(failure))
         return None
-    if found is None:
+    if found is None or rate.real > 0.0 or is_doubtful(found, load):
         return None
-    sure = not rate.real > 0.0 and (load is not None or not by_short_steps(found))
-    sole = sure and (load is not None or others(case, problem, found, rate)[0] == 1)
-    keep(found, alone=sole)
-    return found if sole else None
+    sole = load is not None or others(case, problem, found, rate)[0] == 1
+    keep(replace(found, elements=None, elements_sought=False), alone=sole)
+    return at_points(found) if sole else None
+
+
+def from_nothing(problem: CoupledProblem, load: Array | None) -> Solution | None:
+    """The equilibrium from nothing, with its contact points; None without such, or if others may be by its path."""
+    first = first_attempt(problem) if load is None else balance_from_nothing(problem, load)
+    return None if first is None or is_doubtful(first, load) else at_points(first)
+
+
+def is_doubtful(found: Solution, load: Array | None) -> bool:
+    """Whether there may be other equilibria by the path to one; not asked under a load."""
+    return load is None and by_short_steps(found)
+
+
+def at_points(solution: Solution) -> Solution | None:
+    """The solution with the contact points near it; None where there are none. They are sought once."""
+    if solution.elements is not None:
+        return solution
+    points = points_near(solution)
+    return None if points is None else replace(solution, elements=points, elements_sought=True)

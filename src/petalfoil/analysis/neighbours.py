@@ -147,7 +147,10 @@ def beside(memory: Memory, place: Place) -> Iterator[None]:
 
 
 def begun(
-    problem: CoupledProblem, load: Array | None, from_nothing: Callable[[], Found]
+    problem: CoupledProblem,
+    load: Array | None,
+    from_nothing: Callable[[], Found],
+    rate_of: Callable[[Solution], complex] = leading_eigenvalue,
 ) -> tuple[Solution | Found, complex]:
     """An equilibrium and its leading eigenvalue: from a neighbouring case where that leads to a stable one.
 
@@ -159,6 +162,8 @@ def begun(
         Load over the unit of force [1].
     from_nothing : callable
         Finds the equilibrium of the case by itself; called where no neighbour leads to a stable one.
+    rate_of : callable
+        Finds the leading eigenvalue of what `from_nothing` found.
 
     Returns
     -------
@@ -177,7 +182,7 @@ def begun(
         if near is not None and stable:
             return near, rate
     start, found = time.thread_time(), from_nothing()
-    rate = NOTHING if found is None else leading_eigenvalue(found)
+    rate = NOTHING if found is None else rate_of(found)
     if memory is not None:
         memory.cold, memory.cold_seconds = memory.cold + 1, memory.cold_seconds + time.thread_time() - start
     return found, rate

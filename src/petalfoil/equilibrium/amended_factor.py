@@ -25,7 +25,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError
-from petalfoil.solvers.near_factor import Inverse, NearInverse, NotNearError, factorized
+from petalfoil.physics.gap_curves import ContactPoints
+from petalfoil.solvers.near_factor import Inverse, NearbyFactor, NearInverse, NotNearError, factorized
 from petalfoil.solvers.sparse_lu import Factor, LinearSolver, SingularMatrixError
 from petalfoil.system.point_equations import PointEquations
 
@@ -39,6 +40,11 @@ The rig has some 150, with those that points have travelled over."""
 OWN = 2
 """Tangents of a search with factors of their own, before the last of these serves on: short searches have no more, and
 to amend one costs some hundred solves, as much as three or four factors."""
+
+
+NEARBY = 0.5
+"""Farthest that a point has travelled, in elements, where the factor of a state with the same contacts serves as it is:
+GMRES takes some six solves for each of Newton's, no more than another factor takes."""
 
 
 @dataclass(eq=False)
@@ -180,6 +186,12 @@ class AmendedFactor(NearInverse):
         return np.concatenate([known.factor.solve_transposed(ahead)[:common], found[:k]])
 
 
+def close_by(one: ContactPoints, other: ContactPoints) -> bool:
+    """Whether two states have the same contacts, none of which is farther than `NEARBY` from where it was."""
+    same = np.array_equal(one.curve, other.curve) and np.array_equal(one.inner, other.inner)
+    return same and bool(np.all(np.abs(one.position - other.position) <= NEARBY))
+
+
 def border(known: NodalAnswers, equations: PointEquations) -> tuple[Array, Array]:
     """`J_12` and `J_21` of a state as loads on the nodal gaps in use, and as sums of these gaps, (m, j + k) each."""
     points, (columns, weights) = equations.state.points, equations.gaps.weights
@@ -223,10 +235,13 @@ class ServingFactor:
         What it has answered; None before another state asks for it.
     own : int
         States that still get a factor of their own, before one is amended.
+    sparing : bool
+        Whether states close by with the same contacts do with the factor at hand already before that.
     """
 
     solver: LinearSolver
     own: int = OWN
+    sparing: bool = False
     made: tuple[PointEquations, Factor] | None = None
     known: NodalAnswers | None = None
 
@@ -248,9 +263,14 @@ class ServingFactor:
         NoPointsError
             The contacts do not determine the petals.
         """
-        if self.own > 0 or self.made is None or self.made[0].whole is not equations.whole:
+        if self.made is None or self.made[0].whole is not equations.whole:
             return self.renewed(equations)
         if equations.journal_friction:  # other forces than those of the gaps act on the petals (D6)
+            return self.renewed(equations)
+        before, factor = self.made
+        if self.sparing and self.known is None and close_by(before.state.points, equations.state.points):
+            return NearbyFactor(equations.steady, factor)
+        if self.own > 0:
             return self.renewed(equations)
         try:
             self.known = self.known or NodalAnswers.of(*self.made)
@@ -301,6 +321,13 @@ class ServedTangent:
             The contacts do not determine the petals.
         """
         return self.served(lambda inverse: inverse.solve(rhs))
+
+    def nearly(self, rhs: Array) -> Array:
+        """Solve `J x = rhs`, (n,), as the factor at hand does without GMRES."""
+        inverse = self.inverse
+        if isinstance(inverse, NearInverse):
+            return inverse.nearly(rhs)
+        return np.asarray(inverse.solve(rhs))
 
     def solve_transposed(self, rhs: Array) -> Array:
         """Solve `J^T x = rhs`, rhs of shape (n,), likewise.

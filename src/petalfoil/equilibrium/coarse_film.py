@@ -43,6 +43,9 @@ SEARCHED = Search(48, 2)
 CARRIED = Search(12, 2)
 """The search for contact points from those of the coarse film: one or two tangents serve, the rig takes seven."""
 
+CARRIED_OWN = 1
+"""Tangents of that search with factors of their own: the first of them has the pressures that the others have."""
+
 APART = 0.1
 """Largest difference of the force from that under the coarse film, over that force."""
 
@@ -67,7 +70,7 @@ def points_near(solution: Solution) -> PointContacts | None:
     if whole is None or not constrain(problem.G, solution.active).determinate:
         return None
     try:
-        found = searched(PointEquations(whole, problem, start_at(whole, solution)), load, SEARCHED)
+        found = searched(PointEquations(whole, problem, start_at(whole, solution)), load, SEARCHED, sparing=True)
         agreeing(found, solution)
     except NoPointsError as failure:
         current_run().note("contact points", outcome=str(failure))
@@ -83,12 +86,11 @@ def from_coarse_film(known: PointContacts, problem: CoupledProblem, load: Array 
     before = known.equations.problem
     here = problem if load is None else problem.at(displacement=before.displacement)
     try:
-        found = clear_of_journal(tightened(searched(carried(known.equations, here), load, CARRIED), load))
+        found = searched(carried(known.equations, here), load, CARRIED, own=CARRIED_OWN)
+        answer = sampled_solution(clear_of_journal(tightened(found, load)), load)
     except NoPointsError as failure:
         current_run().note("fine film", outcome=str(failure))
         return None
-    assert isinstance(found, PointContacts)
-    answer = sampled_solution(found, load)
     apart = change_of_force(known, answer)
     current_run().note("fine film", force_apart=apart)
     return answer if apart <= APART else None

@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from petalfoil.equilibrium.amended_factor import ServingFactor
+from petalfoil.equilibrium.amended_factor import OWN, ServingFactor
 from petalfoil.equilibrium.contact_sets import SAMPLES, beside_contacts, merged, revised
 from petalfoil.equilibrium.element_tangent import ElementTangent, NoPointsError, scaled_force, unbalanced
 from petalfoil.equilibrium.point_prospects import SearchedSets, check_prospects
@@ -184,8 +184,10 @@ def with_points(
         return searched(start, load, SECOND)
 
 
-def searched(equations: PointEquations, load: Array | None, search: Search) -> PointContacts:
-    """The equilibrium that one search leads to.
+def searched(
+    equations: PointEquations, load: Array | None, search: Search, *, own: int = OWN, sparing: bool = False
+) -> PointContacts:
+    """The equilibrium that one search leads to; `own` and `sparing` are those of its `ServingFactor`.
 
     Raises
     ------
@@ -194,7 +196,8 @@ def searched(equations: PointEquations, load: Array | None, search: Search) -> P
     NoPointsError
         It leads nowhere.
     """
-    left, changes, seen, serving = search.most, 0, SearchedSets(), ServingFactor(current_run().film_solver)
+    left, changes, seen = search.most, 0, SearchedSets()
+    serving = ServingFactor(current_run().film_solver, own, sparing)
     while True:
         equations, steps, tangent = newton(equations, left, (load, serving), search)
         points, left = revised(equations), left - steps

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.linalg as la
@@ -76,13 +77,17 @@ def rightmost(pencil: Pencil, solver: LinearSolver, near: float = 0.0) -> comple
 def seen_from(place: float, pencil: Pencil, solver: LinearSolver) -> complex:
     """The same by Krylov spaces of the inverse of `J + place M`; of those near this `place`."""
     matrix = sp.csc_array(pencil.J + place * pencil.M) if place else pencil.J
-    factor = solver.factor(matrix, pencil.order)
+    return seen_through(solver.factor(matrix, pencil.order).solve, pencil, place)
+
+
+def seen_through(solve: Callable[[Array], NDArray[Any]], pencil: Pencil, place: float = 0.0) -> complex:
+    """The same by what solves with `J + place M`, or nearly: then the pencil is that of the matrix it solves with."""
     mass_rows = SparseRows(sp.csr_array(pencil.M)[pencil.stores])
 
     def held(mass: Array) -> Array:
         whole = np.zeros(mass_rows.shape[1])
         whole[pencil.stores] = mass
-        stored: Array = mass_rows @ factor.solve(whole)
+        stored: Array = mass_rows @ solve(whole)
         return stored
 
     return arnoldi(held, np.random.default_rng(0).standard_normal(mass_rows.shape[0]), place)

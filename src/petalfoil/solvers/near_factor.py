@@ -158,6 +158,27 @@ class NearFactor(NearInverse):
         )
 
 
+@dataclass(frozen=True)
+class NearbyFactor(NearInverse):
+    """The factor of a near matrix of the same unknowns: GMRES makes up for all that differs.
+
+    Attributes
+    ----------
+    factor : Factor
+        Of the near matrix.
+    """
+
+    factor: Factor
+
+    def nearly(self, rhs: Array) -> Array:
+        """Solve with the near matrix, (n,)."""
+        return np.asarray(self.factor.solve(rhs))
+
+    def nearly_transposed(self, rhs: Array) -> Array:
+        """Solve with its transpose, (n,)."""
+        return np.asarray(self.factor.solve_transposed(rhs))
+
+
 def factorized(complement: Array) -> tuple[Array, NDArray[np.intp]]:
     """LU factors and pivots of the Schur complement of a border, (k, k) and (k,).
 

@@ -89,6 +89,24 @@ def test_the_first_states_may_have_factors_of_their_own(known: PointEquations) -
     assert serving.solver.counter.factorizations == 2
 
 
+def test_states_close_by_are_spared_a_factor_of_their_own(known: PointEquations) -> None:
+    """Where the contacts are the same; others, and points that have travelled far, have one."""
+    sparing, points = ServingFactor(LinearSolver(), 3, sparing=True), known.state.points
+    near, far = (with_points(known, replace(points, position=points.position + part)) for part in (1e-3, 0.9))
+    rhs = np.random.default_rng(1).standard_normal(known.n)
+    sparing.tangent(known, None)
+    served = sparing.tangent(near, None).factor
+    assert isinstance(served, ServedTangent)
+    for found, matrix in ((served.solve(rhs), near.steady), (served.solve_transposed(rhs), near.steady.T)):
+        exact = np.linalg.solve(matrix.toarray(), rhs)
+        assert_allclose(found, exact, rtol=0.0, atol=10.0 * PRECISE * np.linalg.norm(exact))
+    assert sparing.solver.counter.factorizations == 1
+    sparing.tangent(far, None)
+    assert sparing.solver.counter.factorizations == 2
+    sparing.tangent(others(known), None)
+    assert sparing.solver.counter.factorizations == 3
+
+
 def test_too_many_nodal_loads_ask_for_another_factor(known: PointEquations, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(amended_factor, "MOST_LOADS", 3)
     serving = ServingFactor(LinearSolver(), 0)
