@@ -24,10 +24,10 @@ from tests.cases import EXAMPLES
 pytestmark = pytest.mark.slow
 
 KILLS = int(os.environ.get("PETALFOIL_KILLS", "1"))
-CASES = 40
+CASES = 20
 SWEEP = [
     *(sys.executable, "-m", "petalfoil", "sweep", str(EXAMPLES / "paper_n8.toml"), "--workers", "2"),
-    *("--vary", "petals.thickness=0.14 mm : 0.24 mm : 20", "--vary", "model.cells_per_pitch=12, 16"),
+    *("--vary", "petals.thickness=0.14 mm : 0.24 mm : 10", "--vary", "model.cells_per_pitch=12, 16"),
     *("--ask", "balance", "--load", "20 N"),
 ]
 PATIENCE = 120.0
