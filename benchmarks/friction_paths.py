@@ -68,7 +68,7 @@ def loaded_row(name: str, contacts: str, cells: int) -> str:
     bearing = Case.load(EXAMPLES / f"{name}.toml").replace(**kept, **grid, **held)
     found = balance.record(bearing, load=(0.0, -load), speed=speed).scalars
     micro = [1e6 * float(found[key]) for key in ("eccentricity_y", "min_film_thickness", "petal_friction_work")]
-    counts = [str(found[key]) for key in ("film_factorizations", "pack_factorizations")]
+    counts = [str(found[key]) for key in ("factorizations", "pack_iterations")]
     return (
         " | ".join([f"| {name}", contacts, f"{cells} × {AXIAL[cells]}", *(f"{x:.3f}" for x in micro), *counts]) + " |"
     )
