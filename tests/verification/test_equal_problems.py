@@ -124,7 +124,10 @@ def test_a_bearing_that_most_starts_do_not_answer(change: Callable[[Case], tuple
 @pytest.mark.slow
 @pytest.mark.parametrize("contacts", ["nodes", "points"])
 def test_a_bearing_that_takes_many_steps(contacts: str) -> None:
-    """Of bearing 103 rounding decides whether the first start leads anywhere, after 77 steps; no other start does."""
+    """Of bearing 103 rounding decides whether the first start leads anywhere, after 75 steps; no other start does.
+
+    Whether it does or not, the answer is the one to which the pack is followed from zero speed.
+    """
     case = drawn(103)[0].replace(**{"model.contacts": contacts})
     records = [
         solved(case.replace(**{"petals.youngs_modulus": (1.0 + share) * case.petals.youngs_modulus}))
@@ -132,7 +135,7 @@ def test_a_bearing_that_takes_many_steps(contacts: str) -> None:
     ]
     first, *rest = [record for record in records if record is not None]
     assert len(rest) == 3
-    assert all(names_branches(record) for record in (first, *rest))
+    assert all("followed from the assembled pack" in str(record.scalars["solution_path"]) for record in (first, *rest))
     assert [difference(first, record, 1.0) <= EQUAL for record in rest] == [True, True, True]
 
 
