@@ -29,10 +29,10 @@ from petalfoil.analysis.session import part
 from petalfoil.case import Case
 from petalfoil.equilibrium.run_context import Progress, current_run, running
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.results.layout import ArrayTable, Series, SinglePoint, at_speed
+from petalfoil.results.layout import ArrayTable, Cell, Series, SinglePoint, at_speed
 from petalfoil.results.parts import Branch, RunOutcome
 from petalfoil.results.record import Array, Record
-from petalfoil.results.summary import ABSENT
+from petalfoil.results.summary import ABSENT, number
 from petalfoil.results.variable import DataType, Role, TableLabel, Variable
 from petalfoil.units.writing import format_percent
 from petalfoil.walls import wall_kind
@@ -107,6 +107,9 @@ RESULTS = {
         "minimum film thickness under the smallest load in each direction that has no load capacity; else nan", "h_0",
         role=Role.BOOKKEEPING,
     ),
+    "capacity_over_direction_error": Variable(
+        ("load_orientation",), "N", "error bar of the load capacity in each direction", "dW_c"
+    ),
 }  # fmt: skip
 COLUMNS = {
     "speed": "speed",
@@ -126,15 +129,22 @@ def of_direction(record: Record, name: str, k: int, factor: float = 1.0) -> floa
     return ABSENT if math.isnan(value) else factor * value
 
 
+def capacity_in(record: Record, k: int) -> Cell:
+    """The load capacity in a direction, and its error bar where it has one."""
+    value, bar = (of_direction(record, f"capacity_over_direction{part}", k) for part in ("", "_error"))
+    return f"{number(value)} ± {number(bar)}" if isinstance(value, float) and isinstance(bar, float) else value
+
+
 TABLE = ArrayTable(
     dim="load_orientation",
     columns={
         "direction\ndeg": lambda record, k: math.degrees(float(record.coords["load_orientation"][k])),
-        "load capacity\nN": lambda record, k: of_direction(record, "capacity_over_direction", k),
+        "load capacity\nN": capacity_in,
         "film under the\nsmallest load µm": lambda record, k: of_direction(record, "film_under_smallest_load", k, 1e6),
     },
 )
 OVER = ("load_orientation", "capacity_over_direction", "film_under_smallest_load")
+BARS = ("capacity_over_direction_error",)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -177,10 +187,11 @@ class Least:
 
 
 @analysis(
-    SinglePoint(lists=OVER, table=TABLE),
-    Series(columns=COLUMNS, lists=OVER, at=at_speed),
+    SinglePoint(lists=OVER, histories=BARS, table=TABLE),
+    Series(columns=COLUMNS, lists=OVER, histories=BARS, at=at_speed),
     excludes={"speed": ("speeds",)},
     results=RESULTS,
+    error_bars=True,
 )
 def capacity(  # noqa: PLR0913 - the options of the verb
     case: Case,
@@ -269,8 +280,8 @@ def directions_of(case: Case, first: float, count: int) -> Array:
 def _points(
     search: CapacitySearch, speeds: list[float], progress: Progress | None, done: Sequence[Record] = ()
 ) -> Iterator[Record]:
-    for number, speed in enumerate(speeds[len(done) :], len(done)):
-        with running(part(progress, number, len(speeds)), f"capacity at {speed:.6g} rad/s"):
+    for place, speed in enumerate(speeds[len(done) :], len(done)):
+        with running(part(progress, place, len(speeds)), f"capacity at {speed:.6g} rad/s"):
             record = point(search, speed)
         yield record
 

@@ -274,10 +274,13 @@ def _part(progress: Progress | None, start: float, end: float, text: str) -> Pro
 def _is_result(name: str, record: Record) -> bool:
     """Whether a number answers the question; under a load the position of the journal does, and no force or moment.
 
-    Of two unequal bearings each carries a part of the load that is an answer.
+    Under the largest load both do, but for what limits it. Of two unequal bearings each carries a part of the load that
+    is an answer.
     """
+    if record.scalars.get("limited_by") in (FILM_RESULTS if name in FILM_RESULTS else (name,)):
+        return False
     if name in POSITION:
-        return "load_x" in record.scalars
+        return not {"load_x", "load_capacity"}.isdisjoint(record.scalars)
     if name in BALANCED and BALANCED[name] in record.scalars and "other_force_x" not in record.scalars:
         return False
     return SCALARS[name].role is Role.ANSWER and SCALARS[name].kind is DataType.FLOAT

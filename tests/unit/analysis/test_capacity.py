@@ -18,7 +18,7 @@ from petalfoil.equilibrium.at_limit import LoadedState, LoadLimit
 from petalfoil.equilibrium.element_tangent import NoPointsError
 from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.record import Record
-from petalfoil.results.summary import ABSENT
+from petalfoil.results.summary import ABSENT, number
 from petalfoil.solvers.near_factor import FactorAtHand
 from tests.cases import case
 from tests.random_packs import random_case
@@ -170,6 +170,25 @@ def test_turning_the_load_is_turning_the_petals_back() -> None:
     back = petalfoil.capacity(PETALS.replace(**{"petals.first_root": -math.pi / 12.0}), min_film_thickness=4e-6)
     assert float(back["load_capacity"]) == pytest.approx(over[1], rel=1e-5)
     assert plot.capacity(turned).axes
+
+
+def test_error_bars_contain_the_capacity_of_a_fine_grid() -> None:
+    """Of load, position under it and all else but the film, which is the limit that was given."""
+    of = PLAIN.replace(**{"model.kind": "2d", "model.cells_per_pitch": 64})
+    asked = {"min_film_thickness": 5e-6}
+    found = petalfoil.capacity.record(of, **asked, error=True)
+    fine = petalfoil.capacity.record(of.replace(**{"model.cells_per_pitch": 512}), **asked)
+    assert found.errors is not None
+    told = {"load_capacity", "load_coefficient", "eccentricity_y", "peak_pressure", "friction_torque"}
+    assert told <= {*found.errors}
+    assert not {"min_film_thickness", "knudsen_number"} & {*found.errors}
+    for name, bar in found.errors.items():
+        assert abs(float(fine.scalars[name]) - float(found.scalars[name])) <= bar
+    load, bar = float(found.scalars["load_capacity"]), found.errors["load_capacity"]
+    assert 0.0 < bar < 0.01 * load
+    assert found.fields["capacity_over_direction_error"] == pytest.approx([bar])
+    (_, shown, *_) = TABLE.columns.values()
+    assert shown(found, 0) == f"{number(load)} ± {number(bar)}"
 
 
 def test_a_bearing_that_keeps_to_no_limit_says_so() -> None:
