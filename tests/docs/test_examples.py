@@ -141,6 +141,12 @@ def test_the_paper_s_values_are_those_of_the_script(kind: str, e: int) -> None:
     assert f"| 6 | {e} | {' | '.join(shown)} |" in page
 
 
+def test_bars_of_the_paper_s_values_are_below_half_a_per_cent() -> None:
+    bars = re.findall(r"([\d.]+) ± ([\d.]+)", text(ROOT / "docs" / "paper-values.md"))
+    assert len(bars) == 2 * (3 * 12 - 3 + 3 * 2)  # 12 positions in 2-D and 3-D, no force at three; three packs at rest
+    assert max(float(bar) / float(value) for value, bar in bars) < 5e-3
+
+
 def test_values_show_the_digits_that_their_bars_leave() -> None:
     values = module(EXAMPLES / "paper_values.py")
     trusted = values.Extrapolation(limit=17.9603e-6, order=2.1, error=0.0031e-6, trusted=True)

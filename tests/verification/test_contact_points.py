@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
+from scipy.signal import savgol_filter
 
 import petalfoil
 from petalfoil.analysis.coefficients import coefficients
@@ -33,7 +34,7 @@ from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.point_equations import PointEquations, PointState
 from tests.cases import case
-from tests.contract.taylor import assert_tangent
+from tests.contract.taylor import assert_tangent, taylor_slopes
 from tests.random_packs import random_case
 from tests.verification.test_contact_slopes import BEARINGS, apart, walk
 
@@ -211,6 +212,35 @@ def test_tangent(name: str) -> None:
     assert_tangent(lambda t: np.concatenate(shifted(away, t * direction).residual), away.steady @ direction)
 
 
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_tangent_on_both_sides_of_the_nodes_of_elements(side: float) -> None:
+    """Curvatures of gaps jump there: points at their nearest nodes have a tangent for either side."""
+    equations, rng = contacts_of("turbocharger").equations, np.random.default_rng(3)
+    points = equations.state.points
+    assert len(points.inner) == np.count_nonzero(points.inner == 0)  # points that travel by themselves
+    node = np.clip(np.rint(points.position), 1.0, equations.whole.curves.elements[points.curve] - 1.0)
+    assert len(np.unique(np.column_stack([points.curve, node]), axis=0)) == len(node)
+    at = np.nextafter(node, node + side) if side < 0.0 else node
+    bent = rng.uniform(-0.02, 0.02, equations.whole.n_wall)
+    moved = np.concatenate([bent, np.zeros(equations.n - len(bent) - len(node)), at - points.position])
+    there = shifted(equations, moved)
+    assert np.array_equal(np.floor(there.state.points.position), node - (side < 0.0))
+    direction = np.concatenate([
+        rng.uniform(-0.02, 0.02, equations.whole.n_wall),
+        rng.uniform(-0.1, 0.1, equations.whole.n_film),
+        rng.uniform(-1.0, 1.0, len(node)) * points.reaction,
+        side * rng.uniform(0.1, 0.5, len(node)),
+    ])  # fmt: skip
+
+    def along(t: float) -> Array:
+        return np.concatenate(shifted(there, t * direction).residual)
+
+    change, slopes = there.steady @ direction, slice(-len(node), None)
+    assert_tangent(along, change)
+    beyond = taylor_slopes(lambda t: along(-t)[slopes], -change[slopes])
+    assert np.max(beyond) < 1.5  # the other side has another tangent
+
+
 @pytest.mark.parametrize("name", ["turbocharger", STRETCHES])
 def test_stiffness_is_the_slope_of_equilibria_with_contact_points(name: str) -> None:
     """Central differences over 0.02 um, within 5e-6 of the largest entry."""
@@ -300,6 +330,21 @@ def test_stiffness_is_smooth_along_a_sweep(name: str) -> None:
         K = np.array([impedance(elastic(BEARINGS[name], answer), 0.0, speed)[0][1, 1] for answer in found])
     place = np.linspace(-1.0, 1.0, len(K))
     assert np.max(np.abs(K - np.polyval(np.polyfit(place, K, 5), place))) <= 1e-5 * np.mean(K)
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param("turbocharger", marks=pytest.mark.slow), pytest.param(STRETCHES, marks=pytest.mark.long)]
+)
+def test_stiffness_is_smooth_over_two_hundred_steps(name: str) -> None:
+    """In steps of 0.1 um, from contact to contact: no entry strays by 1 % of the largest from cubics through 21 steps.
+
+    The most was 0.12 % when this was written, where a contact begins.
+    """
+    _, *found = walk(BEARINGS[name], 200, 0.1e-6)
+    with running():
+        K = np.array([impedance(elastic(BEARINGS[name], one), 0.0, BEARINGS[name].operation.speed)[0] for one in found])
+    noise = np.abs(K - savgol_filter(K, 21, 3, axis=0))[10:-10]
+    assert np.max(noise) <= 1e-2 * np.max(np.abs(K))
 
 
 def test_a_result_says_where_its_contacts_are() -> None:
