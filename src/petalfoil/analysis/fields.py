@@ -23,7 +23,7 @@ def state_of_wall(state: NodalState) -> WallState:
     """Deflections [m] and contact pressures [Pa] of a state."""
     layout = state.problem.layout
     pressure = state.lam * layout.scales.force / layout.wall.contacts.area
-    return WallState(state.deflection * layout.scales.length, pressure, state.placed)
+    return WallState(state.deflection * layout.scales.length, pressure, state.placed, state.membrane)
 
 
 def wall_fields(found: Evaluation) -> Named:

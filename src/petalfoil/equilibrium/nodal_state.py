@@ -26,7 +26,7 @@ from petalfoil.system.point_friction import RubbingEquations
 from petalfoil.system.unknowns import DEFLECTION
 from petalfoil.walls import PlacedContacts
 from petalfoil.walls.element_pack import ElementLoads
-from petalfoil.walls.pack_slip import stretched_along
+from petalfoil.walls.pack_slip import membrane_of_pulls, stretched_along
 
 Array = NDArray[np.float64]
 
@@ -49,6 +49,8 @@ class NodalState:
         Forces on the journal over the unit of force [1].
     placed : PlacedContacts or None
         Contacts at their places, SI; None where they are at nodes.
+    membrane : (petal, node) array or None
+        Membrane force of petals that stretch by contacts between nodes in 2-D, over the width, SI.
     """
 
     problem: CoupledProblem
@@ -58,6 +60,7 @@ class NodalState:
     film_force: Array
     contact_force: Array
     placed: PlacedContacts | None = None
+    membrane: Array | None = None
 
     @classmethod
     def of(cls, solution: Solution) -> NodalState:
@@ -92,8 +95,8 @@ class NodalState:
             deflection, lam = solution.deflection[: found.pack.at_nodes.shape[0]], solution.lam
         else:
             deflection, lam = sampled_deflection(found), shared_reactions(found)
-        by_contact = equations.force - by_film
-        return cls(problem, equations.film, deflection, lam, by_film, by_contact, placed_contacts(found))
+        by_contact, membrane = equations.force - by_film, membrane_of(found)
+        return cls(problem, equations.film, deflection, lam, by_film, by_contact, placed_contacts(found), membrane)
 
 
 FOLLOWED = "followed from a neighbour with contact points"
@@ -149,6 +152,20 @@ def wall_at_nodes(found: ElementEquilibrium) -> Array:
         along = stretched_along(found.pack, found.points, equations.friction_force * scales.force)
         wall[-along.size :] += along.ravel() / scales.length
     return wall
+
+
+def membrane_of(found: ElementEquilibrium) -> Array | None:
+    """Membrane force over the width at the nodes of petals that stretch, (petal, node) [N/m]; None of others.
+
+    By friction between petals, which equilibria without a path do not have, and of a journal that drags them (D6).
+    """
+    equations, points = found.equations, found.friction_points
+    layout = equations.problem.layout
+    if layout.n_wall == found.pack.at_nodes.shape[0]:
+        return None
+    drag, unit = equations.journal_friction * points.reaction, layout.scales.force
+    friction = equations.friction_force if isinstance(equations, RubbingEquations) else np.zeros(len(drag))
+    return membrane_of_pulls(found.pack, points, friction * unit, drag * unit)
 
 
 def shared_reactions(found: ElementEquilibrium) -> Array:

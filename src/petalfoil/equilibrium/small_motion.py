@@ -97,6 +97,10 @@ class TangentEquations(Protocol):
         """Pressure unknowns, (n_film,) [1]."""
 
     @property
+    def journal_friction(self) -> float:
+        """Coefficient of friction of a journal that turns and drags petals along; 0 where it does not [1]."""
+
+    @property
     def newton_residual(self) -> Array:
         """Residual of Newton's method, (n,)."""
 

@@ -82,6 +82,11 @@ class AsperityEquations:
         return self.smooth.film_thickness
 
     @property
+    def journal_friction(self) -> float:
+        """`mu_f` of a journal that turns and drags petals along; 0 where it does not [1]."""
+        return self.smooth.journal_friction
+
+    @property
     def n(self) -> int:
         """All unknowns."""
         return self.smooth.n

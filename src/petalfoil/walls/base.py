@@ -140,11 +140,14 @@ class WallState:
         Contact pressure on each gap [Pa].
     placed : PlacedContacts or None
         The contacts at their places; None where they are at nodes.
+    membrane : (petal, node) array or None
+        Membrane force along the petals over the width [N/m]; None where it follows from the deflections.
     """
 
     deflection: Array
     contact_pressure: Array
     placed: PlacedContacts | None = None
+    membrane: Array | None = None
 
 
 def axial_grid(case: Case) -> AxialGrid:

@@ -57,6 +57,15 @@ def touching_faces(pack: ElementPack, points: ContactPoints) -> tuple[Index, Fac
     )
 
 
+def faces_on_journal(pack: ElementPack, points: ContactPoints) -> tuple[Index, FacePlaces]:
+    """Contact of each inner face that touches the journal, and its place."""
+    curves, contact = pack.curves, np.flatnonzero(points.every_curve < pack.mesh.count)
+    petal = points.every_curve[contact]
+    element, place = curves.locate(petal, points.every_position[contact])
+    element = element + pack.nodes[Facing.JOURNAL].start - curves.first[petal]
+    return contact, FacePlaces(petal, element, place, np.full(len(contact), INNER))
+
+
 def slip_rows(pack: ElementPack, points: ContactPoints) -> sp.csr_array:
     """`B`: slip at all contact points from the unknowns, (j, n) [1]; rows of contacts on the journal are empty."""
     contact, at = touching_faces(pack, points)
@@ -77,12 +86,7 @@ def dragged_faces(pack: ElementPack, points: ContactPoints) -> tuple[sp.csr_arra
     And its derivative by the place in the element. Rows of contacts elsewhere are empty. Petals that do not slide by
     themselves move along themselves as they bend.
     """
-    n, curves = pack.mesh.count, pack.curves
-    contact = np.flatnonzero(points.every_curve < n)
-    curve = points.every_curve[contact]
-    element, place = curves.locate(curve, points.every_position[contact])
-    start = pack.nodes[Facing.JOURNAL].start
-    at = FacePlaces(curve, start + element - curves.first[curve], place, np.full(len(contact), INNER))
+    contact, at = faces_on_journal(pack, points)
     faces, angle = replace(pack.faces, slides=True), pack.elements.element_angle
     own = face_slip(faces, at, angle), face_slip_by_place(faces, at, angle)
     value, by_place = (of_contacts(pack, rows, (contact, at), len(points.reaction)) for rows in own)
@@ -163,3 +167,20 @@ def stretched_along(pack: ElementPack, points: ContactPoints, force: Array) -> A
     own = at.petal[:, None] == np.arange(pack.mesh.count)
     over = faces.metric_radius / (faces.membrane * pack.mesh.axial.length)
     return np.asarray(over[:, None] * (reached @ own).T)
+
+
+def membrane_of_pulls(pack: ElementPack, points: ContactPoints, friction: Array, drag: Array) -> Array:
+    """Membrane force over the width at all nodes of the pack: what pulls at the petal from there to its free edge (M2).
+
+    `friction` (j,) are the friction forces between petals and on the bushing, `drag` (j,) those of a journal that turns
+    on the faces that it touches [N]; shape (count, n_node) [N/m].
+    """
+    (contact, at), (touched, inner) = touching_faces(pack, points), faces_on_journal(pack, points)
+    faces, phi = pack.faces, pack.elements.phi
+    pulls = -faces.share(at.petal, at.side) * friction[contact], faces.share(inner.petal, inner.side) * drag[touched]
+    force = np.zeros((pack.mesh.count, len(pack.mesh.phi)))
+    for face, pull in zip((at, inner), pulls, strict=True):
+        angle = phi[face.element] + face.place * pack.elements.element_angle[face.element]
+        beyond = np.where(angle[:, None] >= pack.mesh.phi, pull[:, None], 0.0)  # (face, node)
+        np.add.at(force, face.petal, beyond)
+    return np.asarray(force / pack.mesh.axial.length)

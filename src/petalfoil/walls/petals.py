@@ -217,7 +217,7 @@ class PetalWall(WallKind):
         placed = {} if state.placed is None else self._placed(case, state.placed)
         return {
             **placed,
-            **self._stretched(case, mesh, state.deflection),
+            **self._stretched(case, mesh, state),
             "journal_contact_pressure": whole(pressure[rows.journal].reshape(mesh.count, -1, mesh.n_z)),
             "deflection": whole(W),
             **self.cross_section(case, state.deflection),
@@ -226,12 +226,15 @@ class PetalWall(WallKind):
             "bending_stress": whole(stress),
         }
 
-    def _stretched(self, case: Case, mesh: PackMesh, displacement: Array) -> Fields:
-        """Stress of the membranes, where petals stretch: they have displacements in their own surface."""
-        if not stretches(case) or len(displacement) == mesh.count * (mesh.n_node - 1) * mesh.n_z:
+    def _stretched(self, case: Case, mesh: PackMesh, state: WallState) -> Fields:
+        """Stress of the membranes, where petals stretch: by their displacements, or by what pulls between nodes."""
+        if not stretches(case):
             return {}
         thickness = np.array([petal.thickness for petal in petals_of(case)[0].each])
-        force = membrane_force(stretching_petals(case, build_shells(case, mesh)), displacement)
+        if state.membrane is None:
+            force = membrane_force(stretching_petals(case, build_shells(case, mesh)), state.deflection)
+        else:
+            force = state.membrane[:, :, None]
         stress = force / thickness[:, None, None]
         return {"membrane_stress": mesh.axial.whole(stress)}
 
