@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import cast
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from petalfoil.analysis import known_verbs
 from petalfoil.analysis.balance import balance
 from petalfoil.analysis.crossings import CONTACT_FRACTION, PRECISION, crossings
-from petalfoil.analysis.liftoff import liftoff
+from petalfoil.analysis.friction_told import RELAXED
+from petalfoil.analysis.liftoff import in_words, liftoff
 from petalfoil.analysis.runup import runup
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.errors import UsageError
 from petalfoil.results.record import Record
+from petalfoil.results.tables import tables_of
 from tests.cases import case
 
 BEARING = case("paper_n8", **{"model.cells_per_pitch": 32, "operation.speed": 1000.0})
@@ -174,3 +179,69 @@ def test_a_line_of_speeds_is_warm() -> None:
         line.at(float(speed))
         counts.append(run.film.factorizations - before)
     assert np.median(counts) <= 6
+
+
+@pytest.mark.slow
+def test_where_a_pack_with_friction_lifts_off_does_not_hang_on_the_speed_of_the_case() -> None:
+    """It is assembled, loaded at rest and run up whether the case's speed is below or above that of lift-off."""
+    changes = {"model.cells_per_pitch": 12, "surface.petal_friction": 0.1, "surface.friction_history": "assembled"}
+    for_speeds = (case("paper_n8", **changes, **{"operation.speed": speed}) for speed in (1000.0, 8000.0))
+    found = [crossings(SpeedLine(kept, (0.0, -5.0)), CONTACT_FRACTION) for kept in for_speeds]
+    assert_allclose(found[1][0], found[0][0], rtol=2e-4)  # a path is of first order in its steps
+    assert all(down < (1.0 - 2e-3) * up for up, down in found)
+
+
+@pytest.mark.slow
+def test_a_relaxed_pack_lifts_off_and_touches_down_at_one_speed_and_says_why() -> None:
+    relaxed = case("paper_n8", **{"model.cells_per_pitch": 12, "surface.petal_friction": 0.1})
+    verb = known_verbs.find("liftoff")
+    assert verb is not None
+    run = verb.start(relaxed, {"loads": [5.0]})
+    for _ in verb.advance(run):
+        pass
+    *_, told = tables_of(verb.answer(run))
+    assert dict((line[0], line[1]) for line in told.lines) == {
+        "petal friction": RELAXED,
+        "touchdown": "at the speed of lift-off: downward the same equilibria are met as upward",
+    }
+
+
+class Line:
+    """Contact fractions over speed, as a line of balances gives them."""
+
+    path = None
+
+    def __init__(self, fraction: Callable[[float], float]) -> None:
+        self.case, self.known, self.fraction = BEARING, None, fraction
+
+    def contact_fraction(self, speed: float) -> float:
+        """That at `speed` [rad/s]."""
+        self.known = speed
+        return self.fraction(speed)
+
+
+@pytest.mark.parametrize(
+    ("fraction", "up", "down"),
+    [
+        (lambda speed: 12.0 / speed, 1200.0, 1200.0),
+        (lambda speed: 8.0 / speed, 800.0, 800.0),
+        (lambda speed: 1.0, math.inf, math.inf),
+        (lambda speed: 0.0, 0.0, 0.0),
+    ],
+)
+def test_crossings_of_given_fractions(fraction: Callable[[float], float], up: float, down: float) -> None:
+    assert_allclose(crossings(cast("SpeedLine", Line(fraction)), 0.01), (up, down), rtol=1e-3)
+
+
+def test_a_journal_that_stays_off_has_no_touchdown_speed() -> None:
+    """Off on another branch: this is not said to be the speed of lift-off."""
+    seen = [0.0]
+
+    def fraction(speed: float) -> float:
+        seen.append(speed)
+        return 0.0 if max(seen) > 1500.0 else 12.0 / speed
+
+    up, down = crossings(cast("SpeedLine", Line(fraction)), 0.01)
+    assert up == pytest.approx(1200.0, rel=1e-3)
+    assert down == 0.0
+    assert in_words(BEARING, up, down) == "does not touch down above 10 rpm"

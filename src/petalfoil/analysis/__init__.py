@@ -8,6 +8,7 @@
 `capacity.py`          the largest load within limits of film, contact or stress
 `liftoff.py`           speeds of lift-off and touchdown
 `runup.py`             from rest to speed under a load, and back
+`coefficient_tables.py` tables of stiffness and damping, of a journal that tilts too
 `coefficients.py`      stiffness and damping over whirl frequency
 `stability.py`         critical mass, threshold speed, damped natural frequencies
 `orbit.py`             a rigid rotor through time

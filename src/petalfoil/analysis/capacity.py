@@ -187,7 +187,7 @@ class Least:
 
 
 @analysis(
-    SinglePoint(lists=OVER, histories=BARS, table=TABLE),
+    SinglePoint(lists=OVER, histories=BARS, array_tables=(TABLE,)),
     Series(columns=COLUMNS, lists=OVER, histories=BARS, at=at_speed),
     excludes={"speed": ("speeds",)},
     results=RESULTS,

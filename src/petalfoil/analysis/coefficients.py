@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Annotated
@@ -11,6 +11,7 @@ import numpy as np
 
 from petalfoil.analysis.arguments import Flag, Load, NumbersWithUnit, NumberWithUnit, Speed, Speeds, Whole
 from petalfoil.analysis.classic_method import newton_only
+from petalfoil.analysis.coefficient_tables import TABLES
 from petalfoil.analysis.contact_model import ContactModel
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.evaluation import Evaluation
@@ -25,14 +26,13 @@ from petalfoil.analysis.runs import Points
 from petalfoil.analysis.session import part
 from petalfoil.analysis.tilt_coefficients import ENTRIES, TILTING, blocks
 from petalfoil.analysis.tilted_journal import free_to_tilt, held, whole_length
-from petalfoil.case import Case
+from petalfoil.case import Case, ModelKind
 from petalfoil.dynamics.rubbing_cycle import HarmonicsTold
 from petalfoil.equilibrium.run_context import Progress, current_run, running
 from petalfoil.errors import ConvergenceError, UsageError
-from petalfoil.results.layout import ArrayTable, Cell, Series, SinglePoint, at_speed
+from petalfoil.results.layout import Series, SinglePoint, at_speed
 from petalfoil.results.parts import AppliedLoad, RunOutcome
 from petalfoil.results.record import Record
-from petalfoil.results.summary import ABSENT, cell, number
 from petalfoil.results.variable import Variable
 from petalfoil.walls import Capability, required, wall_kind
 
@@ -71,7 +71,7 @@ WithTilt = Annotated[
     bool,
     Flag(help="Also those of the slopes of the journal's axis: 4 by 4, the whole length."),
 ]
-MATRICES = {"stiffness": ("K", "N/m"), "damping": ("C", "N s/m")}
+MATRICES = ("stiffness", "damping")
 
 
 @dataclass(frozen=True)
@@ -98,39 +98,6 @@ class SolidContact:
     contact_fraction: float
 
 
-def entry(name: str, row: int, column: int) -> Callable[[Record, int], Cell]:
-    """One entry of a matrix at each frequency, and its error bar where it has one."""
-
-    def read(record: Record, index: int) -> Cell:
-        if name not in record.fields:
-            return ABSENT
-        value, bars = float(record.fields[name][index][row][column]), record.fields.get(f"{name}_error")
-        bar = np.nan if bars is None else float(bars[index][row][column])
-        return value if np.isnan(bar) else f"{number(value)} ± {number(bar)}"
-
-    return read
-
-
-TABLE = ArrayTable(
-    dim="whirl_frequency",
-    columns={
-        "speed\nrpm": lambda record, _: cell("speed", record.scalars["speed"]).value,
-        "whirl\nrad/s": lambda record, index: float(record.coords["whirl_frequency"][index]),
-        "ratio": lambda record, index: float(record.coords["whirl_frequency"][index]) / float(record.scalars["speed"]),
-        **{
-            f"{letter}_{'xy'[row]}{'xy'[column]}\n{unit}": entry(name, row, column)
-            for name, (letter, unit) in MATRICES.items()
-            for row in (0, 1)
-            for column in (0, 1)
-        },
-        **{
-            f"{letter}_{'ab'[row]}{'ab'[column]}\n{unit}": entry(f"{name}_moment_tilt", row, column)
-            for name, letter, unit in (("stiffness", "K", "N m"), ("damping", "C", "N m s"))
-            for row in (0, 1)
-            for column in (0, 1)
-        },
-    },
-)
 LISTS = ("whirl_frequency", *MATRICES)
 ERROR_BARS = {
     "stiffness_error": Variable(
@@ -150,8 +117,8 @@ HISTORIES = (*ERROR_BARS, *HARMONICS_CHANGES, *TILTING)
 
 
 @analysis(
-    SinglePoint(lists=LISTS, histories=HISTORIES, table=TABLE),
-    Series(lists=LISTS, histories=HISTORIES, table=TABLE, at=at_speed),
+    SinglePoint(lists=LISTS, histories=HISTORIES, array_tables=TABLES),
+    Series(lists=LISTS, histories=HISTORIES, array_tables=TABLES, at=at_speed),
     exports=EXPORTS,
     excludes={"speed": ("speeds",)},
     results={**ERROR_BARS, **HARMONICS_CHANGES, **TILTING},
@@ -186,7 +153,7 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
     ------
     UsageError
         A shaft at zero speed has no film that could respond; a frequency is zero with an amplitude or a loss factor;
-        nothing rubs; harmonics without an amplitude.
+        nothing rubs; harmonics without an amplitude; a tilt in 2-D.
     ConvergenceError
         The operating point was not found, or the pack is bottomed out.
     """
@@ -200,6 +167,7 @@ def coefficients(  # noqa: PLR0913 - the options of the verb
     )
     check_amplitude(case, asked)
     check_loss(case, asked)
+    check_tilt(case, asked)
     cases = [at(case, omega) for omega in turn]
     if speeds is None:
         with running(progress, "coefficients"):
@@ -262,6 +230,20 @@ def check_loss(case: Case, asked: CoefficientRequest) -> None:
         raise UsageError(
             "with a loss factor, whirl frequencies must be above zero: what the foil loses in a cycle does not vanish "
             "with the frequency, so its equivalent damping has no bound; a loss_factor of 0 gives the static stiffness"
+        )
+
+
+def check_tilt(case: Case, asked: CoefficientRequest) -> None:
+    """Refuse the slopes of a journal's axis where the model has no length.
+
+    Raises
+    ------
+    UsageError
+        It is 2-D.
+    """
+    if asked.tilt and case.model.kind is ModelKind.TWO_D:
+        raise UsageError(
+            'slopes of the axis need the length of the bearing: set model.kind = "3d", or leave out the tilt'
         )
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import chain
 
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
@@ -26,6 +28,9 @@ SLOWEST = 1.0
 
 FASTEST_SURFACE = 500.0
 """Surface speed of the journal above which no lift-off is looked for [m/s]: that of a shaft near bursting."""
+
+PARTS_UP = (0.1, 0.2, 0.4, 0.6, 0.8, 1.0)
+"""Parts of the speed of operation at which a pack that keeps the friction of its path is looked at on its way up."""
 
 SENSITIVITY = 0.1
 """Relative change of the contact film thickness whose effect is reported; the limit is halved."""
@@ -66,37 +71,84 @@ def crossings(line: SpeedLine, limit: float) -> tuple[float, float]:
         A balance on the way was not found.
     """
     start = min(max(line.case.operation.speed, 10.0 * SLOWEST), fastest(line.case))
+    if line.path is not None:
+        return along_path(line, start, limit)
     touching = line.contact_fraction(start) > limit
-    found = crossing(line, start, limit, upward=touching)
+    found = crossing(line, walk(line.case, start, upward=touching), limit, upward=touching)
     if found is None:
         return (math.inf, math.inf) if touching else (0.0, 0.0)
     beyond = found * FACTOR**2 if touching else found / FACTOR**2
-    other = crossing(line, beyond, limit, upward=not touching) or found
-    return (found, other) if touching else (other, found)
+    other = crossing(line, walk(line.case, beyond, upward=not touching), limit, upward=not touching)
+    if touching:
+        return found, 0.0 if other is None else other
+    return math.inf if other is None else other, found
 
 
-def crossing(line: SpeedLine, start: float, limit: float, *, upward: bool) -> float | None:
-    """The first speed from `start`, where `line` stands, at which the limit is crossed; None if it never is.
+def along_path(line: SpeedLine, start: float, limit: float) -> tuple[float, float]:
+    """The same of a pack that keeps the friction of its path: run up from rest, on to `start` at least, and down again.
+
+    It lifts off once on that path, whatever its speed of operation `start` [rad/s] is.
+    """
+    slow = touching_from(line, PARTS_UP[0] * start, limit)
+    if slow is None:
+        return 0.0, 0.0
+    rising_speeds = chain((slow,), (part * start for part in PARTS_UP[1:]), walk(line.case, FACTOR * start))
+    up = crossing(line, rising_speeds, limit, upward=True)
+    if up is None:
+        return math.inf, math.inf
+    down = crossing(line, walk(line.case, max(up * FACTOR**2, start), upward=False), limit, upward=False)
+    return up, 0.0 if down is None else down
+
+
+def walk(case: Case, start: float, *, upward: bool = True) -> Iterator[float]:
+    """Speeds from `start` up to the fastest or down to the slowest, each by `FACTOR` from the one before [rad/s]."""
+    factor, speed = FACTOR if upward else 1.0 / FACTOR, start
+    yield speed
+    while SLOWEST <= speed * factor <= fastest(case) * FACTOR:
+        speed *= factor
+        yield speed
+
+
+def touching_from(line: SpeedLine, start: float, limit: float) -> float | None:
+    """The first speed from `start` down at which the journal touches, where `line` then stands [rad/s]; None if none.
+
+    A pack that keeps the friction of its path is run up to each from rest.
 
     Raises
     ------
     ConvergenceError
         A balance on the way was not found.
     """
-    bracket = search(line, start, limit, upward=upward)
+    for speed in walk(line.case, start, upward=False):
+        if line.path is not None:
+            line.known = None
+        if line.contact_fraction(speed) > limit:
+            return speed
+    return None
+
+
+def crossing(line: SpeedLine, speeds: Iterable[float], limit: float, *, upward: bool) -> float | None:
+    """The first crossing of the limit on the way through `speeds` [rad/s]; None if there is none.
+
+    Raises
+    ------
+    ConvergenceError
+        A balance on the way was not found.
+    """
+    bracket = search(line, speeds, limit, upward=upward)
     return None if bracket is None else narrowed(line, bracket, limit)
 
 
-def search(line: SpeedLine, start: float, limit: float, *, upward: bool) -> Bracket | None:
-    """Walk from `start` until the journal has lifted off (upward) or touches (downward); None past the last speed."""
-    factor = FACTOR if upward else 1.0 / FACTOR
-    speed, here = start, line.contact_fraction(start)
-    while SLOWEST <= speed * factor <= fastest(line.case) * FACTOR:
-        before, ahead = line.known, speed * factor
-        there = line.contact_fraction(ahead)
-        if (there <= limit) == upward and before is not None:
-            return Bracket(speed, ahead, here, there, before)
-        speed, here = ahead, there
+def search(line: SpeedLine, speeds: Iterable[float], limit: float, *, upward: bool) -> Bracket | None:
+    """Walk through `speeds` until a journal that touched has lifted off (upward), or the reverse; None if none does."""
+    last: tuple[float, float, Solution] | None = None
+    for speed in speeds:
+        here = line.contact_fraction(speed)
+        is_there = (here <= limit) == upward
+        if is_there and last is not None:
+            near, at_near, known = last
+            return Bracket(near, speed, at_near, here, known)
+        last = None if is_there or line.known is None else (speed, here, line.known)
     return None
 
 
@@ -163,11 +215,9 @@ def rising(line: SpeedLine, limit: float, near: float) -> float | None:
     """Lift-off speed of a bearing like the one that lifts off at `near` [rad/s]; None if it is not found."""
     if not 0.0 < near < math.inf:
         return None
-    start = near / FACTOR
     try:
-        while line.contact_fraction(start) <= limit and start > SLOWEST:
-            start /= FACTOR
-        return crossing(line, start, limit, upward=True)
+        start = touching_from(line, near / FACTOR, limit)
+        return None if start is None else crossing(line, walk(line.case, start), limit, upward=True)
     except ConvergenceError as failure:
         current_run().note("sensitivity", outcome=str(failure))
         return None

@@ -15,7 +15,15 @@ from typing import Annotated
 
 from petalfoil.analysis.arguments import NumbersWithUnit, NumberWithUnit
 from petalfoil.analysis.classic_method import newton_only
-from petalfoil.analysis.crossings import CONTACT_FRACTION, LiftoffSpeeds, crossings, fastest, sensitivity
+from petalfoil.analysis.crossings import (
+    CONTACT_FRACTION,
+    PRECISION,
+    SLOWEST,
+    LiftoffSpeeds,
+    crossings,
+    fastest,
+    sensitivity,
+)
 from petalfoil.analysis.declaration import analysis
 from petalfoil.analysis.friction_told import FrictionTold
 from petalfoil.analysis.operating_point import at, beyond_capacity
@@ -29,6 +37,7 @@ from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.layout import ColumnarSeries, load_of, of_load
 from petalfoil.results.parts import AppliedLoad, RunOutcome
 from petalfoil.results.record import Record
+from petalfoil.results.summary import TableRow
 from petalfoil.system.build import build_problem
 from petalfoil.walls import Capability, required
 
@@ -71,11 +80,26 @@ class FractionLimit:
     contact_fraction_limit: float
 
 
+def told(records: Sequence[Record]) -> Iterator[TableRow]:
+    """Of which loads lift-off and touchdown are one speed, and why; nothing where none are."""
+    places = [str(place) for place, record in enumerate(records, start=1) if is_one_speed(record)]
+    if places:
+        of = f" (points {', '.join(places)})" if len(places) < len(records) else ""
+        yield TableRow("touchdown", f"at the speed of lift-off: downward the same equilibria are met as upward{of}", "")
+
+
+def is_one_speed(record: Record) -> bool:
+    """Whether a journal lifts off and touches down at one speed, as closely as speeds are bracketed."""
+    up, down = (float(record.scalars.get(name, math.nan)) for name in SPEEDS[:2])
+    return 0.0 < down < math.inf and abs(up - down) <= PRECISION * down
+
+
 LAYOUT = ColumnarSeries(
     columns=TABLE,
     heads={"loads": load_of},
     names=(*SPEEDS, "contact_fraction_limit", "friction_path", "converged", "status", "factorizations", "wall_time"),
     at=of_load,
+    told=told,
 )
 
 
@@ -93,6 +117,11 @@ def liftoff(
     Each speed is bracketed to 0.1 % and interpolated there. "d ln lift-off /
     d ln limit" and "... contact film" tell how it changes with the limit and
     with the contact film thickness: 0.5 is 0.5 % of speed for 1 % of these.
+    Lift-off and touchdown are one speed where upward and downward the same
+    equilibria are met: without friction between petals, or on a relaxed
+    pack, mostly so. With surface.friction_history = "assembled" the pack is
+    assembled, loaded at rest and run up to the case's speed, at least to 1.6
+    times the lift-off speed, and down again.
 
     Example: petalfoil liftoff case.toml --load "46.4 N, 55.6 N" --plot liftoff.png
 
@@ -135,7 +164,7 @@ def _points(
                 line = SpeedLine(case, (0.0, -load))
                 up, down = crossings(line, limit)
                 found: tuple[object, ...] = (LiftoffSpeeds(up, down, *sensitivity(line, limit, up)),)
-                ended = RunOutcome(status=in_words(case, up))
+                ended = RunOutcome(status=in_words(case, up, down))
             except ConvergenceError as failure:
                 found, ended = (), RunOutcome(converged=False, status=f"not converged: {why_none(case, load, failure)}")
             told = FractionLimit(limit), FrictionTold.under_load(case)
@@ -151,8 +180,10 @@ def why_none(case: Case, load: float, failure: ConvergenceError) -> ConvergenceE
     return beyond_capacity(build_problem(at(case, None, (0.0, 0.0))), (0.0, -load), failure)
 
 
-def in_words(case: Case, up: float) -> str:
-    """How the search ended."""
+def in_words(case: Case, up: float, down: float) -> str:
+    """How the search for both speeds [rad/s] ended."""
     if math.isinf(up):
         return f"does not lift off below {fastest(case) * 30.0 / math.pi:.0f} rpm"
-    return "converged" if up > 0.0 else "lifted off at any speed"
+    if not up > 0.0:
+        return "lifted off at any speed"
+    return "converged" if down > 0.0 else f"does not touch down above {SLOWEST * 30.0 / math.pi:.0f} rpm"

@@ -82,6 +82,8 @@ def summary(record: Record) -> Iterator[TableRow]:
         yield TableRow(label, str(scalars[name]), "")
     if "contact_model" in scalars:
         yield TableRow("contacts", str(scalars["contact_model"]), "")
+    if "friction_path" in scalars:
+        yield cell("friction_path", scalars["friction_path"])
     paths = Path.journals(time, over, places_of(record))
     yield TableRow("largest displacement", number(1e6 * max(float(np.hypot(p.x, p.y).max()) for p in paths)), "µm")
     yield TableRow("amplitude, last turns", with_bar(record, "amplitude", 1e6), "µm")

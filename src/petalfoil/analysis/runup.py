@@ -76,9 +76,10 @@ def runup(
     Each point is followed from the one before. With --out the file is
     rewritten as points finish; Ctrl-C keeps what is finished, and --resume
     goes on from it. With friction between petals that slide along themselves
-    (2-D) the pack is assembled, loaded at rest and run up, and each point
-    keeps the friction forces of that path. With a heat network (table heat) every point is at its
-    steady temperature; with --warm-up the bearing starts cold.
+    the pack is assembled, loaded at rest and run up, and each point keeps
+    the friction forces of that path; with surface.friction_history =
+    "relaxed" none does. With a heat network (table heat) every point is at
+    its steady temperature; with --warm-up the bearing starts cold.
 
     Example: petalfoil runup case.toml --load "46.4 N" --to "30000 rpm"
 

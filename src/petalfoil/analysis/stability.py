@@ -109,6 +109,7 @@ CAMPBELL_TABLE = ArrayTable(
         ),
     },
     there=lambda record, k: math.isfinite(float(record.fields["natural_frequency"][k])),
+    keys=3,
 )
 
 
@@ -180,9 +181,9 @@ class RotorThreshold:
 
 
 @analysis(
-    SinglePoint(lists=MODES, histories=(TILT, HARMONICS, *MODE_CHANGES, *MODE_BARS), table=MODE_TABLE),
+    SinglePoint(lists=MODES, histories=(TILT, HARMONICS, *MODE_CHANGES, *MODE_BARS), array_tables=(MODE_TABLE,)),
     GRID,
-    Campbell(lists=(*MODES, CRITICAL), histories=(TILT,), table=CAMPBELL_TABLE, at=at_speed),
+    Campbell(lists=(*MODES, CRITICAL), histories=(TILT,), array_tables=(CAMPBELL_TABLE,), at=at_speed),
     excludes={
         "speed": ("speeds",),
         "load": ("loads",),

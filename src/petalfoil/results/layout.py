@@ -39,11 +39,17 @@ class ArrayTable:
         Heading, and the value of a record at an index.
     there : callable or None
         Whether a record has a line at an index; by default it has.
+    title : str
+        What stands above it where an answer has several.
+    keys : int
+        Columns at the left that tell what a line is of.
     """
 
     dim: str
     columns: Mapping[str, Callable[[Record, int], Cell]]
     there: Callable[[Record, int], bool] | None = None
+    title: str = ""
+    keys: int = 1
 
     def lines(self, record: Record) -> Iterator[list[Cell]]:
         """The values line by line; none where the record has no such dimension."""
@@ -85,8 +91,8 @@ class Layout(ABC):
         Arrays that the JSON object holds as lists, null where a record has none.
     histories : tuple of str
         Arrays that it holds where they are there.
-    table : ArrayTable or None
-        Table of these arrays.
+    array_tables : tuple of ArrayTable
+        Tables of these arrays; those that no record fills are left out.
     """
 
     dimension: ClassVar[str] = ""
@@ -96,7 +102,7 @@ class Layout(ABC):
 
     lists: tuple[str, ...] = ()
     histories: tuple[str, ...] = ()
-    table: ArrayTable | None = None
+    array_tables: tuple[ArrayTable, ...] = ()
 
     @abstractmethod
     def to_json(self, records: Sequence[Record]) -> dict[str, Json]:
@@ -210,6 +216,8 @@ class Series(Layout):
         Values of ``leg``, each of which has a list of its own in the JSON object; by default one list, ``points``.
     at : callable
         Where a point stands, in words.
+    told : callable or None
+        Lines below the table: what is to be said of all points together.
     """
 
     dimension: ClassVar[str] = "point"
@@ -218,6 +226,7 @@ class Series(Layout):
     head: Callable[[list[dict[str, Json]]], dict[str, Json]] | None = None
     legs: tuple[str, ...] = ()
     at: Callable[[Record], str] = at_position
+    told: Callable[[Sequence[Record]], Iterable[TableRow]] | None = None
 
     def to_json(self, records: Sequence[Record]) -> dict[str, Json]:
         """A list of objects, or one for each leg."""

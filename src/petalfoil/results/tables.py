@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import takewhile
 
 from petalfoil.results.answer import Answer
 from petalfoil.results.estimate import Estimate
 from petalfoil.results.grid import LoadSpeedGrid
-from petalfoil.results.layout import Cell, Layout, Series, SinglePoint, load_of
+from petalfoil.results.layout import ArrayTable, Cell, Layout, Series, SinglePoint, load_of
 from petalfoil.results.record import Record, Scalar
 from petalfoil.results.rounding import without_rounding
 from petalfoil.results.study import GridStudy, grid_text
-from petalfoil.results.summary import ABSENT, cell, in_order, number, row, rows, with_bar
+from petalfoil.results.summary import ABSENT, TableRow, cell, in_order, number, row, rows, with_bar
+
+PLACES = ("leg", "load_y", "speed")
+"""Results that tell where a point of a series stands, if they lead its columns."""
 
 
 @dataclass(frozen=True)
@@ -43,11 +47,14 @@ class TextTable:
         Cells of each line.
     title : str
         What stands above it.
+    keys : int
+        Columns at the left that tell what a line is of: each part of a table too wide for a page has them.
     """
 
     columns: tuple[TextColumn, ...] = ()
     lines: list[tuple[str, ...]] = field(default_factory=list)
     title: str = ""
+    keys: int = 1
 
 
 def tables_of(answer: Answer) -> Iterator[TextTable]:
@@ -62,19 +69,34 @@ def tables_of(answer: Answer) -> Iterator[TextTable]:
     ------
     TextTable
         A point gives lines of label, value and unit; a series a line for each point; a grid a table for each result.
+        Below several points stands what they have in common.
     """
     layout, records = answer.layout, answer.records
     if isinstance(layout, LoadSpeedGrid):
         yield from _grids(layout, records)
     elif isinstance(layout, GridStudy):
         yield _study(records, answer.estimates)
-    elif isinstance(layout, Series) and layout.table is None:
+    elif isinstance(layout, Series) and not layout.array_tables:
         yield _series(layout, records)
     if isinstance(layout, SinglePoint):
         lines = layout.rows(records[-1]) if layout.rows else _with_bars(records[-1])
         yield TextTable(lines=[tuple(line) for line in lines])
-    if layout.table is not None and any(list(layout.table.lines(record)) for record in records):
-        yield _arrays(layout, records)
+    yield from _arrays(layout, records)
+    if not isinstance(layout, SinglePoint):
+        told = [*friction_paths(records), *(layout.told(records) if isinstance(layout, Series) and layout.told else ())]
+        if told:
+            yield TextTable(lines=[tuple(line) for line in told])
+
+
+def friction_paths(records: Sequence[Record]) -> Iterator[TableRow]:
+    """Which path the friction forces between petals are those of: a line, or one for each path with its points."""
+    paths: dict[str, list[str]] = {}
+    for position, record in enumerate(records, start=1):
+        if "friction_path" in record.scalars:
+            paths.setdefault(str(record.scalars["friction_path"]), []).append(str(position))
+    for path, points in paths.items():
+        of = f" (points {', '.join(points)})" if len(paths) > 1 else ""
+        yield cell("friction_path", path + of)
 
 
 def _with_bars(record: Record) -> Iterator[tuple[str, ...]]:
@@ -119,7 +141,8 @@ def _series(layout: Series, records: Sequence[Record]) -> TextTable:
     headings = layout.columns or {name: cell(name, 0.0).label for name in in_order(set().union(*points))}
     names = [name for name in headings if any(name in point for point in points)]
     columns = [TextColumn(headings[name], cell(name, 0.0).unit) for name in names]
-    table = TextTable((TextColumn("point"), *columns, TextColumn("", of_numbers=False)))
+    keys = 1 + len(list(takewhile(PLACES.__contains__, names)))
+    table = TextTable((TextColumn("point"), *columns, TextColumn("", of_numbers=False)), keys=keys)
     for position, (point, record) in enumerate(zip(points, records, strict=True), start=1):
         bars = shown_bars(record, point)
         values = [_with_bar(name, point.get(name, math.nan), bars.get(name)) for name in names]
@@ -157,17 +180,25 @@ def _grids(layout: LoadSpeedGrid, records: Sequence[Record]) -> Iterator[TextTab
         yield table
 
 
-def _arrays(layout: Layout, records: Sequence[Record]) -> TextTable:
-    """A line for each entry of the arrays of each record; columns that no record fills are left out."""
-    if layout.table is None:
-        raise ValueError("this layout has no table of arrays")
-    lines = [line for record in records for line in layout.table.lines(record)]
-    kept = [k for k in range(len(layout.table.columns)) if any(line[k] != ABSENT for line in lines)]
-    headings = list(layout.table.columns)
-    columns = (TextColumn(headings[k]) for k in kept)
-    table = TextTable((*columns, TextColumn("", of_numbers=False)))
-    for position, record in enumerate(records, start=1):
-        table.lines += ((*(_text(line[k]) for k in kept), "") for line in layout.table.lines(record))
+def _arrays(layout: Layout, records: Sequence[Record]) -> Iterator[TextTable]:
+    """The tables of arrays that some record fills, with titles where they are several."""
+    found = [table for content in layout.array_tables if (table := _of_arrays(layout, content, records)) is not None]
+    for table in found:
+        yield table if len(found) > 1 else replace(table, title="")
+
+
+def _of_arrays(layout: Layout, content: ArrayTable, records: Sequence[Record]) -> TextTable | None:
+    """A line for each entry of the arrays of each record; without columns that no record fills; None without any."""
+    of_records = [list(content.lines(record)) for record in records]
+    width = len(content.columns)
+    kept = [k for k in range(width) if any(line[k] != ABSENT for lines in of_records for line in lines)]
+    if not any(k >= content.keys for k in kept):
+        return None
+    headings = list(content.columns)
+    columns = (*(TextColumn(headings[k]) for k in kept), TextColumn("", of_numbers=False))
+    table = TextTable(columns, title=content.title, keys=sum(k < content.keys for k in kept))
+    for position, (record, lines) in enumerate(zip(records, of_records, strict=True), start=1):
+        table.lines += ((*(_text(line[k]) for k in kept), "") for line in lines)
         if not record.converged:
             table.lines.append((*[""] * len(kept), f"{layout.place(position, record)} failed"))
     return table

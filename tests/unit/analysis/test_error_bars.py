@@ -13,7 +13,8 @@ from numpy.testing import assert_allclose
 import petalfoil
 from petalfoil.analysis.arguments import Load
 from petalfoil.analysis.balance import balance
-from petalfoil.analysis.coefficients import coefficients, entry
+from petalfoil.analysis.coefficient_tables import entry
+from petalfoil.analysis.coefficients import coefficients
 from petalfoil.analysis.declaration import Analysis, analysis
 from petalfoil.analysis.error_bars import field_bars
 from petalfoil.analysis.grid_study import grid_of, grids

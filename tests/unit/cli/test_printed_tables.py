@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import pytest
 from rich.console import Console
 
-from petalfoil.cli.printed_tables import _headed, _rows
+from petalfoil.cli.printed_tables import _headed, _parts, _rows
 from petalfoil.results.tables import TextColumn, TextTable
 
 LINES = [
@@ -54,3 +55,30 @@ def test_error_bars_stand_between_value_and_unit() -> None:
 
 def test_a_table_without_numbers() -> None:
     assert printed([LINES[2]], 120) == ["  ".join(LINES[2][:2])]
+
+
+WIDE = TextTable(
+    (TextColumn("speed", "rpm"), *(TextColumn(f"K_{k}", "N/m") for k in range(8)), TextColumn("", of_numbers=False)),
+    [("76394", *(f"{k}114078 ± 1234" for k in range(8)), ""), *[("80000", *["-"] * 8, "failed")]],
+)
+
+
+@pytest.mark.parametrize(("width", "parts"), [(200, 1), (120, 2), (80, 3), (60, 4), (40, 8)])
+def test_a_table_wider_than_the_page_comes_in_parts_with_whole_numbers(width: int, parts: int) -> None:
+    """Each part has the keys, and says which lines failed."""
+    console = Console(width=width, markup=False, highlight=False)
+    with console.capture() as capture:
+        for part in _parts(WIDE, width):
+            console.print(part)
+    said = capture.get()
+    assert max(map(len, said.splitlines())) <= width
+    assert said.count("76394") == said.count("failed") == parts
+    assert all(f"{k}114078 ± 1234" in said for k in range(8))
+
+
+def test_a_number_wider_than_the_page_is_folded_not_cut() -> None:
+    (part,) = _parts(WIDE, 12)
+    console = Console(width=12, markup=False, highlight=False)
+    with console.capture() as capture:
+        console.print(part)
+    assert "…" not in capture.get()
