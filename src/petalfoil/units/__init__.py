@@ -3,7 +3,8 @@
 Inside the package every number is a float in SI units; text is read here and nowhere else.
 
 - `reading`: text or number → float in SI units; pairs and ranges of the command line.
-- `grammar`: the text of a unit → a pint unit; the only file that knows pint, imported when the first unit is read.
+- `usual`: units of most cases → exact factors.
+- `grammar`: the text of any other unit → a pint unit; the only file that knows pint, imported when the first is read.
 - `mistyped`: what is meant by a unit that is none, or that measures something else.
 - `ramp`: the text of a speed that changes → instants and speeds.
 - `writing`: float → text for a reader.

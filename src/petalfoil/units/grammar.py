@@ -17,6 +17,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from petalfoil.units.mistyped import meant, nearest
+from petalfoil.units.usual import converted
 
 if TYPE_CHECKING:
     import pint
@@ -73,6 +74,15 @@ def convert(number: Fraction, text: str, unit: str, *, whirl: bool = False) -> f
 
     Of a `whirl` frequency [rad/s] a hertz is one whirl orbit a second, 2 pi rad/s; for a speed it is refused.
     """
+    try:
+        usual = converted(number, text, unit)
+    except OverflowError:
+        raise UnitTextError("cannot be converted") from None
+    return convert_any(number, text, unit, whirl) if usual is None else usual
+
+
+def convert_any(number: Fraction, text: str, unit: str, whirl: bool = False) -> float:
+    """Convert as `convert` does, by pint."""
     import pint
 
     given = _read(text, unit)
@@ -149,7 +159,7 @@ def _dimension(given: Any) -> str:
 
 @lru_cache(maxsize=1)
 def _registry() -> pint.UnitRegistry[Fraction]:
-    import pint  # 0.5 s: only those who write units pay for them
+    import pint  # a second: only those who write unusual units pay for it
 
     registry: pint.UnitRegistry[Fraction] = pint.UnitRegistry(non_int_type=Fraction)
     registry.define("@alias turn = rev")
