@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from petalfoil.results.record import Record
 
@@ -65,6 +64,8 @@ class Branches:
 
     def _places(self, modes: Modes, faster: float) -> NDArray[np.intp]:
         """Branch of each mode; -1 for one beyond the last branch. `faster` is the speed over the one before."""
+        from scipy.optimize import linear_sum_assignment  # 0.2 s: only where it is needed
+
         count = len(modes["natural_frequency"])
         places, free = np.full(count, -1), list(range(BRANCHES))
         if self.before:

@@ -11,8 +11,6 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
-from scipy.optimize import root_scalar
-
 from petalfoil.analysis.adjoint import AdjointDerivatives
 from petalfoil.analysis.crossings import PRECISION
 from petalfoil.analysis.derivatives import ByParameters, Derivative, Results
@@ -122,6 +120,8 @@ class CrossingDerivatives(ByParameters):
 
     def _on_side(self, variation: VariedCase, found: Derivative, side: str) -> float:
         """Rate of the quantity along which the result stays at its limit, on one side of the parameter."""
+        from scipy.optimize import root_scalar  # 0.2 s: only where it is needed
+
         sides, q = (self.by_quantity.above, self.by_quantity.below), self.limited
         first, other = (-getattr(found, side)[q] / by[q] for by in sides)
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from petalfoil.analysis.accuracy import Resolution, ahead_of, remark_on, shortfalls
 from petalfoil.analysis.grid_study import (
@@ -189,6 +188,8 @@ def values_of(record: Record | None, name: str, own: Record) -> Array | None:
     values: Array = record.fields[name].astype(np.float64)
     if FIELDS[name].dims != ("mode",):
         return values
+    from scipy.optimize import linear_sum_assignment  # 0.2 s: only where it is needed
+
     here, there = eigenvalues(own), eigenvalues(record)
     mine, others = linear_sum_assignment(np.abs(here[:, None] - there[None, :]))
     matched = np.full(len(here), np.nan)

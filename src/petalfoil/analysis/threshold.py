@@ -9,7 +9,6 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from petalfoil.analysis.contact_model import reported
 from petalfoil.analysis.operating_point import Vector, applied_load, at, operating_point
@@ -147,6 +146,8 @@ def neutral_speed(
     The margins of both ends are not computed anew: where equilibria overlap, the one followed depends on where it is
     followed from, and with it the sign.
     """
+    from scipy.optimize import brentq  # 0.2 s: only where it is needed
+
     seen = dict([known, ahead])
 
     def remembered(speed: float) -> float:

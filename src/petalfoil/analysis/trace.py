@@ -9,13 +9,13 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import cumulative_trapezoid
 
 from petalfoil.analysis.film_figures import BearingState, FilmFigures, dragging_work, film_work, growth_work
 from petalfoil.case import Case
 from petalfoil.dynamics.point_path import nodal_friction, point_friction
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.dynamics.tr_bdf2 import RotorBearing
+from petalfoil.mesh.quadrature import accumulated
 from petalfoil.physics.forces import contact_fraction
 from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.friction import energy_lost
@@ -292,7 +292,7 @@ class Trace:
         over["film_work"] = np.cumsum(self.column("film_step"))
         over["petal_friction_work"] = np.cumsum(self.column("petals_step"))
         for work, torque in (("shaft_work", "friction_torque"), ("rubbing_work", "rubbing_torque")):
-            over[work] = cumulative_trapezoid(self.column(torque) * speed, time, initial=0.0)
+            over[work] = accumulated(self.column(torque) * speed, time)
         return time, over
 
     def audits(self, over: Named) -> Audits:
@@ -302,7 +302,7 @@ class Trace:
         nothing moves (`STILL`) there is no error of energy.
         """
         gas, outflow, time = self.column("gas"), self.column("outflow"), self.column("time")
-        gained = gas - gas[0] + cumulative_trapezoid(outflow, time, initial=0.0)
+        gained = gas - gas[0] + accumulated(outflow, time)
         energy = over["kinetic_energy"] + over["elastic_energy"] - over["kinetic_energy"][0]
         missing = energy - over["load_work"] - over["film_work"] + over["petal_friction_work"]
         missing -= np.cumsum(self.column("growth_step"))  # a journal that grows bends the petals it touches

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq, linear_sum_assignment
 
 from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.dynamics.rotor_motion import Inertia
@@ -159,6 +158,8 @@ def neutral_whirls(balance: Balance, ratios: FloatArray, speed: float) -> tuple[
 
 def matched(before: Complex, after: Complex) -> Complex:
     """`after`, ordered so that each eigenvalue continues its own branch."""
+    from scipy.optimize import linear_sum_assignment  # 0.2 s: only where it is needed
+
     out: Complex = after[linear_sum_assignment(np.abs(before[:, None] - after[None, :]))[1]]
     return out
 
@@ -169,6 +170,8 @@ def crossing(balance: Balance, between: tuple[float, float], start: complex, spe
     A branch whose imaginary part rises through zero at a negative stiffness has passed the imaginary axis below it,
     where its mass is zero and the whirl grows: a rotor of any mass whirls.
     """
+    from scipy.optimize import brentq  # 0.2 s: only where it is needed
+
     nearest = start
 
     def imaginary(nu: float) -> float:

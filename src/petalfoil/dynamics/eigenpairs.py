@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -116,6 +115,8 @@ def solved(
     residual: Callable[[complex, Complex], Complex], start: tuple[complex, Complex], size: float
 ) -> Eigenpair | None:
     """Solution near `start`, the residual below `SOLVED` times `size`; None if none is found."""
+    from scipy.optimize import least_squares  # 0.2 s: only where it is needed
+
     equations = RealEquations(residual, size, abs(start[0]) or 1.0, int(np.argmax(np.abs(start[1]))))
     begin = packed(start[0] / equations.unit, start[1], equations.pivot)
     found = least_squares(

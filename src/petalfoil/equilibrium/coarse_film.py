@@ -10,7 +10,6 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 from petalfoil.case import Case
 from petalfoil.equilibrium.element_contacts import (
@@ -25,6 +24,7 @@ from petalfoil.equilibrium.nodal_state import sampled_solution
 from petalfoil.equilibrium.point_contacts import PointContacts, Search, searched
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
+from petalfoil.mesh.splines import monotone
 from petalfoil.solvers.constraints import constrain
 from petalfoil.system.coupled import CoupledProblem
 from petalfoil.system.point_equations import PointEquations, PointState
@@ -101,7 +101,7 @@ def carried(equations: PointEquations, problem: CoupledProblem) -> PointEquation
     state, before, here = equations.state, equations.problem.layout, problem.layout
     points = replace(state.points, reaction=state.points.reaction * (before.scales.force / here.scales.force))
     coarse, film = before.wall.film, here.wall.film
-    ln_P = PchipInterpolator(coarse.phi, np.log(before.balance.nodal_pressure(state.P)), axis=1)(film.phi)
+    ln_P = monotone(coarse.phi, np.log(before.balance.nodal_pressure(state.P)), axis=1)(film.phi)
     P, inside = np.empty(film.n_unknown), film.unknown >= 0
     P[film.unknown[inside]] = np.exp(ln_P[inside])
     whole = here.elements

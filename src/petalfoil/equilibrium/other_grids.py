@@ -13,13 +13,13 @@ from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 from petalfoil.equilibrium.cold_start import BARRIERS, by_barriers, first_answer, marched_to_rest, marches
 from petalfoil.equilibrium.pack_at_rest import assembled
 from petalfoil.equilibrium.run_context import current_run
 from petalfoil.equilibrium.solution import Solution
 from petalfoil.errors import ConvergenceError
+from petalfoil.mesh.splines import monotone
 from petalfoil.solvers.problem import ContactProblem, PrimalDualPoint
 from petalfoil.system.build import build_problem
 from petalfoil.system.coupled import CoupledProblem
@@ -139,7 +139,7 @@ def carried(known: Solution, problem: CoupledProblem) -> Array:
     w = known.deflection * (before.scales.length / here.scales.length)
     deflection = wall_kind(here.case).interpolated(before.case, here.case, w)
     coarse, film = before.wall.film, here.wall.film
-    ln_P = PchipInterpolator(coarse.phi, np.log(known.problem.pressure(known.x)), axis=1)(film.phi)
+    ln_P = monotone(coarse.phi, np.log(known.problem.pressure(known.x)), axis=1)(film.phi)
     P, inside = np.empty(film.n_unknown), film.unknown >= 0
     P[film.unknown[inside]] = np.exp(ln_P[inside])
     return here.unknowns.join({DEFLECTION: deflection, PRESSURE: P})

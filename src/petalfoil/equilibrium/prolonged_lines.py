@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 from petalfoil.equilibrium.contact_runs import runs
 from petalfoil.equilibrium.line_contacts import LineContacts
 from petalfoil.mesh.axial import AxialGrid
+from petalfoil.mesh.splines import monotone
 from petalfoil.physics.contact import GapLines
 from petalfoil.physics.line_points import LinePoints
 from petalfoil.system.coupled import CoupledProblem
@@ -106,8 +106,8 @@ def prolonged_unknowns(known: LineContacts, problem: CoupledProblem) -> Array:
     deflection = wall_kind(here.case).prolonged(before.case, here.case, w)
     coarse, film = before.wall.film, here.wall.film
     ln_P = np.log(known.problem.pressure(known.x))
-    along = coarse.axial.whole(PchipInterpolator(coarse.phi, ln_P, axis=1)(film.phi))
-    along = PchipInterpolator(coarse.axial.whole_z, along, axis=2)(film.axial.z)
+    along = coarse.axial.whole(monotone(coarse.phi, ln_P, axis=1)(film.phi))
+    along = monotone(coarse.axial.whole_z, along, axis=2)(film.axial.z)
     P, inside = np.empty(film.n_unknown), film.unknown >= 0
     P[film.unknown[inside]] = np.exp(along[inside])
     return here.unknowns.join({DEFLECTION: deflection, PRESSURE: P})

@@ -5,6 +5,7 @@
 `quadrature.py`  weights that turn nodal values into integrals
 `axial.py`       axial nodes: one station (2-D), half the length or the whole length (3-D)
 `hermite.py`     cubic elements with continuous slopes
+`splines.py`     cubic curves through values at nodes
 `pack.py`        nodes of all petals; which nodes face the film, the bushing and the neighbouring petal
 `strips.py`      film strips and their pressure unknowns
 ===============  ======================================================================================

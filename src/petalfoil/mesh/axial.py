@@ -8,7 +8,6 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 from petalfoil.mesh.quadrature import cubic_weights, trapezoid
 
@@ -120,6 +119,8 @@ def equidistributed(density: Sequence[float], s: NDArray[np.float64]) -> NDArray
     s : (k,) array
         Parts of the stations, 0 to 1.
     """
+    from scipy.interpolate import PchipInterpolator  # 0.3 s: only for stations that are adapted
+
     at = np.linspace(0.0, 0.5, len(density))
     before = PchipInterpolator(at, np.asarray(density, dtype=np.float64)).antiderivative()
     nearer, total = np.minimum(s, 1.0 - s), 2.0 * float(before(0.5))

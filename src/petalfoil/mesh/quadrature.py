@@ -29,3 +29,8 @@ def cubic_weights(nodes: NDArray[np.float64]) -> NDArray[np.float64]:
     weight = np.zeros(len(nodes))
     np.add.at(weight, near, cell[:, None] * np.linalg.solve(moments, exact[..., None])[..., 0])
     return weight
+
+
+def accumulated(values: NDArray[np.float64], nodes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Integral of values (n,) from the first node to each of the `nodes` by the trapezoidal rule, (n,)."""
+    return np.concatenate([[0.0], np.cumsum(np.diff(nodes) * (values[1:] + values[:-1]) / 2.0)])

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from petalfoil.mesh.axial import AxialGrid
 from petalfoil.mesh.pack import PackMesh
+from petalfoil.mesh.splines import smooth
 
 Array = NDArray[np.float64]
 
@@ -32,23 +32,23 @@ def at_nodes(values: Array, mesh: PackMesh, other: PackMesh) -> Array:
     """Nodal values without the roots, where they vanish, on another grid; (nodes,) each."""
     whole = np.zeros(mesh.shape)
     whole[:, 1:] = values.reshape(mesh.count, -1, mesh.n_z)
-    along = CubicSpline(mesh.phi, whole, axis=1)(other.phi)[:, 1:]
+    along = smooth(mesh.phi, whole, axis=1)(other.phi)[:, 1:]
     return np.asarray(along_shaft(along, mesh.axial, other.axial).ravel())
 
 
 def at_cells(values: Array, mesh: PackMesh, other: PackMesh) -> Array:
     """Displacements along the shaft at the middles of the cells, odd about a plane of symmetry; (cells,) each."""
     along = values.reshape(mesh.count, mesh.n_node - 1, mesh.n_z - 1)
-    along = CubicSpline(middles(mesh.phi), along, axis=1)(middles(other.phi))
+    along = smooth(middles(mesh.phi), along, axis=1)(middles(other.phi))
     if mesh.axial.half:
         along = np.concatenate([along, -along[..., ::-1]], axis=-1)
-    spline = CubicSpline(middles(mesh.axial.whole_z), along, axis=-1)
+    spline = smooth(middles(mesh.axial.whole_z), along, axis=-1)
     return np.asarray(spline(middles(other.axial.z)).ravel())
 
 
 def along_shaft(values: Array, axial: AxialGrid, other: AxialGrid) -> Array:
     """Values (..., station) at the stations of another grid of the same length, whole or half as this one."""
-    return np.asarray(CubicSpline(axial.whole_z, axial.whole(values), axis=-1)(other.z))
+    return np.asarray(smooth(axial.whole_z, axial.whole(values), axis=-1)(other.z))
 
 
 def middles(nodes: Array) -> Array:

@@ -13,11 +13,11 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from petalfoil.mesh import hermite
 from petalfoil.mesh.pack import PackMesh
 from petalfoil.mesh.pitch import petal_angles
+from petalfoil.mesh.splines import smooth
 from petalfoil.physics.gap_curves import ContactPoints, Facing, GapCurves
 from petalfoil.physics.petal_elements import PetalElements, clamped_beam
 from petalfoil.physics.petal_sliding import Faces
@@ -122,7 +122,7 @@ class ElementPack:
         nodes, n = self.nodes[facing], self.mesh.count
         phi = self.elements.phi[nodes]
         lines = self.wall.contacts.lines[kind]
-        gaps = CubicSpline(lines.phi, self.wall.contacts.rest[lines.number], axis=1)
+        gaps = smooth(lines.phi, self.wall.contacts.rest[lines.number], axis=1)
         rest = np.stack([gaps(phi), gaps(phi, 1)], axis=-1).ravel()
         theta = (self.mesh.roots[:, None] + phi).ravel()
         towards_journal = np.stack([-np.cos(theta), -np.sin(theta), np.sin(theta), -np.cos(theta)], axis=1)
@@ -190,7 +190,7 @@ class ElementPack:
         count, several = self.mesh.count, deflection.shape[1:]
         inner = deflection[: count * (self.mesh.n_node - 1)].reshape(count, self.mesh.n_node - 1, *several)
         W = np.concatenate([np.zeros((count, 1, *several)), inner], axis=1)
-        curve, phi = CubicSpline(self.mesh.phi, W, axis=1), self.elements.phi
+        curve, phi = smooth(self.mesh.phi, W, axis=1), self.elements.phi
         pairs = np.stack([curve(phi), curve(phi, 1) * self.elements.slope_angle], axis=2)
         first = 2 if self.elements.clamped else 1
         return np.asarray(pairs.reshape(count, -1, *several)[:, first:].reshape(-1, *several))

@@ -11,11 +11,11 @@ from typing import ClassVar, TypeVar
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 from petalfoil.case import Case, Edges, Method, ModelKind, Mount, PackGeometry, Petals, PetalTheory
 from petalfoil.case.petal_table import Petal
 from petalfoil.mesh.pack import PackMesh, pack_mesh
+from petalfoil.mesh.splines import monotone
 from petalfoil.mesh.strips import exposed_strips
 from petalfoil.physics.contact import PetalSizes, pack_contacts
 from petalfoil.physics.dry_friction import petal_slip
@@ -269,7 +269,7 @@ class PetalWall(WallKind):
     def interpolated(self, case: Case, to: Case, deflection: Array) -> Array:
         """By monotone cubics along the petals, (n,)."""
         mesh, other = build_mesh(case), build_mesh(to)
-        return np.asarray(PchipInterpolator(mesh.phi, nodal(mesh, deflection), axis=1)(other.phi)[:, 1:].ravel())
+        return np.asarray(monotone(mesh.phi, nodal(mesh, deflection), axis=1)(other.phi)[:, 1:].ravel())
 
     def prolonged(self, case: Case, to: Case, deflection: Array) -> Array:
         """By cubic splines along the petals and along the shaft, (n,)."""
