@@ -24,6 +24,7 @@ In the order data flows:
 - `toml`: files and texts.
 - `whole_case`: why a case cannot be solved that no single key shows.
 - `definitions`: `Case`, which puts all of it together.
+- `attribute_texts`: texts below the attributes of definitions.
 - `keys`: every key with unit, range, default and meaning, and what a case says to it.
 - `parameters`: numbers of a case that may vary, by dotted path.
 - `implausible_answers`: warnings about an answer: stress, contact, bottomed-out pack, wide error bars.

@@ -15,7 +15,7 @@ from petalfoil.units.reading import shown
 class Definition(BaseModel):
     """Base of `Case` and of its sections."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
     section: ClassVar[str] = ""
     """Name of its table in a case; empty for the case itself."""

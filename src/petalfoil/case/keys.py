@@ -12,6 +12,7 @@ from typing import Any
 
 from pydantic.fields import FieldInfo
 
+from petalfoil.case.attribute_texts import attribute_texts
 from petalfoil.case.definition import Definition
 from petalfoil.case.definitions import Case
 from petalfoil.case.number_fields import Count, Quantity, QuantityOrWord
@@ -59,7 +60,7 @@ def keys(definition: type[Definition], prefix: str = "") -> Iterator[Key]:
     for name, field in definition.model_fields.items():
         inner = _definition(field)
         if inner is None:
-            yield _key(prefix + name, field)
+            yield _key(prefix + name, field, attribute_texts(definition).get(name, ""))
         elif definition is not Case:
             yield from keys(inner, f"{prefix}{name}.")
 
@@ -107,8 +108,9 @@ def as_html(case: Case) -> str:
 
 
 def _entries(table: Definition, prefix: str) -> Iterator[KeyEntry]:
+    texts = attribute_texts(type(table))
     for name, field in type(table).model_fields.items():
-        value, key = getattr(table, name), _key(prefix + name, field)
+        value, key = getattr(table, name), _key(prefix + name, field, texts.get(name, ""))
         if isinstance(value, Definition):
             yield from _entries(value, f"{prefix}{name}.")
         elif value is not None:
@@ -130,12 +132,12 @@ def _several(values: tuple[Any, ...], unit: str) -> str:
     return ", ".join(_plain(value, unit) for value in values)
 
 
-def _key(name: str, field: FieldInfo) -> Key:
+def _key(name: str, field: FieldInfo, text: str) -> Key:
     declared = list(_parts(field.annotation, field.metadata))
     numbers = [part for part in declared if isinstance(part, Quantity | Count)]
     words = [part for part in declared if inspect.isclass(part) and issubclass(part, StrEnum)]
     number = numbers[0] if numbers else None
-    said = [part for part in (number.meaning if number else "", _flow(field.description)) if part]
+    said = [part for part in (number.meaning if number else "", _flow(text)) if part]
     return Key(
         name=name,
         symbol=", ".join(dict.fromkeys(part.symbol for part in numbers if part.symbol)),
@@ -185,5 +187,5 @@ def _parts(annotation: Any, metadata: list[Any]) -> Iterator[Any]:
         yield from _parts(inner, [])
 
 
-def _flow(text: str | None) -> str:
-    return " ".join((text or "").split())
+def _flow(text: str) -> str:
+    return " ".join(text.split())
