@@ -50,7 +50,7 @@ def by_coarse_film(problem: CoupledProblem, load: Array | None) -> Solution | No
     if found is None:
         return None
     path = f"from the equilibrium on {case.cells_per_pitch} cells per pitch: {first.solution_path}"
-    return replace(found, solution_path=path)
+    return replace(found, solution_path=path, coarse_rate=first.coarse_rate)
 
 
 def alone(case: Case, problem: CoupledProblem, load: Array | None) -> Solution | None:
@@ -64,7 +64,8 @@ def alone(case: Case, problem: CoupledProblem, load: Array | None) -> Solution |
         return None
     sole = load is not None or others(case, problem, found, rate)[0] == 1
     keep(replace(found, elements=None, elements_sought=False), alone=sole)
-    return at_points(found) if sole else None
+    points = at_points(found) if sole else None
+    return None if points is None else replace(points, coarse_rate=rate.real)
 
 
 def from_nothing(problem: CoupledProblem, load: Array | None) -> Solution | None:

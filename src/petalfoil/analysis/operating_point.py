@@ -130,16 +130,16 @@ def from_coarse_grid(problem: CoupledProblem, load: Vector | None) -> OperatingP
     rate = leading_eigenvalue(found, rate_on_few_cells(found))
     if rate.real > 0.0:
         return None
-    found = replace(found, on_few_cells=None)
+    found = replace(found, on_few_cells=None, coarse_rate=0.0)
     keep(found, alone=False)
     return OperatingPoint(found, branch(rate, case, 1 if load is None else None, found.solution_path))
 
 
 def rate_on_few_cells(found: Solution) -> float:
-    """Growth rate of the equilibrium on few cells that led to the one `found`, 0 where none did [1]."""
+    """Growth rate of the equilibrium on few cells or under a coarse film that led to the one `found`, 0 of none [1]."""
     below, outer = found.on_few_cells, current_run()
     if below is None or below.contacts is None:
-        return 0.0
+        return found.coarse_rate
     with running() as run:
         rate = leading_eigenvalue(below).real
     outer.coarse.factorizations += run.probes.factorizations

@@ -190,7 +190,7 @@ def threshold_derivatives(case: Case, answer: Solution, mass: float | None, *, a
     """
     rotor = RotorOnBearings(case, rotor_mass(case, None, mass))
     here = rotor.impedance(answer)
-    known = AtOwnSpeed(answer, here.motion, rotor.whirl(here, case.operation.speed))
+    known = AtOwnSpeed(answer, here, rotor.whirl(here, case.operation.speed))
     speed, why = threshold_speed(rotor, case.operation.load, known)
     line = None if case.operation.load is None else SpeedLine(case, case.operation.load, known=answer, leads=False)
 

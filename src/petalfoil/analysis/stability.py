@@ -267,7 +267,7 @@ def point(case: Case, load: Vector | None, wanted: Wanted, progress: Progress | 
         whirl = rotor.whirl(impedance, speed)
         modes = None if math.isnan(rotor.mass) else rotor.modes(impedance, speed)
         if amplitude is None:
-            start = AtOwnSpeed(found.answer, impedance.motion, whirl)
+            start = AtOwnSpeed(found.answer, impedance, whirl)
             growing = any(mode.s.real > 0.0 for mode in modes or ())
             threshold, ended = threshold_speed(rotor, load, start, grows=growing)
         else:

@@ -17,6 +17,7 @@ from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case import Case
 from petalfoil.case.plausibility import MAX_MACH, surface_mach
 from petalfoil.dynamics.critical_mass import Whirl, least_damping, whirls_at_any_mass
+from petalfoil.dynamics.reduced_impedance import Impedance
 from petalfoil.dynamics.rotor_motion import GRAVITY
 from petalfoil.equilibrium.continuation import advance
 from petalfoil.equilibrium.linear_response import SmallMotion
@@ -31,9 +32,9 @@ RANGE, FACTOR = 16.0, 1.3
 PRECISION = 1e-6
 """Relative precision of the threshold speed: two or three looks more than 1e-3 takes, for the margin is smooth."""
 
-LOST = 0.2
-"""Part of the loss of a whirl, at any whirl ratio, that a look may find gone for the next one to be two factors ahead:
-by then two fifths are foretold to be gone."""
+FARTHEST, FORETOLD = 3, 0.4
+"""Most factors between looks where no mass is critical, and the part of the loss of a whirl, at any whirl ratio, that
+may be foretold to be gone at the next one."""
 
 Array = NDArray[np.float64]
 Threshold = tuple[float, str]
@@ -65,10 +66,10 @@ NEVER = 50.0
 
 @dataclass(frozen=True)
 class AtOwnSpeed:
-    """What is known at the case's speed: the equilibrium, small motions about it, and its neutral whirl."""
+    """What is known at the case's speed: the equilibrium, the impedance about it, and its neutral whirl."""
 
     answer: Solution
-    motion: JournalMotion
+    impedance: Impedance
     whirl: Whirl
 
 
@@ -80,7 +81,7 @@ def threshold_speed(
     Upward from a stable bearing, downward from an unstable one. A speed without an equilibrium ends the search. The
     critical mass is what is followed: where a mode `grows` below it, there is nothing to follow.
     """
-    if whirls_at_any_mass(start.motion):
+    if whirls_at_any_mass(start.impedance.motion):
         return math.nan, ""  # and at any speed
     if math.isnan(rotor.mass):
         return math.nan, "no threshold speed: give a mass or a load"
@@ -109,16 +110,20 @@ def threshold_speed(
 def looked_ahead(
     margin_at: FollowedMargin, known: float, factor: float, limits: tuple[float, float]
 ) -> tuple[float, float]:
-    """The next speed [rad/s] from a `known` one, and its margin: two factors ahead of looks far from whirling.
+    """The next speed [rad/s] from a `known` one, and its margin: several factors ahead of looks far from whirling.
 
-    Where the rotor is unstable there, the speed between is looked at from the known one, as if that had come first.
+    Where the rotor is unstable there, the first speed between is looked at from the known one, as if that had come
+    first, and no speed as far ahead until all before it are known.
     """
     first, last = limits
-    if margin_at.far_from_whirling and first <= known * factor**2 <= last:
-        before, there = margin_at.last, margin_at(known * factor**2)
-        if there > 0.0:
-            return known * factor**2, there
-        margin_at.last = before
+    for factors in range(margin_at.factors, 1, -1):
+        ahead = known * factor**factors
+        if first <= ahead <= last and ahead < margin_at.unstable:
+            before, there = margin_at.last, margin_at(ahead)
+            if there > 0.0:
+                return ahead, there
+            margin_at.last, margin_at.unstable = before, ahead
+            break
     return known * factor, margin_at(known * factor)
 
 
@@ -176,7 +181,9 @@ def margins(rotor: RotorOnBearings, load: Vector | None, start: AtOwnSpeed) -> F
         balances = PositionLine(case, start.answer)
     else:
         balances = PositionAnew(case)
-    return FollowedMargin(rotor, wanted, balances, start.motion)
+    margin_at = FollowedMargin(rotor, wanted, balances, start.impedance.motion)
+    margin_at.learn(start.impedance, case.operation.speed, margin(start.whirl, rotor.mass))
+    return margin_at
 
 
 class EquilibriaOverSpeed(Protocol):
@@ -243,18 +250,23 @@ class FollowedMargin:
         Equilibria with contacts at nodes, for speeds at which contact points are not followed.
     last : JournalMotion
         Small motions about the last equilibrium.
-    damping : (ratio,) array or None
-        Least loss of a whirl of any mass at each whirl ratio there (`least_damping`); None where a mass is critical.
-    far_from_whirling : bool
-        Whether a rotor of any mass was stable at the last two looks, and no loss has fallen by more than `LOST`.
+    damping : (speed, (ratio,) array) or None
+        The last speed [rad/s], and the least loss of a whirl of any mass at each whirl ratio there (`least_damping`);
+        None where a mass is critical.
+    factors : int
+        How many factors the next look may be ahead: more than one where a rotor of any mass was stable at the last two
+        looks, and no more than `FORETOLD` of a loss is foretold to be gone then.
+    unstable : float
+        Least speed farther ahead at which the rotor was found unstable [rad/s].
     """
 
     rotor: RotorOnBearings
     load: Vector | None
     balances: EquilibriaOverSpeed
     last: JournalMotion
-    damping: Array | None = None
-    far_from_whirling: bool = False
+    damping: tuple[float, Array] | None = None
+    factors: int = 1
+    unstable: float = math.inf
 
     def __call__(self, speed: float) -> float:
         """The margin at `speed` [rad/s]."""
@@ -263,12 +275,28 @@ class FollowedMargin:
             self.balances.seeks = not isinstance(self.last, SmallMotion)
             impedance = self.rotor.impedance(self.balances.at(speed))
         self.last = impedance.motion
-        found, before, here = margin(self.rotor.whirl(impedance, speed), self.rotor.mass), self.damping, None
-        if found == NEVER and self.rotor.amplitude is None:
-            here = least_damping(impedance, None if self.rotor.case.bearings == 1 else self.rotor.inertia)
-        kept = here is not None and before is not None and bool(np.all(here >= (1.0 - LOST) * before))
-        self.damping, self.far_from_whirling = here, kept
+        found = margin(self.rotor.whirl(impedance, speed), self.rotor.mass)
+        self.learn(impedance, speed, found)
         return found
+
+    def learn(self, impedance: Impedance, speed: float, found: float) -> None:
+        """How far ahead the next look may be, from the impedance at a `speed` [rad/s] and the margin `found` there."""
+        before, self.damping, self.factors = self.damping, None, 1
+        if found != NEVER or self.rotor.amplitude is not None:
+            return
+        inertia = None if self.rotor.case.bearings == 1 else self.rotor.inertia
+        self.damping = speed, least_damping(impedance, inertia)
+        if before is not None:
+            self.factors = factors_ahead(before, self.damping)
+
+
+def factors_ahead(before: tuple[float, Array], here: tuple[float, Array]) -> int:
+    """How many factors the next look may be ahead, by what is left of each loss (ratio,) from a speed to another."""
+    passed = abs(math.log(here[0] / before[0])) / math.log(FACTOR)
+    for factors in range(FARTHEST, 1, -1):
+        if np.all(here[1] >= (1.0 - FORETOLD * passed / factors) * before[1]):
+            return factors
+    return 1
 
 
 def in_rpm(speed: float) -> str:

@@ -85,17 +85,20 @@ class Balance:
         """Masses times the square of the whirl frequency that balance the impedance at whirl ratio `nu`, (d,) [N/m]."""
         return eigenvalues(self.impedance.at_ratio(nu), nu, self.inertia)
 
-    def over(self, ratios: FloatArray) -> list[Complex]:
-        """The same at several whirl ratios."""
-        Z = self.impedance.at_each((1j * ratios).tolist())
-        return [eigenvalues(one, nu, self.inertia) for one, nu in zip(Z, ratios, strict=True)]
+    @property
+    def over_ratios(self) -> Complex:
+        """The same at the whirl ratios that the impedance is made for, (k, d)."""
+        return eigenvalues(self.impedance.over_ratios, self.impedance.ratios, self.inertia)
 
 
-def eigenvalues(Z: Complex, nu: float, inertia: Inertia | None) -> Complex:
-    """Masses times the square of the whirl frequency that balance an impedance `Z` (d, d) at whirl ratio `nu`, (d,)."""
+def eigenvalues(Z: Complex, nu: float | FloatArray, inertia: Inertia | None) -> Complex:
+    """Masses times the square of the whirl frequency that balance an impedance, (..., d) [N/m].
+
+    `Z` is (..., d, d), at whirl ratios `nu` (...).
+    """
     if inertia is None:
         return np.asarray(np.linalg.eigvals(Z), dtype=np.complex128)
-    shape = (inertia.mass - 1j * inertia.gyroscopic / nu) / inertia.mass[0, 0]
+    shape = (inertia.mass - 1j * inertia.gyroscopic / np.asarray(nu)[..., None, None]) / inertia.mass[0, 0]
     inverse = np.linalg.eigvals(np.linalg.solve(Z, shape))
     return np.asarray(1.0 / np.where(inverse == 0.0, np.finfo(float).tiny, inverse), dtype=np.complex128)
 
@@ -119,10 +122,10 @@ def neutral_whirl(impedance: Impedance, speed: float, inertia: Inertia | None = 
     """
     if whirls_at_any_mass(impedance.motion):
         return EVEN_FILM
-    roots, last = neutral_whirls(Balance(impedance, inertia), SCAN, speed)
+    roots, last = neutral_whirls(Balance(impedance, inertia), speed)
     if grows(last):
         further = Impedance.over(impedance.motion, BEYOND.tolist())
-        lighter, last = neutral_whirls(Balance(further, inertia), BEYOND, speed)
+        lighter, last = neutral_whirls(Balance(further, inertia), speed)
         roots += lighter
         if inertia is None and grows(last):
             return Whirl(0.0, np.nan)
@@ -130,11 +133,11 @@ def neutral_whirl(impedance: Impedance, speed: float, inertia: Inertia | None = 
 
 
 def least_damping(impedance: Impedance, inertia: Inertia | None = None) -> FloatArray:
-    """Least loss of a whirl of any positive mass at each ratio of `SCAN`, (ratio,) [1]; infinite where there is none.
+    """Least loss of a whirl of any positive mass at each ratio of an impedance, (ratio,) [1]; infinite without one.
 
     The loss is the imaginary part of a mass that balances the impedance over its size.
     """
-    values = np.array(Balance(impedance, inertia).over(SCAN))
+    values = Balance(impedance, inertia).over_ratios
     return np.asarray(np.min(values.imag / np.abs(values), axis=1, where=values.real > 0.0, initial=np.inf))
 
 
@@ -143,10 +146,10 @@ def grows(values: Complex) -> bool:
     return bool(np.any((values.imag < -NEUTRAL * np.abs(values)) & (values.real > 0.0)))
 
 
-def neutral_whirls(balance: Balance, ratios: FloatArray, speed: float) -> tuple[list[Whirl], Complex]:
-    """All neutral whirls between some whirl ratios, and the eigenvalues at the last one, (d,)."""
+def neutral_whirls(balance: Balance, speed: float) -> tuple[list[Whirl], Complex]:
+    """All neutral whirls between the whirl ratios of an impedance, and the eigenvalues at the last one, (d,)."""
     roots: list[Whirl] = []
-    values = balance.over(ratios)
+    values, ratios = balance.over_ratios, balance.impedance.ratios
     for k in range(len(ratios) - 1):
         ahead = matched(values[k], values[k + 1])
         for branch in range(len(ahead)):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,11 +36,14 @@ class Impedance:
         Their reduced model.
     error : float
         Largest error of the model, over the largest entry of the impedance [1].
+    ratios : (k,) array
+        Whirl ratios that it is made for.
     """
 
     motion: JournalMotion
     model: ReducedModel
     error: float
+    ratios: NDArray[np.float64]
 
     @classmethod
     def over(cls, motion: JournalMotion, ratios: Sequence[float]) -> Impedance:
@@ -50,7 +54,7 @@ class Impedance:
         model = reduce_system(motion.moved_system(current_run().probe_solver), [1j * nu for nu in ratios])
         error = model_error(motion, model, 1j * ratios[-1])
         current_run().note("reduced model", vectors=model.size, error=error)
-        return cls(motion, model, error)
+        return cls(motion, model, error, np.asarray(ratios, dtype=np.float64))
 
     @property
     def reduced(self) -> bool:
@@ -66,6 +70,11 @@ class Impedance:
         if self.reduced:
             return self._si(self.model.at_each(points))
         return self._si(np.array([factorised(self.motion, s).force_gradient for s in points]))
+
+    @cached_property
+    def over_ratios(self) -> Complex:
+        """The same at the whirl ratios that it is made for, (k, d, d) [N/m]."""
+        return self.at_each((1j * self.ratios).tolist())
 
     def at_ratio(self, nu: float) -> Complex:
         """`Z` at whirl ratio `nu`, (d, d) [N/m]."""

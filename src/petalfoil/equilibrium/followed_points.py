@@ -82,8 +82,7 @@ def followed(
     NoPointsError
         None was found, or one much farther away than the tangent foretold.
     """
-    start = problem.at(displacement=near.equations.problem.displacement)
-    equations, tangent = replace(near.equations, problem=start), foretelling(near, load)
+    equations, tangent = under(near.equations, problem), foretelling(near, load)
     foretold, before, serving = NEAR, np.inf, serving or ServingFactor(current_run().film_solver, OWN)
     for count in range(TANGENTS):
         size, largest = norm(equations, load)
@@ -108,6 +107,17 @@ def followed(
         part = 1.0 if given else norm(equations, load)[0] / size
         equations = settled(equations, (tangent, secants), problem, (load, part, near.residual))
     raise NoPointsError(f"not followed with at most {TANGENTS} tangents")
+
+
+def under(equations: PointEquations, problem: CoupledProblem) -> PointEquations:
+    """Those of a state under another problem, at the state's position; the same, with all they know, at one speed."""
+    before = equations.problem
+    start = problem.at(displacement=before.displacement)
+    steady = type(start) is CoupledProblem and type(before) is CoupledProblem
+    known = start.layout is before.layout and start.temperatures is before.temperatures
+    if steady and known and start.bearing_number == before.bearing_number:
+        return equations
+    return replace(equations, problem=start)
 
 
 def distance(one: PointEquations, other: PointEquations) -> float:

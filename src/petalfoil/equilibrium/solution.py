@@ -120,6 +120,8 @@ class Solution:
         Number of these steps; None likewise.
     on_few_cells : Solution or None
         The equilibrium on few cells that led to it.
+    coarse_rate : float
+        Growth rate of the equilibrium under a coarse film that led to it, 0 where none did [1].
     """
 
     problem: CoupledProblem
@@ -139,6 +141,7 @@ class Solution:
     step_count: int | None = None
     sampled: ElementEquilibrium | None = field(default=None, repr=False)
     on_few_cells: Solution | None = field(default=None, repr=False)
+    coarse_rate: float = 0.0
 
     @property
     def position(self) -> Array:

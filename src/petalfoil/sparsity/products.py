@@ -76,6 +76,12 @@ class Triplets(NamedTuple):
         return cls(rows, cols, matrix.data)
 
     @classmethod
+    def of_dense(cls, values: Array) -> Triplets:
+        """Those of an array (n, m), zeros left out."""
+        rows, cols = np.nonzero(values)
+        return cls(rows, cols, values[rows, cols])
+
+    @classmethod
     def diagonal(cls, values: Array) -> Triplets:
         """Those of a diagonal (n,), zeros left out."""
         at = np.flatnonzero(values)

@@ -18,7 +18,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from petalfoil.case import Case
-from petalfoil.sparsity import SparseRows
+from petalfoil.sparsity import SparseRows, Triplets, added_blocks
 from petalfoil.system.bearing_layout import BearingLayout
 from petalfoil.system.build import lever_of
 from petalfoil.system.coupled import CoupledProblem, Linearization
@@ -146,11 +146,10 @@ class LoadedLinearization:
         rows = (problem.coupled.G.T @ pull).T
         columns = forcing + problem.coupled.acting.T @ stiff
         rows[:, border.columns] -= border.row_derivative
-        blocks = [
-            [self.coupled.matrix(barrier_weight, rate), sp.csc_array(columns)],
-            [sp.csc_array(rows), sp.csc_array(border.by_reactions @ stiff)],
-        ]
-        return sp.csc_array(sp.block_array(blocks, format="csc"))
+        inner, direct = self.coupled.matrix(barrier_weight, rate), Triplets.of_dense(border.by_reactions @ stiff)
+        n, along, across = inner.shape[0], Triplets.of_dense(columns), Triplets.of_dense(rows)
+        blocks = [(0, 0, inner), (0, n, along), (n, 0, across), (n, n, direct)]
+        return added_blocks(blocks, np.zeros(n + len(rows)))
 
     def slack_derivative(self, change: Array, rate: float = 0.0) -> Array:
         """The journal's rows do not read the gaps."""

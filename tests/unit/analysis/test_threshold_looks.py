@@ -1,4 +1,4 @@
-"""Looks of the search for a threshold speed: two factors ahead where whirls are far, and to the same bracket."""
+"""Looks of the search for a threshold speed: several factors ahead where whirls are far, and to the same bracket."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
 import pytest
 
-from petalfoil.analysis.threshold import FACTOR, NEVER, looked_ahead
+from petalfoil.analysis.threshold import FACTOR, FARTHEST, NEVER, factors_ahead, looked_ahead
 
 
 @dataclass
@@ -16,21 +17,15 @@ class Margin:
     """A margin over speed that tells where it is far from whirling."""
 
     changes: float
-    far: bool
+    factors: int
     last: float = 1.0
+    unstable: float = math.inf
     looks: list[float] = field(default_factory=list)
-
-    @property
-    def far_from_whirling(self) -> bool:
-        return self.far
 
     def __call__(self, speed: float) -> float:
         self.looks.append(self.last)
         self.last = speed
-        if speed < self.changes:
-            return NEVER
-        self.far = False
-        return -1.0
+        return NEVER if speed < self.changes else -1.0
 
 
 def walked(margin: Any, end: float) -> tuple[float, float, int]:
@@ -43,22 +38,33 @@ def walked(margin: Any, end: float) -> tuple[float, float, int]:
         known = ahead
 
 
-@pytest.mark.parametrize("factors", [0.5, 1.5, 4.5, 5.5])
-def test_the_bracket_is_that_of_looks_one_by_one(factors: float) -> None:
-    """Odd or even; no more looks than two in vain."""
-    far, near = (walked(Margin(FACTOR**factors, far=one), FACTOR**9) for one in (True, False))
+@pytest.mark.parametrize("ahead", [2, 3])
+@pytest.mark.parametrize("factors", [0.5, 1.5, 2.5, 4.5, 5.5, 7.5])
+def test_the_bracket_is_that_of_looks_one_by_one(factors: float, ahead: int) -> None:
+    """However many factors ahead; one look is in vain, and all from the last stable speed on are made."""
+    far, near = (walked(Margin(FACTOR**factors, one), FACTOR**11) for one in (ahead, 1))
     assert far[:2] == pytest.approx(near[:2], rel=1e-12)
-    assert far[2] <= near[2] / 2 + 2
+    assert far[2] <= near[2] / ahead + ahead + 1
 
 
 def test_an_unstable_look_is_no_start_for_the_one_between() -> None:
     """That is followed from the last stable speed."""
-    margin = Margin(FACTOR**0.5, far=True)
+    margin = Margin(FACTOR**0.5, FARTHEST)
     looked_ahead(margin, 1.0, FACTOR, (1.0, 9.0))  # type: ignore[arg-type]
     assert margin.looks == [1.0, 1.0]
 
 
 def test_the_last_look_is_within_the_range() -> None:
-    """One factor is left: one is taken."""
-    ahead, _ = looked_ahead(Margin(math.inf, far=True), 1.0, FACTOR, (1.0, 1.4))  # type: ignore[arg-type]
-    assert ahead == FACTOR
+    """As many factors as are left are taken."""
+    for left in (1, 2):
+        ahead, _ = looked_ahead(Margin(math.inf, FARTHEST), 1.0, FACTOR, (1.0, FACTOR**left * 1.1))  # type: ignore[arg-type]
+        assert ahead == pytest.approx(FACTOR**left)
+
+
+@pytest.mark.parametrize(
+    ("passed", "left", "ahead"), [(1, 0.9, 3), (1, 0.85, 2), (1, 0.75, 1), (2, 0.75, 3), (3, 0.62, 3), (3, 0.55, 2)]
+)
+def test_looks_go_as_far_as_two_fifths_of_a_loss_are_foretold_to_go(passed: int, left: float, ahead: int) -> None:
+    """Losses fall evenly from look to look; the one that falls most counts, those of no whirl stay without end."""
+    before, here = np.array([1e-5, 0.1, np.inf]), np.array([1e-5 * left, 0.2, np.inf])
+    assert factors_ahead((1.0, before), (FACTOR**passed, here)) == ahead
