@@ -12,7 +12,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 from scipy.sparse import _sparsetools  # the loops behind `@`; SciPy has no public way to them
-from scipy.sparse.csgraph import connected_components
+from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
 from petalfoil.sparsity import Elimination, Order, compressed, postorder
 
@@ -130,6 +130,8 @@ class LinearSolver:
         if not np.all(np.isfinite(matrix.data)):
             raise SingularMatrixError("matrix with entries that are not finite")
         scaled, row, col = equilibrate(without_zeros(matrix))
+        if not scaled.has_pivots:
+            raise SingularMatrixError("matrix whose entries leave an unknown or an equation without a pivot")
         places = None if order is None else order.known(len(scaled.data))
         try:
             factor = Factor(symmetric_lu(scaled, places), row, col, places, self.counter)
@@ -179,6 +181,18 @@ class Columns:
     def matrix(self) -> sp.csc_array:
         """As an array of SciPy's, in canonical format as long as no entry stands twice."""
         return compressed(sp.csc_array, self.data, self.indices, self.indptr, (self.n, self.n))
+
+    @property
+    def has_pivots(self) -> bool:
+        """Whether rows and columns can be matched so that a pivot may stand in each, whatever the values are.
+
+        In symmetric mode SuperLU writes past its arrays where they cannot.
+        """
+        columns = np.repeat(np.arange(self.n), np.diff(self.indptr))
+        if np.count_nonzero(self.indices == columns) == self.n:  # no entry stands twice: a full diagonal
+            return True
+        pattern = compressed(sp.csr_array, np.ones(len(self.data)), self.indices, self.indptr, (self.n, self.n))
+        return bool(np.all(maximum_bipartite_matching(pattern) >= 0))
 
     @property
     def magnitude(self) -> Columns:

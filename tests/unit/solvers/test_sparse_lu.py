@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from numpy.testing import assert_allclose, assert_array_equal
+from scipy.sparse.csgraph import structural_rank
 
+from petalfoil.solvers import sparse_lu
 from petalfoil.solvers.sparse_lu import Columns, LinearSolver, SingularMatrixError, equilibrate, parity
 
 
@@ -59,6 +61,26 @@ def test_solve_of_one_and_several_right_hand_sides() -> None:
 def test_what_has_no_inverse(matrix: object) -> None:
     with pytest.raises(SingularMatrixError):
         LinearSolver().factor(sp.csc_array(matrix))
+
+
+def test_lines_that_share_one_column_have_no_inverse_and_never_reach_superlu(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In symmetric mode it writes past its arrays there: two series of 3000 such matrices ended the process."""
+    monkeypatch.setattr(sparse_lu.spla, "splu", lambda *_, **__: pytest.fail("factorised"))
+    matrix = np.diag([1.0, 0.0, 0.0, 2.0])
+    matrix[1, 0] = matrix[2, 0] = matrix[0, 1] = matrix[0, 2] = 1.0
+    with pytest.raises(SingularMatrixError, match="without a pivot"):
+        LinearSolver().factor(sp.csc_array(matrix))
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_pivots_by_their_places(seed: int) -> None:
+    """As SciPy's structural rank has it; with a full diagonal at once."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(1, 40))
+    matrix = sp.csc_array(sp.random_array((n, n), density=0.08, rng=rng) + sp.diags_array(rng.integers(0, 2, n) * 1.0))
+    full = structural_rank(sp.csr_array(matrix)) == n
+    assert equilibrate(matrix)[0].has_pivots == full
+    assert equilibrate(sp.csc_array(matrix + sp.eye_array(n)))[0].has_pivots
 
 
 def test_counts() -> None:
