@@ -24,7 +24,7 @@ from rich.console import Console
 
 from petalfoil import Case
 from petalfoil.analysis.adapted_stations import with_stations
-from petalfoil.analysis.crossings import CONTACT_FRACTION, crossing
+from petalfoil.analysis.crossings import CONTACT_FRACTION, crossing, walk
 from petalfoil.analysis.evaluation import Evaluation
 from petalfoil.analysis.impedance import elastic, impedances
 from petalfoil.analysis.operating_point import operating_point
@@ -154,7 +154,9 @@ def liftoff_row(rig: Case) -> str:
         case = with_stations(on_grid(rig, grid))
         load = case.operation.load or (0.0, 0.0)
         with running():
-            speeds.append(crossing(SpeedLine(case, load), TOUCHING, CONTACT_FRACTION, upward=True) or math.nan)
+            speeds.append(
+                crossing(SpeedLine(case, load), walk(case, TOUCHING), CONTACT_FRACTION, upward=True) or math.nan
+            )
     return f"| {LIFTOFF} | {' | '.join(f'{speed:.1f}' for speed in speeds)} |"
 
 

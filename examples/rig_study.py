@@ -29,7 +29,7 @@ from scipy.stats import qmc
 
 from petalfoil import Case
 from petalfoil.analysis.balance import balance
-from petalfoil.analysis.crossings import CONTACT_FRACTION, crossing
+from petalfoil.analysis.crossings import CONTACT_FRACTION, crossing, walk
 from petalfoil.analysis.session import one_thread
 from petalfoil.analysis.speeds import SpeedLine
 from petalfoil.case.pack_geometry import MAX_ARC_ANGLE
@@ -157,7 +157,7 @@ def lift_off(case: Case, load: float, near: float, share: float = CONTACT_FRACTI
         if touching and line.contact_fraction(TOO_FAST * omega) > share:
             return math.nan
         line.known = known
-        found = crossing(line, omega, share, upward=touching)
+        found = crossing(line, walk(case, omega, upward=touching), share, upward=touching)
     return math.nan if found is None else found * 30.0 / math.pi
 
 

@@ -87,7 +87,8 @@ def test_a_table_has_a_line_for_each_mode_and_json_its_lists() -> None:
     answer = Answer.stored(over_speed(), stability.layouts[2])
     said = render(answer)
     lines = [line for line in said.splitlines() if line.strip().startswith(("2000 ", "4000 "))]
-    assert len(lines) == int(np.isfinite(over_speed()["natural_frequency"].values[:2]).sum())
+    named = {tuple(line.split()[:3]) for line in lines}  # speed, verdict, mode: a wide table comes in parts with these
+    assert len(named) == int(np.isfinite(over_speed()["natural_frequency"].values[:2]).sum())
     assert "critical" in said
     assert len(answer.layout.to_json(answer.records)["points"]) == len(SPEEDS)
 

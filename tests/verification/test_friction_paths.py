@@ -118,12 +118,15 @@ def test_a_motion_begins_with_the_friction_of_the_path() -> None:
 
 @pytest.mark.slow
 def test_a_pack_that_keeps_its_friction_lifts_off_where_its_run_up_does() -> None:
-    """Contact fractions on either side of the lift-off speed, each led from rest, are on either side of the limit."""
+    """Contact fractions on either side of the lift-off speed, each led from rest, are on either side of the limit.
+
+    On the way down from 30 000 rpm the pack touches again 1.9 % above that speed, within 3e-4 with shorter steps.
+    """
     kept = rig(**{"surface.friction_history": "assembled"})
     (found,) = liftoff.records(kept, [LOAD])
     assert found.scalars["friction_path"] == PATH
     up, down = (float(found.scalars[f"{name}_speed"]) for name in ("liftoff", "touchdown"))
-    assert 0.0 < down <= up
+    assert 0.0 < abs(down / up - 1.0) < 0.03
     below, above = (
         float(next(iter(balance.records(kept, load=(0.0, -LOAD), speed=factor * up))).scalars["contact_fraction"])
         for factor in (0.95, 1.05)
