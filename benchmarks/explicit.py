@@ -22,7 +22,6 @@ from petalfoil.classic.film_cells import FilmCells, film_cells
 from petalfoil.classic.kernels import DescentSettings, KernelBackend, MarchSettings, kernels
 from petalfoil.classic.method_options import ClassicOptions
 from petalfoil.classic.numpy_kernels import exponential_fit, inflow, largest_rate
-from petalfoil.classic.relaxation import pressure_unknowns
 from petalfoil.dynamics.time_state import Instant
 from petalfoil.system.coupled import CoupledProblem
 
@@ -145,7 +144,8 @@ class ExplicitMotion:
     @property
     def unknowns(self) -> Array:
         """Pressure unknowns."""
-        return pressure_unknowns(self.problem, self.P.reshape(self.problem.layout.balance.mesh.shape))
+        mesh = self.problem.layout.balance.mesh
+        return mesh.at_unknowns(self.P.reshape(mesh.shape))
 
     def follow(self, end: float, seconds: float) -> str:
         """Step until the time `end` or a limit of processor time [s]; returns a description of the end."""

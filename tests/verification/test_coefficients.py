@@ -243,6 +243,8 @@ def test_what_cannot_be_asked() -> None:
     bearing = plain((32, 8))
     with pytest.raises(UsageError, match="turning shaft"):
         coefficients.record(bearing, [100.0], speed=0.0)
+    with pytest.raises(UsageError, match="slopes of the axis need the length"):
+        coefficients.record(case("paper_n8"), [100.0], tilt=True)
     with pytest.raises(UsageError, match=r"frequencies: .* at least 0 rad/s"):
         coefficients.record(bearing, [-1.0])
     with pytest.raises(UsageError, match=r"mass: .* greater than 0 kg"):

@@ -32,7 +32,7 @@ from petalfoil.errors import ConvergenceError, UsageError
 from petalfoil.results.layout import ArrayTable, Cell, Series, SinglePoint, at_speed
 from petalfoil.results.parts import Branch, RunOutcome
 from petalfoil.results.record import Array, Record
-from petalfoil.results.summary import ABSENT, number
+from petalfoil.results.summary import ABSENT, barred
 from petalfoil.results.variable import DataType, Role, TableLabel, Variable
 from petalfoil.units.writing import format_percent
 from petalfoil.walls import wall_kind
@@ -132,7 +132,7 @@ def of_direction(record: Record, name: str, k: int, factor: float = 1.0) -> floa
 def capacity_in(record: Record, k: int) -> Cell:
     """The load capacity in a direction, and its error bar where it has one."""
     value, bar = (of_direction(record, f"capacity_over_direction{part}", k) for part in ("", "_error"))
-    return f"{number(value)} ± {number(bar)}" if isinstance(value, float) and isinstance(bar, float) else value
+    return barred(value, bar) if isinstance(value, float) and isinstance(bar, float) else value
 
 
 TABLE = ArrayTable(

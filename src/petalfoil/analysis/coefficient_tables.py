@@ -10,7 +10,7 @@ import numpy as np
 
 from petalfoil.results.layout import ArrayTable, Cell
 from petalfoil.results.record import Record
-from petalfoil.results.summary import ABSENT, cell, number
+from petalfoil.results.summary import ABSENT, barred, cell
 
 AT: dict[str, Callable[[Record, int], Cell]] = {
     "speed\nrpm": lambda record, _: cell("speed", record.scalars["speed"]).value,
@@ -70,7 +70,7 @@ def entry(name: str, row: int, column: int) -> Callable[[Record, int], Cell]:
         bar = np.nan if bars is None else float(bars[index][row][column])
         if abs(value) < ROUNDING * size_of(name, record, index):
             value = 0.0
-        return value if np.isnan(bar) else f"{number(value)} ± {number(bar)}"
+        return barred(value, bar)
 
     return read
 

@@ -80,7 +80,7 @@ class FractionLimit:
     contact_fraction_limit: float
 
 
-def told(records: Sequence[Record]) -> Iterator[TableRow]:
+def equal_speeds(records: Sequence[Record]) -> Iterator[TableRow]:
     """Of which loads lift-off and touchdown are one speed, and why; nothing where none are."""
     places = [str(place) for place, record in enumerate(records, start=1) if is_one_speed(record)]
     if places:
@@ -99,7 +99,7 @@ LAYOUT = ColumnarSeries(
     heads={"loads": load_of},
     names=(*SPEEDS, "contact_fraction_limit", "friction_path", "converged", "status", "factorizations", "wall_time"),
     at=of_load,
-    told=told,
+    told=equal_speeds,
 )
 
 

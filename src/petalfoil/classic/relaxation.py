@@ -147,7 +147,7 @@ def relax(run: ClassicRun, start: ClassicState | None = None) -> ClassicState:
         tolerance = options.inner(change)
         H = problem.film(np.concatenate([w_in, P]))
         run.march_film(steady, H, tolerance)  # p_k+1 of the clearance (51)-(59)
-        P_new = pressure_unknowns(problem, steady)
+        P_new = problem.layout.balance.mesh.at_unknowns(steady)
         pressure_change = float(np.max(np.abs(P_new - P) / P_new))  # (60)
         P = options.pressure_relaxation * P_new + (1.0 - options.pressure_relaxation) * P
         run.descend_pack(w_out, P, tolerance)  # W_k+1 of the pressure (45)-(50)
@@ -175,14 +175,6 @@ def assembled(run: ClassicRun, tolerance: float | None = None) -> ClassicState:
     w, P = np.zeros(layout.n_wall), np.ones(layout.n - layout.n_wall)
     run.descend_pack(w, P, run.options.inner(0.0) if tolerance is None else tolerance)
     return run.state(w, P, 0)
-
-
-def pressure_unknowns(problem: CoupledProblem, nodal: Array) -> Array:
-    """The pressure unknowns of nodal pressures (strip, node, axial), (n_film,)."""
-    unknown = problem.layout.balance.mesh.unknown
-    P = np.empty(problem.layout.balance.mesh.n_unknown)
-    P[unknown[unknown >= 0]] = nodal[unknown >= 0]
-    return P
 
 
 @dataclass

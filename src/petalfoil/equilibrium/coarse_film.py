@@ -102,12 +102,10 @@ def carried(equations: PointEquations, problem: CoupledProblem) -> PointEquation
     points = replace(state.points, reaction=state.points.reaction * (before.scales.force / here.scales.force))
     coarse, film = before.wall.film, here.wall.film
     ln_P = monotone(coarse.phi, np.log(before.balance.nodal_pressure(state.P)), axis=1)(film.phi)
-    P, inside = np.empty(film.n_unknown), film.unknown >= 0
-    P[film.unknown[inside]] = np.exp(ln_P[inside])
     whole = here.elements
     assert whole is not None
     w = state.w * (before.scales.length / here.scales.length)
-    return PointEquations(whole, problem, PointState(w, P, points))
+    return PointEquations(whole, problem, PointState(w, film.at_unknowns(np.exp(ln_P)), points))
 
 
 def change_of_force(known: PointContacts, answer: Solution) -> float:

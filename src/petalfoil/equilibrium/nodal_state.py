@@ -215,7 +215,7 @@ def placed_contacts(found: ElementEquilibrium) -> PlacedContacts:
     facing, petal = np.divmod(points.every_curve, pack.mesh.count)
     curvature = np.full((len(petal), 2), np.nan)
     own, below = pack.contact_places(points)
-    angle = pack.elements.phi[own.element] + own.place * pack.elements.element_angle[own.element]
+    angle = pack.elements.angle_at(own.element, own.place)
     lies = facing == list(pack.nodes).index(Facing.PETAL)
     curvature[:, 0], curvature[lies, 1] = curvatures(found, own), curvatures(found, below)
     return PlacedContacts(petal, facing, angle, points.reaction * scales.force, curvature)

@@ -140,6 +140,4 @@ def carried(known: Solution, problem: CoupledProblem) -> Array:
     deflection = wall_kind(here.case).interpolated(before.case, here.case, w)
     coarse, film = before.wall.film, here.wall.film
     ln_P = monotone(coarse.phi, np.log(known.problem.pressure(known.x)), axis=1)(film.phi)
-    P, inside = np.empty(film.n_unknown), film.unknown >= 0
-    P[film.unknown[inside]] = np.exp(ln_P[inside])
-    return here.unknowns.join({DEFLECTION: deflection, PRESSURE: P})
+    return here.unknowns.join({DEFLECTION: deflection, PRESSURE: film.at_unknowns(np.exp(ln_P))})

@@ -108,9 +108,7 @@ def prolonged_unknowns(known: LineContacts, problem: CoupledProblem) -> Array:
     ln_P = np.log(known.problem.pressure(known.x))
     along = coarse.axial.whole(monotone(coarse.phi, ln_P, axis=1)(film.phi))
     along = monotone(coarse.axial.whole_z, along, axis=2)(film.axial.z)
-    P, inside = np.empty(film.n_unknown), film.unknown >= 0
-    P[film.unknown[inside]] = np.exp(along[inside])
-    return here.unknowns.join({DEFLECTION: deflection, PRESSURE: P})
+    return here.unknowns.join({DEFLECTION: deflection, PRESSURE: film.at_unknowns(np.exp(along))})
 
 
 def pieces(known: LineContacts) -> Iterator[ContactPiece]:

@@ -138,9 +138,8 @@ def is_aligned(problem: CoupledProblem) -> bool:
 def mirrored(known: Solution, problem: CoupledProblem) -> tuple[Array, Mask]:
     """Unknowns (n,) and active contacts (m,) over the whole length from an equilibrium on half of it."""
     half, film = known.problem.layout, problem.layout.wall.film
-    axial, inside = half.wall.film.axial, film.unknown >= 0
-    pressure, P = axial.whole(known.problem.pressure(known.x)), np.empty(film.n_unknown)
-    P[film.unknown[inside]] = pressure[inside]
+    axial = half.wall.film.axial
+    P = film.at_unknowns(axial.whole(known.problem.pressure(known.x)))
     w = known.x[half.unknowns[DEFLECTION]] * (half.scales.length / problem.layout.scales.length)
     whole = wall_kind(half.case).over_whole_length(half.case, w)
     x = problem.layout.unknowns.join({DEFLECTION: whole, PRESSURE: P})

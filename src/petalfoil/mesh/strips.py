@@ -46,6 +46,12 @@ class FilmMesh:
         """Number of pressure unknowns."""
         return int(self.unknown.max()) + 1
 
+    def at_unknowns(self, nodal: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The pressure unknowns (n_unknown,) of values at nodes (strip, node, axial)."""
+        out, inside = np.empty(self.n_unknown), self.unknown >= 0
+        out[self.unknown[inside]] = nodal[inside]
+        return out
+
     @cached_property
     def arc_weight(self) -> NDArray[np.float64]:
         """Weights of the trapezoidal rule along a strip, shape (n_node,) [rad]."""

@@ -57,6 +57,10 @@ class PetalElements:
         """Angle of each element [rad]."""
         return np.diff(self.phi)
 
+    def angle_at(self, element: NDArray[np.intp], place: Array) -> Array:
+        """Angle from the root at places (k,) from 0 to 1 within elements (k,) [rad]."""
+        return np.asarray(self.phi[element] + place * self.element_angle[element])
+
     @property
     def slope_angle(self) -> float:
         """Angle that slopes are multiplied with to make unknowns [rad]."""

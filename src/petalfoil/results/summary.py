@@ -289,5 +289,10 @@ def number(value: float) -> str:
     return f"{value:.2e}"
 
 
+def barred(value: float, bar: float) -> float | str:
+    """A number of a table of arrays, with its error bar where it has one."""
+    return value if math.isnan(bar) else f"{number(value)} ± {number(bar)}"
+
+
 def _or_null(value: Scalar) -> Scalar | None:
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -12,7 +12,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 from scipy.sparse import _sparsetools  # the loops behind `@`; SciPy has no public way to them
-from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
+from scipy.sparse.csgraph import connected_components, structural_rank
 
 from petalfoil.sparsity import Elimination, Order, compressed, postorder
 
@@ -192,7 +192,7 @@ class Columns:
         if np.count_nonzero(self.indices == columns) == self.n:  # no entry stands twice: a full diagonal
             return True
         pattern = compressed(sp.csr_array, np.ones(len(self.data)), self.indices, self.indptr, (self.n, self.n))
-        return bool(np.all(maximum_bipartite_matching(pattern) >= 0))
+        return bool(structural_rank(pattern) == self.n)
 
     @property
     def magnitude(self) -> Columns:

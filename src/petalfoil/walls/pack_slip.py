@@ -160,10 +160,9 @@ def stretched_along(pack: ElementPack, points: ContactPoints, force: Array) -> A
     Shape (count, n_node - 1) [m].
     """
     contact, at = touching_faces(pack, points)
-    faces, phi = pack.faces, pack.elements.phi
+    faces = pack.faces
     pulls = -faces.share(at.petal, at.side) * force[contact]
-    arc = phi[at.element] + at.place * pack.elements.element_angle[at.element]
-    reached = np.minimum(pack.mesh.phi[1:, None], arc) * pulls  # (node, face)
+    reached = np.minimum(pack.mesh.phi[1:, None], pack.elements.angle_at(at.element, at.place)) * pulls  # (node, face)
     own = at.petal[:, None] == np.arange(pack.mesh.count)
     over = faces.metric_radius / (faces.membrane * pack.mesh.axial.length)
     return np.asarray(over[:, None] * (reached @ own).T)
@@ -176,11 +175,11 @@ def membrane_of_pulls(pack: ElementPack, points: ContactPoints, friction: Array,
     on the faces that it touches [N]; shape (count, n_node) [N/m].
     """
     (contact, at), (touched, inner) = touching_faces(pack, points), faces_on_journal(pack, points)
-    faces, phi = pack.faces, pack.elements.phi
+    faces = pack.faces
     pulls = -faces.share(at.petal, at.side) * friction[contact], faces.share(inner.petal, inner.side) * drag[touched]
     force = np.zeros((pack.mesh.count, len(pack.mesh.phi)))
     for face, pull in zip((at, inner), pulls, strict=True):
-        angle = phi[face.element] + face.place * pack.elements.element_angle[face.element]
+        angle = pack.elements.angle_at(face.element, face.place)
         beyond = np.where(angle[:, None] >= pack.mesh.phi, pull[:, None], 0.0)  # (face, node)
         np.add.at(force, face.petal, beyond)
     return np.asarray(force / pack.mesh.axial.length)

@@ -49,15 +49,16 @@ def test_the_bracket_is_that_of_looks_one_by_one(factors: float, ahead: int) -> 
 
 def test_an_unstable_look_is_no_start_for_the_one_between() -> None:
     """That is followed from the last stable speed."""
-    margin = Margin(FACTOR**0.5, FARTHEST)
-    looked_ahead(margin, 1.0, FACTOR, (1.0, 9.0))  # type: ignore[arg-type]
+    margin: Any = Margin(FACTOR**0.5, FARTHEST)
+    looked_ahead(margin, 1.0, FACTOR, (1.0, 9.0))
     assert margin.looks == [1.0, 1.0]
 
 
 def test_the_last_look_is_within_the_range() -> None:
     """As many factors as are left are taken."""
+    margin: Any = Margin(math.inf, FARTHEST)
     for left in (1, 2):
-        ahead, _ = looked_ahead(Margin(math.inf, FARTHEST), 1.0, FACTOR, (1.0, FACTOR**left * 1.1))  # type: ignore[arg-type]
+        ahead, _ = looked_ahead(margin, 1.0, FACTOR, (1.0, FACTOR**left * 1.1))
         assert ahead == pytest.approx(FACTOR**left)
 
 

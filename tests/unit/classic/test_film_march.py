@@ -12,7 +12,6 @@ from petalfoil.classic.film_cells import FilmCells, film_cells
 from petalfoil.classic.film_march import FilmMarch
 from petalfoil.classic.kernels import MarchSettings
 from petalfoil.classic.method_options import ClassicOptions
-from petalfoil.classic.relaxation import pressure_unknowns
 from petalfoil.equilibrium.cold_start import solve_cold
 from petalfoil.system.coupled import CoupledProblem
 from tests.unit.classic.bearings import KINDS, bearing
@@ -39,7 +38,7 @@ def test_the_flow_into_the_cells_is_that_of_the_coupled_system(kind: str) -> Non
     cells, balance = cells_of(problem, H), problem.layout.balance
     inflow = numpy_kernels.inflow(P.ravel(), cells, numpy_kernels.exponential_fit(P.ravel(), cells)).reshape(H.shape)
     outflow = balance.residual(balance.fluxes(P, H, problem.bearing_number))
-    assert_allclose(pressure_unknowns(problem, inflow), -outflow, rtol=1e-11, atol=1e-11 * np.max(np.abs(outflow)))
+    assert_allclose(balance.mesh.at_unknowns(inflow), -outflow, rtol=1e-11, atol=1e-11 * np.max(np.abs(outflow)))
     assert np.all(inflow[balance.mesh.unknown < 0] == 0.0)
 
 
